@@ -1,0 +1,35 @@
+#pragma once
+/// What every program does alike: parse, run, report errors, show progress.
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <string>
+
+namespace apps {
+
+/// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr; 2 = the
+/// command line was wrong.
+int run_program(CLI::App& app, int argc, char** argv);
+
+/// A line on stderr that shows how far a long step is. Drawn at most ten times a second; a plain line a tenth
+/// when stderr is not a terminal. Nothing is shown for steps that end within two seconds.
+class Progress {
+ public:
+  Progress(std::string label, std::size_t total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void update(std::size_t done);
+
+ private:
+  void draw(std::size_t done);
+
+  std::string label_;
+  std::size_t total_;
+  double started_s_;
+  double drawn_s_ = 0;
+  int drawn_tenth_ = -1;
+  bool terminal_;
+};
+
+}  // namespace apps

@@ -1,0 +1,17 @@
+# Every switch of the build, in one place.
+option(VIP_TESTS "Build the tests" ON)
+option(VIP_WINDOW "Build the windows (GLFW, Dear ImGui)" ON)
+option(VIP_WERROR "Treat warnings as errors" OFF)
+option(VIP_NATIVE "Use every instruction of this machine's processor" OFF)
+option(VIP_LIBFUZZER "Link the fuzz entry points with libFuzzer (clang only)" OFF)
+set(VIP_CUDA "AUTO" CACHE STRING "CUDA back end: AUTO, ON or OFF")
+set_property(CACHE VIP_CUDA PROPERTY STRINGS AUTO ON OFF)
+set(VIP_SANITIZE "" CACHE STRING "Sanitizers for g++, for example address,undefined")
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)

@@ -1,0 +1,33 @@
+# vip_flags: what every target of the project is compiled with. Warnings never reach nvcc.
+add_library(vip_flags INTERFACE)
+target_include_directories(vip_flags INTERFACE ${PROJECT_SOURCE_DIR})
+set(_cxx "$<COMPILE_LANGUAGE:CXX>")
+target_compile_options(vip_flags INTERFACE
+  $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<${_cxx}:-Wshadow> $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
+  $<${_cxx}:-Wno-sign-conversion>
+  # Nobody reads errno or FP traps of <cmath>; NaN and infinity keep their meaning.
+  $<${_cxx}:-fno-math-errno> $<${_cxx}:-fno-trapping-math>)
+if(VIP_WERROR)
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-Werror>)
+endif()
+if(VIP_NATIVE)
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-march=native>)
+endif()
+if(VIP_SANITIZE)
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=${VIP_SANITIZE}> $<${_cxx}:-fno-omit-frame-pointer>)
+  target_link_options(vip_flags INTERFACE -fsanitize=${VIP_SANITIZE})
+endif()
+
+# vip_library(NAME SOURCES... ) a static library; vip_program(NAME ...) an installed program.
+function(vip_library name)
+  add_library(${name} STATIC ${ARGN})
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(${name} PUBLIC vip_flags)
+endfunction()
+
+function(vip_program name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE vip_flags)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()

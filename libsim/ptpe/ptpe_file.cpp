@@ -1,0 +1,76 @@
+#include "libsim/ptpe/ptpe_file.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "stats/base/file.hpp"
+#include "stats/base/toml.hpp"
+
+namespace sim {
+
+namespace {
+/// The shortest text that reads back to the same double, always with a point so that TOML sees a float.
+std::string exact(double value) {
+  char text[32];
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    if (std::stod(text) == value) break;
+  }
+  const std::string out = text;
+  return out.find_first_of(".e") == std::string::npos ? out + ".0" : out;
+}
+
+std::array<double, 2> interval(const base::TomlTable& table, const char* key) {
+  const auto ends = table.numbers(key, 2);
+  if (ends[0] > ends[1]) table.fail(key, "runs downwards", "write [low, high]");
+  return {ends[0], ends[1]};
+}
+}  // namespace
+
+PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
+  const auto root = base::parse_toml(text, name);
+  if (root.integer("format") != PtpeFile::format_version) {
+    root.fail("format",
+              "is not the format this program reads (" + std::to_string(PtpeFile::format_version) + ")",
+              "use the program that wrote the file, or fit again with this one");
+  }
+  const auto table = root.table("ptpe");
+  PtpeFile file;
+  file.model.a = table.number("a_fps", {1e-3, 1e4});
+  file.model.b = table.number("b_s", {-1, 1});
+  file.level = table.number("level", {1, 7});
+  file.a_ci = interval(table, "a_ci95_fps");
+  file.b_ci = interval(table, "b_ci95_s");
+  file.n_participants = static_cast<int>(table.integer("n_participants", {1, 1e6}));
+  file.fps_mean = table.choice("fps_mean", {"harmonic", "arithmetic"});
+  file.protocol_sha256 = table.string("protocol_sha256");
+  const bool hash = file.protocol_sha256.size() == 64 &&
+                    file.protocol_sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!hash) table.fail("protocol_sha256", "is not a SHA-256", "write 64 hexadecimal digits");
+  file.date_utc = table.string("date_utc");
+  root.finish();
+  return file;
+}
+
+PtpeFile read_ptpe_file(const std::filesystem::path& path) {
+  return parse_ptpe_file(base::read_file(path, 1 << 20), path.string());
+}
+
+std::string format_ptpe_file(const PtpeFile& file) {
+  const auto pair = [](const std::array<double, 2>& ends) {
+    return "[" + exact(ends[0]) + ", " + exact(ends[1]) + "]";
+  };
+  std::ostringstream out;
+  out << "# tau = mu - a exp(b delta), all in frames per second (ViP-Fluid, Eq. 11)\n"
+      << "format = " << PtpeFile::format_version << "\n\n[ptpe]\n"
+      << "a_fps = " << exact(file.model.a) << "\nb_s = " << exact(file.model.b)
+      << "\nlevel = " << exact(file.level) << "\na_ci95_fps = " << pair(file.a_ci)
+      << "\nb_ci95_s = " << pair(file.b_ci) << "\nn_participants = " << file.n_participants
+      << "\nfps_mean = " << base::toml_quoted(file.fps_mean)
+      << "\nprotocol_sha256 = " << base::toml_quoted(file.protocol_sha256)
+      << "\ndate_utc = " << base::toml_quoted(file.date_utc) << "\n";
+  return out.str();
+}
+
+}  // namespace sim

@@ -1,0 +1,55 @@
+#pragma once
+/// A scene as its file describes it: tank, water, time step, views, gaze. SI units; y points up; gravity acts
+/// along -y.
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sim {
+
+using Vec3d = std::array<double, 3>;
+
+/// A pinhole camera. Right-handed, looking from eye to target with +y up.
+struct Camera {
+  Vec3d eye_m{0, 1, 3};
+  Vec3d target_m{0, 0, 0};
+  double vertical_fov_deg = 75;
+  double near_m = 0.1;
+  double far_m = 200;
+};
+
+/// From `frame` on the gaze rests on `point_m`; it jumps there in 2 frames.
+struct GazeKey {
+  int frame = 0;
+  Vec3d point_m{};
+};
+
+struct Scene {
+  std::string name;
+  /// Inner size of the tank from (0,0,0); glass walls and floor, open above (y is the walls' drawn height
+  /// only).
+  Vec3d tank_size_m{};
+  /// Box that is filled with water before frame 0.
+  Vec3d fill_min_m{};
+  Vec3d fill_max_m{};
+  double gravity_m_s2 = 9.81;
+  double frame_dt_s = 1.0 / 60;
+  /// Reference speed for the number of substeps (scenes.md "Step").
+  double v_ref_m_s = 0;
+  int settle_frames = 120;
+  int solver_iterations = 4;
+  int min_substeps = 2;
+  std::vector<int> checkpoints;
+  std::vector<GazeKey> gaze;
+  Camera view;         ///< the participant's
+  Camera overview;     ///< for figures
+  std::string sha256;  ///< of the file's text
+};
+
+Scene parse_scene(std::string_view text, const std::string& name);
+Scene read_scene(const std::filesystem::path& path);
+
+}  // namespace sim

@@ -1,0 +1,81 @@
+#pragma once
+/// The fluid as programs see it: one scene, one method, one back end.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libsim/methods/method.hpp"
+#include "libsim/scene/scene.hpp"
+
+namespace sim {
+
+enum class Backend { Cpu, Cuda };
+
+/// "cpu", "cuda" or "auto" (CUDA when a device answers, otherwise the CPU). "cuda" without a device is a
+/// base::Error.
+Backend choose_backend(std::string_view name);
+std::string backend_name(Backend backend);
+
+/// One particle as the renderer and the bake take it.
+struct RenderParticle {
+  float x_m = 0, y_m = 0, z_m = 0;
+  float radius_m = 0;
+};
+
+struct SimulationOptions {
+  MethodKind method = MethodKind::HiRes;
+  std::int64_t n_star = 32 * 1024;
+  Backend backend = Backend::Cpu;
+  int iterations = 0;     ///< constraint projections a substep; 0 = the scene's
+  int substeps = 0;       ///< a frame; 0 = by the scene's rule
+  double frame_dt_s = 0;  ///< 0 = the scene's
+  std::uint64_t seed = 1;
+};
+
+/// What the guards met since the simulation was made. Nothing is hidden: each count says how often a rule
+/// stepped in.
+struct GuardCounts {
+  std::uint64_t speed_limited = 0;       ///< particle-substeps whose speed was limited
+  std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
+  std::uint64_t not_finite = 0;          ///< particles whose NaN or infinity was quarantined
+  std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
+  std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back inside a wall
+};
+
+/// State of the fluid after a frame.
+struct FrameReport {
+  int frame = 0;  ///< frames since the gate opened
+  double time_s = 0;
+  std::int64_t particles = 0;
+  std::vector<std::int64_t> particles_by_level;
+  double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
+  double density_max = 0;         ///< max of rho / rho_0
+  double neighbours_mean = 0;     ///< without self, within h
+  double speed_max_m_s = 0;
+  GuardCounts guards;
+};
+
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  /// Advances by one frame.
+  virtual void step_frame() = 0;
+  /// Measures the present state (costs a pass and a read-back; not part of step_frame).
+  virtual FrameReport report() = 0;
+  virtual std::int64_t particle_count() const = 0;
+  /// Rest spacing d = 2 r of the finest particles present, m.
+  virtual double spacing_m() const = 0;
+  /// Positions and radii in the solver's order, copied to the host.
+  virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
+  /// The schedule in words: each pass with why it is there, each known stage with why it is not.
+  virtual std::string explain() const = 0;
+};
+
+/// Fills, settles and returns the scene at frame 0. Errors are base::Error.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
+
+}  // namespace sim

@@ -1,0 +1,26 @@
+#pragma once
+/// Who sees what in which order: a pure function of (protocol hash, participant, seed).
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libstudy/protocol/protocol.hpp"
+
+namespace study {
+
+/// One planned trial.
+struct PlannedTrial {
+  int position = 0;                 ///< 0-based order of presentation
+  int setting = 0;                  ///< index into Protocol::settings
+  std::uint64_t schedule_seed = 0;  ///< orders the intervals
+};
+
+/// Counter-based 64-bit generator value for (key, counter): equal on every machine and build.
+std::uint64_t counter_random(std::uint64_t key, std::uint64_t counter);
+
+/// All settings once each in random order.
+std::vector<PlannedTrial> make_plan(const Protocol& protocol, const std::string& participant,
+                                    std::uint64_t seed);
+
+}  // namespace study

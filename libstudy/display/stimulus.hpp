@@ -1,0 +1,61 @@
+#pragma once
+/// What a trial shows and where it is shown. libstudy knows fluids and GL only through these two interfaces.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace study {
+
+/// What a frame of the stimulus consisted of; kept in every frame record.
+struct FrameFacts {
+  double simulation_time_s = 0;
+  std::vector<std::int64_t> particles_by_level;
+  double active_fraction = 1;
+  double tolerance = 0;  ///< tau in frames/s that the solver used; 0 when it used none
+};
+
+/// A process that elapses in content steps. Not thread-safe.
+class Stimulus {
+ public:
+  virtual ~Stimulus() = default;
+  /// Names scene, method, n_*, back end and bake hash, for the record.
+  virtual std::string description() const = 0;
+  /// Content steps after which the process ends or repeats; 0 = unlimited.
+  virtual std::int64_t length() const = 0;
+  /// Rewinds to content step `start_step`.
+  virtual void start(std::int64_t start_step) = 0;
+  /// Makes content step `step` (>= the last one asked for) ready to draw.
+  virtual FrameFacts prepare(std::int64_t step) = 0;
+  /// Draws the prepared step into GL framebuffer object `framebuffer`; the display's context is current.
+  virtual void draw(unsigned framebuffer, int width_px, int height_px) = 0;
+};
+
+/// When a frame was handed over and seen, on the session's clock, in nanoseconds; -1 = not known.
+struct PresentTimes {
+  std::int64_t submitted_ns = -1;
+  std::int64_t gpu_done_ns = -1;
+  std::int64_t predicted_display_ns = -1;
+  std::int64_t actual_display_ns = -1;
+};
+
+/// How good the evidence for onset times is (study.md section 1).
+enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Compositor = 'C', CpuSubmit = 'D' };
+
+class Clock;
+
+/// Where frames go. One instance a session.
+class Display {
+ public:
+  virtual ~Display() = default;
+  virtual std::string description() const = 0;
+  virtual TimingGrade grade() const = 0;
+  /// Fixed refresh rate in Hz, or 0 when frames are shown as they come.
+  virtual double refresh_hz() const = 0;
+  /// Draws the stimulus off-screen so that present() is short. May do nothing.
+  virtual void render(Stimulus& stimulus) = 0;
+  /// Shows what was rendered, now; returns when it was handed over.
+  virtual PresentTimes present(const Clock& clock) = 0;
+};
+
+}  // namespace study

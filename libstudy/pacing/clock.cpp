@@ -1,0 +1,29 @@
+#include "libstudy/pacing/clock.hpp"
+
+#include <ctime>
+
+namespace study {
+
+namespace {
+// The kernel wakes a sleeper some tens of microseconds late; the last stretch is spun.
+constexpr std::int64_t spin_ns = 300'000;
+}  // namespace
+
+std::int64_t RealClock::now_ns() const {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+void RealClock::wait_until(std::int64_t deadline_ns) {
+  const std::int64_t sleep_to = deadline_ns - spin_ns;
+  if (sleep_to > now_ns()) {
+    const timespec target{sleep_to / 1'000'000'000, sleep_to % 1'000'000'000};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &target, nullptr) != 0) {
+    }
+  }
+  while (now_ns() < deadline_ns) {
+  }
+}
+
+}  // namespace study

@@ -1,0 +1,74 @@
+#pragma once
+/// Plays a schedule on a clock and judges what came of it.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libstudy/display/stimulus.hpp"
+#include "libstudy/pacing/clock.hpp"
+#include "libstudy/pacing/schedule.hpp"
+#include "stats/fps_window.hpp"
+
+namespace study {
+
+enum class AtEnd { Loop, Hold };
+
+/// How content elapses. per_frame: one content step a frame (the paper's reading); real_time: by the clock.
+struct ContentRules {
+  bool real_time = false;
+  double content_step_s = 1.0 / 60;
+  std::int64_t start_frame = 0;
+  AtEnd at_end = AtEnd::Loop;
+};
+
+/// One shown frame. Times are nanoseconds on the session's clock; -1 = not known.
+struct FrameRecord {
+  std::int64_t index = 0;
+  std::int64_t content_step = 0;
+  std::int64_t scheduled_ns = 0;
+  PresentTimes times;
+  bool late = false;  ///< submitted over the protocol's lateness bound after `scheduled_ns`
+  FrameFacts facts;
+};
+
+/// Shows one trial: absolute deadlines, a late frame is shown at once, no content step is skipped.
+/// `each` is called after every frame (for the journal); the returned records are all frames, plus the
+/// closing instant as `end_ns`, so that N intervals follow from N frames.
+struct PlayedTrial {
+  std::vector<FrameRecord> frames;
+  std::int64_t end_ns = 0;
+};
+PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
+                       Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
+                       const std::function<void(const FrameRecord&)>& each);
+
+/// Tolerances of a protocol.
+struct TimingTolerance {
+  double late_after_ms = 0.5;
+  double mean_relative = 0.005;
+  double sd_relative = 0.02;
+  double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd bounds counts
+  double fail_mean_relative = 0.05;  ///< beyond this the trial has failed, not only degraded
+  double fail_sd_relative = 0.20;
+};
+
+enum class Verdict { Pass, Degraded, Fail };
+
+/// Nominal and realised timing of a trial, with the grade of the evidence.
+struct TimingVerdict {
+  Verdict verdict = Verdict::Fail;
+  TimingGrade grade = TimingGrade::CpuSubmit;
+  FpsSetting nominal;
+  stats::FpsMoments realised;
+  double longest_ms = 0, shortest_ms = 0, p95_ms = 0;
+  double lag1 = 0;  ///< autocorrelation of 1/dt at lag 1; 0 when delta is 0
+  std::int64_t late = 0;
+  double worst_late_ms = 0;
+  std::string reason;  ///< why it is not a pass
+};
+TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
+                          const TimingTolerance& tolerance, TimingGrade grade);
+
+}  // namespace study

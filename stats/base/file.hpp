@@ -1,0 +1,35 @@
+#pragma once
+/// Whole files in and out, and where the project's own files lie. Errors are base::Error and name the path.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace base {
+
+/// The bytes of a regular file; an error when it is missing, unreadable or larger than max_bytes.
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
+
+/// Writes to a temporary neighbour, syncs it and renames it over `path`: readers see the old file or the new,
+/// never a part.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+/// A file or folder that ships with the project, e.g. "shaders/splat.comp" or "data/scenes/single_dam.toml".
+/// Looked for in $VIP_SHARE_DIR, then <program>/../share/vip-lab, then the source tree.
+std::filesystem::path resource(const std::string& relative);
+
+/// A user's path as given when it exists, otherwise resource(path) when that exists, otherwise an error that
+/// names both.
+std::filesystem::path find_input(const std::filesystem::path& path);
+
+/// SHA-256 as 64 hexadecimal digits.
+std::string sha256_hex(std::string_view bytes);
+
+/// Version of the project, e.g. "0.1.0".
+std::string version();
+
+/// Now in UTC as ISO 8601 with seconds, e.g. "2026-01-31T12:00:00Z".
+std::string utc_now();
+
+}  // namespace base

@@ -1,0 +1,242 @@
+#include "stats/base/toml.hpp"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace base {
+
+namespace {
+
+std::string place_of(const std::string& file, const toml::source_region& region) {
+  std::ostringstream out;
+  out << file;
+  if (region.begin) out << ':' << region.begin.line << ':' << region.begin.column;
+  return out.str();
+}
+
+std::string join(const std::set<std::string>& words) {
+  std::string out;
+  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+std::string shown(double value) {
+  std::ostringstream out;
+  out.precision(12);
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
+struct TomlTable::State {
+  std::shared_ptr<const toml::table> root;
+  const toml::table* table = nullptr;
+  std::string file;
+  std::string path;  // dotted, empty for the root
+  mutable std::set<std::string> asked;
+  mutable std::vector<std::shared_ptr<State>> children;
+
+  std::string name(std::string_view key) const {
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+  }
+
+  [[noreturn]] void fail(const toml::node* node, std::string_view key, const std::string& problem,
+                         const std::string& mend) const {
+    const auto& region = node ? node->source() : table->source();
+    const std::string what = key.empty() ? path : name(key);
+    throw Error(place_of(file, region), (what.empty() ? "" : "'" + what + "' ") + problem, mend);
+  }
+
+  const toml::node* find(std::string_view key) const {
+    asked.emplace(key);
+    return table->get(key);
+  }
+
+  const toml::node& need(std::string_view key) const {
+    const toml::node* node = find(key);
+    if (!node) fail(nullptr, key, "is missing", "add '" + std::string(key) + " = ...' to this table");
+    return *node;
+  }
+
+  double in_range(const toml::node& node, std::string_view key, Range range) const {
+    const auto value = node.value<double>();
+    if (!node.is_number() || !value) fail(&node, key, "must be a number", "write it without quotes");
+    if (!std::isfinite(*value)) fail(&node, key, "must be finite", "write an ordinary number");
+    if (*value < range.min || *value > range.max) {
+      const std::string low = range.min == positive.min ? "(0" : "[" + shown(range.min);
+      fail(&node, key, "= " + shown(*value) + " is out of range",
+           "use a value in " + low + ", " + shown(range.max) + "]");
+    }
+    return *value;
+  }
+
+  std::int64_t whole(const toml::node& node, std::string_view key, Range range) const {
+    if (!node.is_integer())
+      fail(&node, key, "must be a whole number", "write it without a fraction or quotes");
+    in_range(node, key, range);
+    return *node.value<std::int64_t>();
+  }
+
+  std::shared_ptr<State> child(const toml::table& node, std::string child_path) const {
+    auto state = std::make_shared<State>();
+    state->root = root;
+    state->table = &node;
+    state->file = file;
+    state->path = std::move(child_path);
+    children.push_back(state);
+    return state;
+  }
+
+  void finish() const {
+    for (const auto& [key, node] : *table) {
+      if (asked.count(std::string(key.str()))) continue;
+      fail(&node, key.str(), "is not a known key", "known keys here: " + join(asked));
+    }
+    for (const auto& state : children) state->finish();
+  }
+};
+
+TomlTable::TomlTable(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+bool TomlTable::has(std::string_view key) const { return state_->find(key) != nullptr; }
+
+double TomlTable::number(std::string_view key, Range range) const {
+  return state_->in_range(state_->need(key), key, range);
+}
+
+std::int64_t TomlTable::integer(std::string_view key, Range range) const {
+  return state_->whole(state_->need(key), key, range);
+}
+
+bool TomlTable::boolean(std::string_view key) const {
+  const auto& node = state_->need(key);
+  if (!node.is_boolean())
+    state_->fail(&node, key, "must be true or false", "write true or false without quotes");
+  return *node.value<bool>();
+}
+
+std::string TomlTable::string(std::string_view key) const {
+  const auto& node = state_->need(key);
+  if (!node.is_string()) state_->fail(&node, key, "must be text", "put it in double quotes");
+  return *node.value<std::string>();
+}
+
+std::string TomlTable::choice(std::string_view key, const std::vector<std::string>& allowed) const {
+  const std::string value = string(key);
+  std::string list;
+  for (const auto& word : allowed) {
+    if (word == value) return value;
+    list += (list.empty() ? "\"" : ", \"") + word + "\"";
+  }
+  state_->fail(state_->find(key), key, "= \"" + value + "\" is not a known choice", "use one of " + list);
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, std::size_t size, Range range) const {
+  const auto& node = state_->need(key);
+  const toml::array* array = node.as_array();
+  if (!array) state_->fail(&node, key, "must be a list of numbers", "write [a, b, ...]");
+  if (size && array->size() != size) {
+    state_->fail(&node, key, "has " + std::to_string(array->size()) + " entries",
+                 "give exactly " + std::to_string(size));
+  }
+  std::vector<double> out;
+  for (const auto& element : *array) out.push_back(state_->in_range(element, key, range));
+  return out;
+}
+
+std::vector<std::string> TomlTable::strings(std::string_view key) const {
+  const auto& node = state_->need(key);
+  const toml::array* array = node.as_array();
+  if (!array) state_->fail(&node, key, "must be a list of texts", "write [\"a\", \"b\"]");
+  std::vector<std::string> out;
+  for (const auto& element : *array) {
+    if (!element.is_string())
+      state_->fail(&element, key, "must hold texts only", "put each entry in double quotes");
+    out.push_back(*element.value<std::string>());
+  }
+  return out;
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+  const auto& node = state_->need(key);
+  if (!node.is_table()) state_->fail(&node, key, "must be a table", "write [" + state_->name(key) + "]");
+  return TomlTable(state_->child(*node.as_table(), state_->name(key)));
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+  std::vector<TomlTable> out;
+  const toml::node* node = state_->find(key);
+  if (!node) return out;
+  const toml::array* array = node->as_array();
+  if (!array) state_->fail(node, key, "must be an array of tables", "write [[" + state_->name(key) + "]]");
+  for (const auto& element : *array) {
+    if (!element.is_table())
+      state_->fail(&element, key, "must hold tables only", "write [[" + state_->name(key) + "]]");
+    out.emplace_back(
+        state_->child(*element.as_table(), state_->name(key) + "[" + std::to_string(out.size()) + "]"));
+  }
+  return out;
+}
+
+double TomlTable::number_or(std::string_view key, double fallback, Range range) const {
+  return has(key) ? number(key, range) : fallback;
+}
+std::int64_t TomlTable::integer_or(std::string_view key, std::int64_t fallback, Range range) const {
+  return has(key) ? integer(key, range) : fallback;
+}
+bool TomlTable::boolean_or(std::string_view key, bool fallback) const {
+  return has(key) ? boolean(key) : fallback;
+}
+std::string TomlTable::string_or(std::string_view key, const std::string& fallback) const {
+  return has(key) ? string(key) : fallback;
+}
+
+void TomlTable::fail(std::string_view key, const std::string& problem, const std::string& mend) const {
+  state_->fail(key.empty() ? nullptr : state_->table->get(key), key, problem, mend);
+}
+
+void TomlTable::finish() const { state_->finish(); }
+
+TomlTable parse_toml(std::string_view text, const std::string& name) {
+  auto state = std::make_shared<TomlTable::State>();
+  try {
+    state->root = std::make_shared<const toml::table>(toml::parse(text, name));
+  } catch (const toml::parse_error& error) {
+    throw Error(place_of(name, error.source()), std::string(error.description()),
+                "mend the TOML syntax at this place");
+  }
+  state->table = state->root.get();
+  state->file = name;
+  return TomlTable(state);
+}
+
+TomlTable read_toml(const std::filesystem::path& path) {
+  return parse_toml(read_file(path, 16u << 20), path.string());
+}
+
+std::string toml_quoted(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (byte < 0x20 || byte == 0x7f) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04X", static_cast<unsigned>(byte));
+      quoted += escape;
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+}  // namespace base
