@@ -1,0 +1,33 @@
+#pragma once
+/// The answers of a study as the analyses see them. Read-only: nothing in the database is changed.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/pacer.hpp"
+
+namespace study {
+
+/// One planned trial of a rating protocol, with what is known of it so far.
+struct RatingRow {
+  std::string participant;  ///< code
+  std::string protocol_name;
+  std::string protocol_sha256;  ///< 64 hexadecimal digits, overrides included
+  bool test_data = false;       ///< pilot runs and overridden protocols: never pooled with real data
+  bool practice = false;
+  int position = 0;  ///< 0-based order of presentation
+  FpsSetting nominal;
+  int scale_min = 1, scale_max = 7;
+  /// How the trial was shown; empty until it was. A trial shown again counts by its answered presentation.
+  std::optional<TimingVerdict> timing;
+  /// The answer within [scale_min, scale_max]; empty until given.
+  std::optional<int> rating;
+};
+
+/// Every planned trial of the database, answered or not, ordered by (protocol, participant, position).
+/// base::Error naming the file: missing, not a database of this program, damaged, or newer than this program.
+std::vector<RatingRow> read_ratings(const std::filesystem::path& database);
+
+}  // namespace study
