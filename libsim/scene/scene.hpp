@@ -39,7 +39,9 @@ struct Scene {
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (scenes.md "Step").
   double v_ref_m_s = 0;
-  int settle_frames = 120;
+  /// True: walls close round the block until it has settled.
+  bool gate = false;
+  int settle_frames = 0;
   int solver_iterations = 4;
   int min_substeps = 2;
   std::vector<int> checkpoints;
@@ -49,6 +51,7 @@ struct Scene {
   std::string sha256;  ///< of the file's text
 };
 
+/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water outside the tank.
 Scene parse_scene(std::string_view text, const std::string& name);
 Scene read_scene(const std::filesystem::path& path);
 

@@ -1,0 +1,46 @@
+#include "libsim/scene/fill.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star) {
+  double volume = 1;
+  for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
+  Resolution out;
+  out.finest_spacing_m = std::cbrt(volume / static_cast<double>(8 * n_star));
+  out.level = method == MethodKind::LoRes ? 3 : 0;
+  out.spacing_m = out.finest_spacing_m * (method == MethodKind::LoRes ? 2 : 1);
+  return out;
+}
+
+std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star) {
+  const double d = resolution_of(scene, method, n_star).spacing_m;
+  const double lx = scene.fill_max_m[0] - scene.fill_min_m[0];
+  const double lz = scene.fill_max_m[2] - scene.fill_min_m[2];
+  const auto nx = std::max<std::int64_t>(1, std::llround(lx / d));
+  const auto nz = std::max<std::int64_t>(1, std::llround(lz / d));
+  const double dx = lx / static_cast<double>(nx);
+  const double dz = lz / static_cast<double>(nz);
+  const double dy = d * d * d / (dx * dz);
+  std::vector<Vec3d> out(static_cast<std::size_t>(particle_count(method, n_star)));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto index = static_cast<std::int64_t>(i);
+    const auto ix = static_cast<double>(index % nx);
+    const auto iz = static_cast<double>(index / nx % nz);
+    const auto iy = static_cast<double>(index / (nx * nz));
+    out[i] = {scene.fill_min_m[0] + (ix + 0.5) * dx, scene.fill_min_m[1] + (iy + 0.5) * dy,
+              scene.fill_min_m[2] + (iz + 0.5) * dz};
+  }
+  return out;
+}
+
+int substeps_of(const Scene& scene, std::int64_t n_star) {
+  const double radius = resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m / 2;
+  // The rule is stated in round numbers; without the margin 1/60 s would round one case up.
+  const double steps = scene.v_ref_m_s * scene.frame_dt_s / (0.5 * 4 * radius);
+  return std::max(scene.min_substeps, static_cast<int>(std::ceil(steps - 1e-9)));
+}
+
+}  // namespace sim

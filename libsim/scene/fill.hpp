@@ -1,0 +1,26 @@
+#pragma once
+/// Where the particles start: the fill rule of the scenes, exact at every n_*.
+
+#include <vector>
+
+#include "libsim/methods/method.hpp"
+#include "libsim/scene/scene.hpp"
+
+namespace sim {
+
+/// Resolution that follows from a scene's fixed volume and n_*.
+struct Resolution {
+  double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
+  double spacing_m = 0;         ///< d of the method's particles: d_* for HiRes, 2 d_* for LoRes
+  int level = 0;                ///< 0 = finest; LoRes holds level 3 (mass 8 m_*)
+};
+Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
+
+/// Exactly particle_count(method, n_star) points: layers from the floor up, the last layer partial; nx =
+/// round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
+std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
+
+/// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
+int substeps_of(const Scene& scene, std::int64_t n_star);
+
+}  // namespace sim

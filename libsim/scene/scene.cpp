@@ -1,0 +1,101 @@
+#include "libsim/scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/base/file.hpp"
+#include "stats/base/toml.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr int format_version = 1;
+// Far enough for any room, near enough for float coordinates to resolve 1 mm.
+constexpr double farthest_m = 1e4;
+
+Vec3d vector(const base::TomlTable& table, const char* key, base::Range range = {-farthest_m, farthest_m}) {
+  const auto v = table.numbers(key, 3, range);
+  return {v[0], v[1], v[2]};
+}
+
+Camera camera(const base::TomlTable& table) {
+  Camera out;
+  out.eye_m = vector(table, "eye_m");
+  out.target_m = vector(table, "target_m");
+  out.vertical_fov_deg = table.number("vertical_fov_deg", {1, 170});
+  out.near_m = table.number("near_m", {1e-3, 10});
+  const double dx = out.target_m[0] - out.eye_m[0];
+  const double dz = out.target_m[2] - out.eye_m[2];
+  if (std::hypot(dx, dz) < 1e-6)
+    table.fail("target_m", "lies straight above or below the eye", "move it sideways");
+  return out;
+}
+
+/// The same view from three times as far (scenes.md "View").
+Camera overview_of(const Camera& view) {
+  Camera out = view;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.eye_m[k] = view.target_m[k] + 3 * (view.eye_m[k] - view.target_m[k]);
+  return out;
+}
+
+void read_water(const base::TomlTable& table, Scene& scene) {
+  scene.fill_min_m = vector(table, "min_m");
+  scene.fill_max_m = vector(table, "max_m");
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(scene.fill_max_m[k] - scene.fill_min_m[k] >= 1e-3)) {
+      table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
+    }
+    const bool above = k == 1;  // the tank is open above
+    if (scene.fill_min_m[k] < 0 || (!above && scene.fill_max_m[k] > scene.tank_size_m[k] + 1e-9)) {
+      table.fail("max_m", "reaches outside the tank", "keep the block within [0, tank.size_m]");
+    }
+  }
+  scene.gate = table.boolean("gate");
+  scene.settle_frames = static_cast<int>(table.integer("settle_frames", {0, 10'000}));
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+  const auto root = base::parse_toml(text, name);
+  if (root.integer("format") != format_version) {
+    root.fail("format", "is not the format this program reads (1)", "use a program of the file's version");
+  }
+  Scene scene;
+  scene.sha256 = base::sha256_hex(text);
+  scene.name = root.string("name");
+  if (scene.name.empty() || scene.name.size() > 64)
+    root.fail("name", "is empty or too long", "use 1 to 64 characters");
+  scene.gravity_m_s2 = root.number("gravity_m_s2", {0, 1000});
+  for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
+    scene.checkpoints.push_back(static_cast<int>(frame));
+  scene.tank_size_m = vector(root.table("tank"), "size_m", {1e-2, farthest_m});
+  read_water(root.table("water"), scene);
+
+  const auto time = root.table("time");
+  scene.frame_dt_s = 1 / time.number("frames_per_s", {1, 10'000});
+  scene.v_ref_m_s = time.number("v_ref_m_s", {0, 1000});
+  scene.min_substeps = static_cast<int>(time.integer("min_substeps", {1, 64}));
+  scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
+
+  scene.view = camera(root.table("view"));
+  scene.overview = root.has("overview") ? camera(root.table("overview")) : overview_of(scene.view);
+  for (const auto& key : root.tables("gaze")) {
+    scene.gaze.push_back({static_cast<int>(key.integer("frame", {0, 1e6})), vector(key, "point_m")});
+    const auto n = scene.gaze.size();
+    if (n > 1 && scene.gaze[n - 1].frame <= scene.gaze[n - 2].frame) {
+      key.fail("frame", "does not come after the key before it", "order the gaze keys by frame");
+    }
+  }
+  root.finish();
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  const auto found = base::find_input(path);
+  return parse_scene(base::read_file(found, 1 << 20), found.string());
+}
+
+}  // namespace sim

@@ -1,0 +1,98 @@
+#include "libsim/scene/scene.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libsim/scene/fill.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace {
+
+using sim::MethodKind;
+
+sim::Scene dam() { return sim::read_scene("data/scenes/single_dam.toml"); }
+
+std::string dam_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
+
+/// The message of the error that parsing the text ends in.
+std::string error_of(const std::string& text) {
+  try {
+    sim::parse_scene(text, "scene.toml");
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Scene, SingleDamHasTheNumbersOfItsDescription) {
+  const auto scene = dam();
+  EXPECT_EQ(scene.name, "SingleDam");
+  EXPECT_NEAR(sim::resolution_of(scene, MethodKind::HiRes, 32768).spacing_m, 0.15, 1e-12);
+  EXPECT_NEAR(sim::resolution_of(scene, MethodKind::LoRes, 32768).spacing_m, 0.3, 1e-12);
+  EXPECT_EQ(scene.gaze.size(), 4u);
+  EXPECT_NEAR(scene.overview.eye_m[2] - scene.overview.target_m[2], 3 * (15.3 - 6.4), 1e-12);
+}
+
+TEST(Scene, SubstepsFollowTheRule) {
+  const auto scene = dam();
+  EXPECT_EQ(sim::substeps_of(scene, 4 * 1024), 2);
+  EXPECT_EQ(sim::substeps_of(scene, 32 * 1024), 3);
+  EXPECT_EQ(sim::substeps_of(scene, 128 * 1024), 4);
+}
+
+TEST(Fill, HoldsExactCountsAndVolumeAtEveryResolution) {
+  const auto scene = dam();
+  for (const std::int64_t n_star : {512, 2048, 16384, 32768}) {
+    for (const auto method : {MethodKind::LoRes, MethodKind::HiRes}) {
+      const auto points = sim::fill_positions(scene, method, n_star);
+      ASSERT_EQ(static_cast<std::int64_t>(points.size()), sim::particle_count(method, n_star));
+      double top = 0;
+      for (const auto& p : points) {
+        ASSERT_GT(p[0], 0);
+        ASSERT_LT(p[0], 9.6);
+        ASSERT_LT(p[2], 12.8);
+        top = std::max(top, p[1]);
+      }
+      // The last layer may be partial: the top lies within one layer of 7.2 m.
+      const double d = sim::resolution_of(scene, method, n_star).spacing_m;
+      EXPECT_NEAR(top, 7.2, 1.2 * d) << n_star;
+    }
+  }
+}
+
+TEST(Scene, ErrorsNameThePlaceAndTheMend) {
+  const std::string text = dam_text();
+  EXPECT_THAT(error_of(replaced(text, "gate = true", "gates = true")),
+              testing::HasSubstr("'water.gate' is missing"));
+  EXPECT_THAT(error_of(text + "\n[extra]\n"), testing::HasSubstr("'extra' is not a known key"));
+  EXPECT_THAT(error_of(replaced(text, "frames_per_s = 60.0", "frames_per_s = \"60\"")),
+              testing::HasSubstr("scene.toml:18:16"));
+  EXPECT_THAT(error_of(replaced(text, "iterations = 4", "iterations = 0")),
+              testing::HasSubstr("out of range"));
+  EXPECT_THAT(error_of(replaced(text, "max_m = [9.6,", "max_m = [29.6,")),
+              testing::HasSubstr("outside the tank"));
+  EXPECT_THAT(error_of(text.substr(0, text.size() / 2)), testing::HasSubstr("scene.toml:"));
+  EXPECT_THAT(error_of(replaced(text, "frame = 60", "frame = 0")), testing::HasSubstr("order the gaze keys"));
+  EXPECT_THAT(error_of(replaced(text, "7.2, 12.8", "nan, 12.8")), testing::HasSubstr("must be finite"));
+}
+
+TEST(Method, CountsAreReadAsUsersWriteThem) {
+  EXPECT_EQ(sim::parse_n_star("32k"), 32768);
+  EXPECT_EQ(sim::parse_n_star("4096"), 4096);
+  for (const char* bad : {"", "k", "-1", "32m", "1e6", "99999999999999999999", "0", "5000k"}) {
+    EXPECT_THROW(sim::parse_n_star(bad), base::Error) << bad;
+  }
+  EXPECT_EQ(sim::parse_method("hires"), MethodKind::HiRes);
+  EXPECT_THROW(sim::parse_method("Best"), base::Error);
+}
+
+}  // namespace
