@@ -1,0 +1,45 @@
+#pragma once
+/// Least squares of y = a exp(b x), the form of the PTPE contour (paper Eq. 11).
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Covariance of (a, b).
+struct ExponentialCovariance {
+  double aa = 0, ab = 0, bb = 0;
+};
+
+struct ExponentialFit {
+  double a = 0, b = 0;
+  int n = 0;       ///< pairs used
+  double rss = 0;  ///< weighted residual sum of squares
+  /// Empty with two pairs: no degree of freedom is left.
+  std::optional<ExponentialCovariance> covariance;
+  /// 1 - rss / total sum of squares; empty with weights or when all y are equal.
+  std::optional<double> r2;
+
+  int df() const { return n - 2; }
+  double value(double x) const;
+  /// Standard error of value(x) by the delta method; empty when there is no covariance.
+  std::optional<double> value_se(double x) const;
+};
+
+/// Global minimum over a and b with the trust-region solver of GSL (gsl_multifit_nlinear,
+/// Levenberg-Marquardt, analytic Jacobian) from several starts on centred and scaled data; the least residual
+/// sum of squares wins, and it counts only when the residuals are orthogonal to the tangent plane (Bates and
+/// Watts 1981, relative offset), because the driver may report success elsewhere. Pairs with a NaN are
+/// dropped. x, y and weights (empty = all 1; each finite and positive) have equal length
+/// (std::invalid_argument). Refused: fewer than two pairs, infinite values, one x only, y all zero, no finite
+/// minimum, no convergence.
+Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
+                                       std::span<const double> weights = {});
+
+/// estimate -+ t(1 - (1-level)/2, df) se, df >= 1.
+std::array<double, 2> wald_interval(double estimate, double se, int df, double level = 0.95);
+
+}  // namespace stats

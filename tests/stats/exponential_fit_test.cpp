@@ -1,0 +1,143 @@
+#include "stats/exponential_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/stats/oracle.hpp"
+
+namespace {
+
+using nlohmann::json;
+using stats::fit_exponential;
+
+/// The answer in the words of the oracle.
+json answer(const stats::ExponentialFit& fit, const json& expect) {
+  json got{{"a", fit.a}, {"b", fit.b}, {"rss", fit.rss}, {"df", fit.df()}};
+  if (fit.r2) got["r2"] = *fit.r2;
+  for (const auto& x : expect.value("pred_x", json::array())) {
+    got["pred_y"].push_back(fit.value(x));
+    if (const auto se = fit.value_se(x)) got["pred_se"].push_back(*se);
+  }
+  if (!fit.covariance) return got;
+  const double se_a = std::sqrt(fit.covariance->aa), se_b = std::sqrt(fit.covariance->bb);
+  got["se_a"] = se_a;
+  got["se_b"] = se_b;
+  got["cov_ab"] = fit.covariance->ab;
+  got["sigma"] = std::sqrt(fit.rss / fit.df());
+  got["ci95_wald_a"] = stats::wald_interval(fit.a, se_a, fit.df());
+  got["ci95_wald_b"] = stats::wald_interval(fit.b, se_b, fit.df());
+  return got;
+}
+
+void expect_number(const json& got, const json& expected, double rtol, double scale,
+                   const std::string& where) {
+  if (expected.is_null()) return;
+  ASSERT_TRUE(got.is_number()) << where;
+  EXPECT_NEAR(got.get<double>(), expected.get<double>(), oracle::bound(expected, rtol, scale)) << where;
+}
+
+void expect_fields(const json& got, const json& expect, double rtol, double scale, const std::string& id) {
+  for (const auto& [key, expected] : expect.items()) {
+    // Profile intervals are not computed.
+    if (key == "status" || key == "pred_x" || key.starts_with("ci95_profile")) continue;
+    const std::string where = id + ": " + key;
+    if (expected == "undefined") {
+      EXPECT_FALSE(got.contains(key + "_a")) << where;
+      continue;
+    }
+    if (!expected.is_array()) {
+      expect_number(got.value(key, json()), expected, rtol, key == "rss" ? scale * scale : 1, where);
+      continue;
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expect_number(got.at(key).at(i), expected[i], rtol, scale, where);
+    }
+  }
+}
+
+TEST(ExponentialFit, AgreesWithTheReferenceAnswers) {
+  int answered = 0, refused = 0;
+  for (const auto& item : oracle::cases("expfit")) {
+    const std::string id = item.at("id");
+    const auto& input = item.at("input");
+    const auto x = oracle::numbers(input.at("x")), y = oracle::numbers(input.at("y"));
+    const auto w = oracle::numbers(input.value("w", json::array()));
+    const auto fit = fit_exponential(x, y, w);
+    const auto& expect = item.at("expect");
+    if (expect.at("status") == "undefined") {
+      EXPECT_FALSE(fit) << id;
+      EXPECT_FALSE(fit.reason().empty()) << id;
+      ++refused;
+      continue;
+    }
+    ASSERT_TRUE(fit) << id << ": " << fit.reason();
+    double scale = 0;
+    for (const double value : y) scale = std::max(scale, std::abs(value));
+    expect_fields(answer(*fit, expect), expect, item.at("rtol"), scale, id);
+    ++answered;
+  }
+  EXPECT_GT(answered, 0);
+  EXPECT_GT(refused, 0);
+}
+
+std::vector<double> curve(double a, double b, const std::vector<double>& x) {
+  std::vector<double> y;
+  for (const double xi : x) y.push_back(a * std::exp(b * xi));
+  return y;
+}
+
+TEST(ExponentialFit, FindsTheGlobalMinimumOfAnyRate) {
+  const std::vector<double> x{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  for (const double b : {-3.0, -0.7, -1e-3, 1e-3, 0.04, 0.7, 3.0}) {
+    for (const double a : {-5.0, 1e-6, 23.68, 1e9}) {
+      const auto fit = fit_exponential(x, curve(a, b, x));
+      ASSERT_TRUE(fit) << a << ' ' << b << ": " << fit.reason();
+      EXPECT_NEAR(fit->a / a, 1, 1e-9) << a << ' ' << b;
+      EXPECT_NEAR(fit->b, b, 1e-9) << a << ' ' << b;
+    }
+  }
+}
+
+TEST(ExponentialFit, NoOtherPlaceHasASmallerSum) {
+  const std::vector<double> x{0, 1, 2, 3, 4, 5}, y{30, 12, 41, 18, 25, 60};
+  const auto fit = fit_exponential(x, y);
+  ASSERT_TRUE(fit);
+  for (double b = -1; b <= 2; b += 0.001) {
+    double num = 0, den = 0, rss = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      num += y[i] * std::exp(b * x[i]), den += std::exp(2 * b * x[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) rss += std::pow(y[i] - num / den * std::exp(b * x[i]), 2);
+    EXPECT_GE(rss, fit->rss * (1 - 1e-12)) << b;
+  }
+}
+
+TEST(ExponentialFit, ShiftOfXAndScaleOfYFollowThroughTheParameters) {
+  const std::vector<double> x{0, 5, 10, 15, 20}, y{22, 27, 28, 33, 34};
+  auto moved = x, grown = y;
+  for (auto& xi : moved) xi += 3;
+  for (auto& yi : grown) yi *= 7;
+  const auto fit = fit_exponential(x, y), other = fit_exponential(moved, grown);
+  ASSERT_TRUE(fit && other);
+  EXPECT_NEAR(other->b, fit->b, 1e-11);
+  EXPECT_NEAR(other->a, 7 * fit->value(-3), 1e-8);
+  EXPECT_NEAR(std::sqrt(other->covariance->bb), std::sqrt(fit->covariance->bb), 1e-11);
+}
+
+TEST(ExponentialFit, RefusesWhatHasNoAnswer) {
+  const double inf = std::numeric_limits<double>::infinity();
+  using Values = std::vector<double>;
+  // Only the last value differs from zero: ever steeper curves fit ever better.
+  EXPECT_NE(fit_exponential(Values{0, 1, 2, 3}, Values{0, 0, 0, 10}).reason(), "");
+  EXPECT_NE(fit_exponential(Values{0, 1}, Values{-1, 1}).reason(), "");
+  EXPECT_NE(fit_exponential(Values{0, 1, 2}, Values{0, 0, 0}).reason(), "");
+  EXPECT_NE(fit_exponential(Values{0, 1, 2}, Values{1, inf, 2}).reason(), "");
+  EXPECT_NE(fit_exponential(Values{0, 1, 2}, Values{1, 2, 3}, Values{1, 0, 1}).reason(), "");
+  EXPECT_THROW(fit_exponential(Values{0, 1, 2}, Values{1, 2}), std::invalid_argument);
+}
+
+}  // namespace
