@@ -133,8 +133,7 @@ class Solver {
     const auto weights = gsl_vector_const_view_array(data_.w.data(), data_.w.size());
     if (gsl_multifit_nlinear_winit(&point.vector, &weights.vector, &problem_, work_.get())) return {};
     int why = 0;
-    const int code =
-        gsl_multifit_nlinear_driver(200, 1e-13, 1e-14, 0, nullptr, nullptr, &why, work_.get());
+    const int code = gsl_multifit_nlinear_driver(200, 1e-13, 1e-14, 0, nullptr, nullptr, &why, work_.get());
     // "No progress" is how rounding looks at the minimum.
     if (code != GSL_SUCCESS && code != GSL_ENOPROG && code != GSL_EMAXITER) return {};
     const auto* end = gsl_multifit_nlinear_position(work_.get());

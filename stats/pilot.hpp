@@ -1,0 +1,61 @@
+#pragma once
+/// The PTPE pilot: ratings of settings (mu, delta) by participants, and a exp(b delta) fitted to their
+/// contour.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stats/score_grid.hpp"
+
+namespace stats {
+
+/// One answered trial.
+struct PilotRating {
+  int participant = 0;                ///< any number; equal numbers are one participant
+  double mu = 0;                      ///< nominal mean frame rate of the setting, frames/s
+  double delta = 0;                   ///< nominal standard deviation
+  double realised_mu = 0;             ///< as shown, harmonic: N / sum(dt)
+  double realised_mu_arithmetic = 0;  ///< as shown, mean of 1/dt
+  double realised_delta = 0;
+  double score = 0;
+};
+
+/// Which realised mean is the coordinate mu of a setting.
+enum class PilotMean { Harmonic, Arithmetic };
+
+/// Ratings by participant and setting. A participant's repeated ratings of a setting are averaged first, so
+/// that the participant stays the unit.
+class PilotTable {
+ public:
+  /// Every number finite (std::invalid_argument).
+  explicit PilotTable(std::span<const PilotRating> ratings);
+
+  int participants() const { return participants_; }
+  std::size_t settings() const;  ///< with at least one rating
+  std::size_t ratings() const { return ratings_; }
+  int incomplete_participants() const;  ///< who lack a setting that another one rated
+  bool all_equal() const;               ///< one and the same score throughout
+
+  /// Mean scores and places, participant i counted weights[i] times (empty = once each).
+  ScoreGrid grid(PilotMean mean, std::span<const double> weights = {}) const;
+
+ private:
+  struct Entry {
+    double n = 0, score = 0, mu_harmonic = 0, mu_arithmetic = 0, delta = 0;
+  };
+  const Entry& entry(int participant, std::size_t cell) const;
+
+  int participants_ = 0;
+  std::size_t ratings_ = 0;
+  bool all_equal_ = true;
+  std::vector<double> mu_, delta_;
+  std::vector<Entry> entries_;  ///< participant x cell, cells row-major
+};
+
+/// The product's point estimate: contour of the means along lines one frame/s apart, then least squares. The
+/// dense lines weigh the curve evenly over delta, while edge crossings bunch up where it runs along a row and
+/// are few (5 to 9 in the pilot), so a single one more or less moves b.
+Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level);
+
+}  // namespace stats
