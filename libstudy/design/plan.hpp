@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/design/random.hpp"
 #include "libstudy/protocol/protocol.hpp"
 
 namespace study {
@@ -16,10 +17,8 @@ struct PlannedTrial {
   std::uint64_t schedule_seed = 0;  ///< orders the intervals
 };
 
-/// Counter-based 64-bit generator value for (key, counter): equal on every machine and build.
-std::uint64_t counter_random(std::uint64_t key, std::uint64_t counter);
-
-/// All settings once each in random order.
+/// All settings once each in random order: a seeded Fisher-Yates shuffle. A trial's schedule_seed depends on
+/// its setting, not on its position.
 std::vector<PlannedTrial> make_plan(const Protocol& protocol, const std::string& participant,
                                     std::uint64_t seed);
 

@@ -16,13 +16,18 @@ enum class FrameOrder { White, Ar1, Trace };
 /// per trial.
 struct PacingRules {
   FpsMean mean = FpsMean::Harmonic;
-  double fps_min = 4;             ///< lowest instantaneous rate, frames/s
-  std::optional<double> fps_max;  ///< highest; none, or the refresh
-  double max_interval_ms = 250;   ///< longest interval allowed
+  double fps_min = 4;               ///< lowest instantaneous rate, frames/s
+  std::optional<double> fps_max;    ///< highest, frames/s; none = no upper cut
+  bool fps_max_is_refresh = false;  ///< the upper cut is the display's refresh; see for_display()
+  double max_interval_ms = 250;     ///< longest interval allowed
   FrameOrder order = FrameOrder::White;
   double ar1 = 0;                   ///< lag-1 correlation wanted with FrameOrder::Ar1, in (-1, 1)
   std::vector<double> trace_rates;  ///< order pattern with FrameOrder::Trace
 };
+
+/// The rules on a display of this fixed refresh (0 = frames are shown as they come): "refresh" becomes a
+/// number, or no upper cut where there is no fixed refresh.
+PacingRules for_display(PacingRules rules, double refresh_hz);
 
 /// One cell of the design: mean and standard deviation of the frame rate, frames/s, and the trial's length.
 struct FpsSetting {
@@ -30,6 +35,11 @@ struct FpsSetting {
   double sd = 0;
   double duration_s = 10;
 };
+
+/// The setting as messages and tables name it, e.g. "(50, 20)".
+std::string setting_name(const FpsSetting& setting);
+/// N = round(mean * duration), at least 1.
+std::int64_t frame_count(const FpsSetting& setting);
 
 /// A finished schedule. Interval i is the time that frame i stays on.
 struct Schedule {

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "libstudy/pacing/pacer.hpp"
@@ -47,14 +49,20 @@ struct Protocol {
   /// True when the command line changed it (--trial-seconds ...): data are marked as test and the hash
   /// differs.
   bool test_data = false;
+  /// What override_trial_seconds() was given; none = every trial is as long as the file says. text and this
+  /// together rebuild the protocol.
+  std::optional<double> trial_seconds;
 
   std::string text;    ///< the file as read, kept in every database
   std::string sha256;  ///< of `text`, or of text + overrides when there are any
 };
 
+/// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range
+/// or two keys that contradict each other. `name` stands for the file in messages.
 Protocol parse_protocol(std::string_view text, const std::string& name);
 Protocol read_protocol(const std::filesystem::path& path);
-/// Shortens every trial; changes the hash and marks the data as test.
+/// Sets the length of every trial, 0.1 to 3600 s; changes the hash and marks the data as test. Equal texts
+/// and seconds give equal hashes.
 void override_trial_seconds(Protocol& protocol, double seconds);
 
 }  // namespace study

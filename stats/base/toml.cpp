@@ -107,6 +107,11 @@ TomlTable::TomlTable(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
 bool TomlTable::has(std::string_view key) const { return state_->find(key) != nullptr; }
 
+bool TomlTable::is_text(std::string_view key) const {
+  const toml::node* node = state_->find(key);
+  return node && node->is_string();
+}
+
 double TomlTable::number(std::string_view key, Range range) const {
   return state_->in_range(state_->need(key), key, range);
 }

@@ -26,6 +26,8 @@ inline constexpr Range non_negative{0.0};
 class TomlTable {
  public:
   bool has(std::string_view key) const;
+  /// True when the key is there and holds text: for keys that take a word or a number.
+  bool is_text(std::string_view key) const;
 
   /// The value of a key; an error when it is absent, of another type, not finite or out of range.
   double number(std::string_view key, Range range = any) const;
