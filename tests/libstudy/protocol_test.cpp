@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -21,9 +23,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-std::string place_of(const std::string& text, const std::string& needle) {
-  const auto at = text.find(needle);
-  const auto line_start = text.rfind('\n', at) + 1;
+/// Line and column of the '|' in `marked`, a part of `text` but for that mark.
+std::string place_of(const std::string& text, std::string marked) {
+  const auto mark = marked.find('|');
+  if (text.find(marked.erase(mark, 1)) == std::string::npos) return "(no '" + marked + "' in the text)";
+  const auto at = text.find(marked) + mark;
+  const auto line_start = text.rfind('\n', at - 1) + 1;
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   return "p.toml:" + std::to_string(line) + ":" + std::to_string(at - line_start + 1);
 }
@@ -89,7 +94,7 @@ TEST(Protocol, OverrideMarksTestDataAndChangesTheHash) {
 struct Malformed {
   const char* from;
   const char* to;
-  const char* place;    // where the error must point, in the changed text
+  const char* place;    // part of the changed text, with '|' where the error must point
   const char* problem;  // part of the message
   const char* mend;
 };
@@ -109,30 +114,33 @@ TEST_P(MalformedProtocol, IsRefusedWithPlaceAndMend) {
 INSTANTIATE_TEST_SUITE_P(
     Cases, MalformedProtocol,
     testing::Values(
-        Malformed{"gap_s = 3", "gap_s = 3\ngap = 3", "3\ngap_s", "is not a known key", "gap_s"},
-        Malformed{"at_end = \"loop\"", "", "[content]", "'content.at_end' is missing", "add 'at_end"},
-        Malformed{"start_frame = 0", "", "[content]", "'content.start_frame' is missing", "add"},
-        Malformed{"duration_s = 10", "duration_s = \"10\"", "\"10\"", "must be a number", "without quotes"},
-        Malformed{"duration_s = 10", "duration_s = -1", "-1", "out of range", "use a value in"},
-        Malformed{"participants = 16", "participants = 1.5", "1.5", "must be a whole number", "fraction"},
-        Malformed{"order = \"white\"", "order = \"pink\"", "\"pink\"", "is not a known choice", "\"ar1\""},
-        Malformed{"order = \"white\"", "order = \"ar1\"", "[pacing]", "'pacing.ar1' is missing", "add"},
-        Malformed{"order = \"white\"", "ar1 = 0.5", "0.5", "needs order", "remove ar1"},
-        Malformed{"max_interval_ms = 250", "max_interval_ms = 200", "200", "contradicts fps_min = 4",
+        Malformed{"gap_s = 3 ", "gap = 3\ngap_s = 3 ", "gap = |3", "is not a known key", "gap_s"},
+        Malformed{"at_end = \"loop\"", "", "|[content]", "'content.at_end' is missing", "add 'at_end"},
+        Malformed{"start_frame = 0", "", "|[content]", "'content.start_frame' is missing", "add"},
+        Malformed{"duration_s = 10", "duration_s = \"10\"", "duration_s = |\"10", "must be a number",
+                  "without quotes"},
+        Malformed{"duration_s = 10", "duration_s = -1", "duration_s = |-1", "out of range", "use a value in"},
+        Malformed{"participants = 16", "participants = 1.5", "= |1.5", "must be a whole number", "fraction"},
+        Malformed{"order = \"white\"", "order = \"pink\"", "= |\"pink", "is not a known choice", "\"ar1\""},
+        Malformed{"order = \"white\"", "order = \"ar1\"", "|[pacing]", "'pacing.ar1' is missing", "add"},
+        Malformed{"order = \"white\"", "ar1 = 0.5", "ar1 = |0.5", "needs order", "remove ar1"},
+        Malformed{"max_interval_ms = 250", "max_interval_ms = 200", "ms = |200", "contradicts fps_min = 4",
                   "raise max_interval_ms to 250 or fps_min to 5"},
-        Malformed{"fps_min = 4 ", "fps_min = 10", "10  ", "leaves no room for (10, 5)", "lower fps_min"},
-        Malformed{"fps_max = \"none\"", "fps_max = 45.5", "45.5", "leaves no room for (50, 0)", "raise"},
-        Malformed{"fps_max = \"none\"", "fps_max = \"high\"", "\"high\"", "is not a known choice", "refresh"},
-        Malformed{"mean_fps = [10, 20", "mean_fps = [20, 20", "[20, 20", "holds a value twice", "once"},
-        Malformed{"[0, 5, 10, 15, 20]", "[60]", "[60]", "has no value below a mean", "smaller"},
-        Malformed{"score = 7", "score = 4\n# end", "4\n# end", "does not ascend", "ascending"},
-        Malformed{"score = 7", "score = 77", "77", "out of range", "use a value in [1, 7]"},
-        Malformed{"format = 1", "format = 2", "2\nname", "is not the format", "use the program"},
-        Malformed{"scale_max = 7", "scale_max = 1", "1\n\n[[", "is not above scale_min", "low, high"},
-        Malformed{"name = \"ptpe_pilot\"", "name = \"\"", "\"\"", "is empty", "write a text"}));
+        Malformed{"fps_min = 4 ", "fps_min = 10", "fps_min = |10", "leaves no room for (10, 5)",
+                  "lower fps_min"},
+        Malformed{"fps_max = \"none\"", "fps_max = 45.5", "= |45.5", "leaves no room for (50, 0)", "raise"},
+        Malformed{"fps_max = \"none\"", "fps_max = \"high\"", "= |\"high", "is not a known choice",
+                  "refresh"},
+        Malformed{"mean_fps = [10, 20", "mean_fps = [20, 20", "= |[20, 20", "holds a value twice", "once"},
+        Malformed{"[0, 5, 10, 15, 20]", "[60]", "= |[60]", "has no value below a mean", "smaller"},
+        Malformed{"score = 7", "score = 4\n# end", "score = |4\n# end", "does not ascend", "ascending"},
+        Malformed{"score = 7", "score = 77", "= |77", "out of range", "use a value in [1, 7]"},
+        Malformed{"format = 1", "format = 2", "format = |2", "is not the format", "use the program"},
+        Malformed{"scale_max = 7", "scale_max = 1", "scale_max = |1", "is not above scale_min", "low, high"},
+        Malformed{"name = \"ptpe_pilot\"", "name = \"\"", "name = |\"\"", "is empty", "write a text"}));
 
 TEST(Protocol, BrokenSyntaxNamesThePlace) {
-  const std::string text = replaced(pilot_text(), "gap_s = 3", "gap_s = = 3");
+  const std::string text = replaced(pilot_text(), "gap_s = 3 ", "gap_s = = 3 ");
   EXPECT_THAT(error_of(text), HasSubstr("p.toml:"));
   EXPECT_THAT(error_of(text), HasSubstr("mend: "));
 }
