@@ -105,4 +105,49 @@ Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level) {
   return fit_contour(column_crossings(grid, level, contour_lines(grid)).points);
 }
 
+namespace {
+
+Result<PilotSpread> spread_over_participants(const PilotTable& table, PilotMean mean, double level,
+                                             const BootstrapOptions& options) {
+  const int n = table.participants();
+  if (n < least_participants) {
+    return Refusal{"an interval over participants needs at least " + std::to_string(least_participants) +
+                   " of them, not " + std::to_string(n)};
+  }
+  std::vector<double> a, b;
+  for (int i = 0; i < options.resamples; ++i) {
+    const auto weights = resample_weights(n, options.seed, static_cast<std::uint64_t>(i));
+    const auto fit = estimate_contour(table.grid(mean, weights), level);
+    if (!fit) continue;
+    a.push_back(fit->a);
+    b.push_back(fit->b);
+  }
+  const int failed = options.resamples - static_cast<int>(a.size());
+  if (a.size() < 2 || failed > largest_failed_share * options.resamples) {
+    return Refusal{std::to_string(failed) + " of " + std::to_string(options.resamples) +
+                   " resamples of the participants have no fit"};
+  }
+  const bool extremes = expanded_tail(n, options.confidence) * static_cast<double>(a.size()) < 1;
+  return PilotSpread{expanded_percentile_interval(a, n, options.confidence),
+                     expanded_percentile_interval(b, n, options.confidence),
+                     bootstrap_se(a),
+                     bootstrap_se(b),
+                     options.resamples,
+                     failed,
+                     extremes};
+}
+
+}  // namespace
+
+PilotEstimate estimate_pilot(const PilotTable& table, PilotMean mean, double level,
+                             const BootstrapOptions& options) {
+  const auto grid = table.grid(mean);
+  PilotEstimate estimate;
+  estimate.contour = column_crossings(grid, level, contour_lines(grid));
+  estimate.fit = fit_contour(estimate.contour.points);
+  estimate.spread = estimate.fit ? spread_over_participants(table, mean, level, options)
+                                 : Result<PilotSpread>(Refusal{estimate.fit.reason()});
+  return estimate;
+}
+
 }  // namespace stats

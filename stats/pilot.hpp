@@ -2,10 +2,12 @@
 /// The PTPE pilot: ratings of settings (mu, delta) by participants, and a exp(b delta) fitted to their
 /// contour.
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "stats/bootstrap.hpp"
 #include "stats/score_grid.hpp"
 
 namespace stats {
@@ -57,5 +59,33 @@ class PilotTable {
 /// dense lines weigh the curve evenly over delta, while edge crossings bunch up where it runs along a row and
 /// are few (5 to 9 in the pilot), so a single one more or less moves b.
 Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level);
+
+/// What resampling the participants says of a and b.
+struct PilotSpread {
+  std::array<double, 2> a_ci{}, b_ci{};  ///< expanded percentile intervals
+  double a_se = 0, b_se = 0;             ///< standard deviations of the resampled estimates
+  int resamples = 0;
+  int failed = 0;         ///< resamples without a fit, left out
+  bool extremes = false;  ///< so few participants that the interval's ends are the outermost resamples
+};
+
+/// Fewer participants have too few different resamples for any interval.
+inline constexpr int least_participants = 4;
+/// With a larger share of resamples without a fit, the rest is a selection and no interval is given.
+inline constexpr double largest_failed_share = 0.05;
+
+/// A contour, its curve, and how far the participants determine it.
+struct PilotEstimate {
+  Contour contour;
+  Result<ExponentialFit> fit = Refusal{"not computed"};
+  Result<PilotSpread> spread = Refusal{"not computed"};
+};
+
+/// Whole participants are resampled and the contour and its curve made anew each time. The fit's own standard
+/// errors say nothing of the participants: the contour's points are interpolated from few means and far from
+/// independent. `spread` is refused without a fit, with fewer than least_participants, and beyond
+/// largest_failed_share.
+PilotEstimate estimate_pilot(const PilotTable& table, PilotMean mean, double level,
+                             const BootstrapOptions& options);
 
 }  // namespace stats

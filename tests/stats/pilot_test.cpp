@@ -208,6 +208,64 @@ TEST(Pilot, WeighsParticipantsNotRatings) {
   EXPECT_FALSE(table.grid(stats::PilotMean::Harmonic, std::vector<double>{1, 0}).at(1, 0));
 }
 
+TEST(Pilot, IntervalsOverParticipantsAreReproducibleAndHoldTheEstimate) {
+  const stats::PilotTable table(read_csv("pilot16.csv"));
+  const auto one = stats::estimate_pilot(table, stats::PilotMean::Harmonic, 4, {500, 3, 0.95});
+  const auto two = stats::estimate_pilot(table, stats::PilotMean::Harmonic, 4, {500, 3, 0.95});
+  const auto other = stats::estimate_pilot(table, stats::PilotMean::Harmonic, 4, {500, 4, 0.95});
+  ASSERT_TRUE(one.spread) << one.spread.reason();
+  EXPECT_EQ(one.spread->a_ci, two.spread->a_ci);
+  EXPECT_EQ(one.spread->b_ci, two.spread->b_ci);
+  EXPECT_NE(one.spread->a_ci, other.spread->a_ci);
+  EXPECT_LT(one.spread->a_ci[0], one.fit->a);
+  EXPECT_GT(one.spread->a_ci[1], one.fit->a);
+  EXPECT_LT(one.spread->b_ci[0], one.fit->b);
+  EXPECT_GT(one.spread->b_ci[1], one.fit->b);
+  const auto narrow = stats::estimate_pilot(table, stats::PilotMean::Harmonic, 4, {500, 3, 0.5});
+  EXPECT_LT(narrow.spread->a_ci[1] - narrow.spread->a_ci[0], one.spread->a_ci[1] - one.spread->a_ci[0]);
+}
+
+TEST(Pilot, IdenticalParticipantsLeaveNoSpread) {
+  std::vector<PilotRating> ratings;
+  for (int p = 0; p < 6; ++p) {
+    for (auto r : plane(24, 0.02)) {
+      r.participant = p;
+      ratings.push_back(r);
+    }
+  }
+  const auto estimate =
+      stats::estimate_pilot(stats::PilotTable(ratings), stats::PilotMean::Harmonic, 4, {100, 1, 0.95});
+  ASSERT_TRUE(estimate.spread);
+  EXPECT_NEAR(estimate.spread->a_se, 0, 1e-9);
+  EXPECT_NEAR(estimate.spread->a_ci[0], estimate.fit->a, 1e-9);
+}
+
+TEST(Pilot, RefusesAnIntervalOverTooFewParticipants) {
+  const auto estimate =
+      stats::estimate_pilot(stats::PilotTable(plane(24, 0.02)), stats::PilotMean::Harmonic, 4, {});
+  EXPECT_TRUE(estimate.fit);
+  EXPECT_FALSE(estimate.spread);
+  EXPECT_NE(estimate.spread.reason().find("not 1"), std::string::npos);
+}
+
+TEST(Pilot, RefusesAnIntervalWhenManyResamplesHaveNoContour) {
+  // One participant of five brings the contour; without them every score is above the level.
+  std::vector<PilotRating> ratings = plane(24, 0.02);
+  for (auto& r : ratings) r.score = r.mu < 25 ? -40 : 6;
+  for (int p = 2; p < 6; ++p) {
+    for (auto r : plane(24, 0.02)) {
+      r.participant = p;
+      r.score = 6;
+      ratings.push_back(r);
+    }
+  }
+  const auto estimate =
+      stats::estimate_pilot(stats::PilotTable(ratings), stats::PilotMean::Harmonic, 4, {200, 1, 0.95});
+  ASSERT_TRUE(estimate.fit) << estimate.fit.reason();
+  EXPECT_FALSE(estimate.spread);
+  EXPECT_NE(estimate.spread.reason().find("resamples"), std::string::npos);
+}
+
 TEST(Pilot, RefusesNumbersThatAreNone) {
   auto ratings = plane(24, 0.02);
   ratings[3].score = std::numeric_limits<double>::quiet_NaN();
