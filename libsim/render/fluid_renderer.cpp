@@ -1,0 +1,338 @@
+#include "libsim/render/fluid_renderer.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "libsim/render/gl_program.hpp"
+#include "libsim/render/pass_timer.hpp"
+#include "libsim/render/view_targets.hpp"
+#include "stats/base/error.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr std::size_t max_views = 2;
+constexpr std::uint32_t infinity_bits = 0x7f800000u;
+constexpr std::int64_t list_header_words = 8;
+constexpr GLuint tile_groups = 64;
+
+/// std140 layout of the shaders' ViewBlock.
+struct ViewBlock {
+  Mat4 world_to_eye, eye_to_world;
+  std::array<float, 4> rays;
+  std::array<std::int32_t, 4> size;
+  std::array<float, 4> origin, narrow_range, thickness_rule, absorption, tank;
+};
+
+void check(bool good, const char* what, const char* mend) {
+  if (!good) throw base::Error("render options", what, mend);
+}
+
+void check_options(const RenderOptions& o) {
+  const auto positive = [](float value) { return std::isfinite(value) && value > 0; };
+  check(positive(o.radius_scale), "radius_scale must be positive", "use about 1.5");
+  check(positive(o.filter_sigma_r) && positive(o.filter_delta_r) && positive(o.filter_mu_r),
+        "the filter's sigma, delta and mu must be positive", "use about 1.5, 10 and 1");
+  check(o.filter_max_px >= 1 && o.filter_max_taps >= 1, "the filter needs at least one sample and one px",
+        "use about 256 px and 12 samples");
+  check(o.thickness_step == 1 || o.thickness_step == 2, "thickness_step must be 1 or 2", "use 2");
+  check(positive(o.thickness_unit_m) && positive(o.packing), "thickness unit and packing must be positive",
+        "use 1/65536 m and pi/6");
+  check(o.thread_px >= 1 && o.group_px >= o.thread_px, "footprint limits must be 1 <= thread_px <= group_px",
+        "use about 16 and 128");
+}
+
+std::array<float, 4> pack(const PixelRays& rays) {
+  return {rays.scale_x, rays.offset_x, rays.scale_y, rays.offset_y};
+}
+
+void check_view(const View& view) {
+  const auto finite = [](const Mat4& m) {
+    return std::all_of(m.begin(), m.end(), [](float v) { return std::isfinite(v); });
+  };
+  if (view.viewport.width < 1 || view.viewport.height < 1 || !finite(view.view) || !finite(view.projection) ||
+      view.projection[0] == 0 || view.projection[5] == 0 || !(view.near_m > 0)) {
+    throw base::Error("view",
+                      "an empty viewport, a matrix that is not finite, or a near plane at or behind the eye",
+                      "give each view a viewport of at least 1 x 1 px and a perspective projection");
+  }
+}
+
+void bind(std::initializer_list<unsigned> buffers) {
+  GLuint binding = 0;
+  for (const unsigned buffer : buffers) {
+    if (buffer) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+    ++binding;
+  }
+}
+
+void dispatch_pixels(int width, int height) {
+  glDispatchCompute(static_cast<GLuint>(width + 15) / 16, static_cast<GLuint>(height + 7) / 8, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void dispatch_particles(std::int64_t count) {
+  const std::int64_t groups = (count + 63) / 64;
+  const std::int64_t across = std::min<std::int64_t>(groups, 32768);
+  glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+GlProgram compute(const char* file, const char* defines = "") {
+  return GlProgram({{GL_COMPUTE_SHADER, file}}, defines);
+}
+
+}  // namespace
+
+struct FluidRenderer::State {
+  RenderOptions options;
+  std::array<float, 4> tank;
+  PassTimer timer;
+  GlProgram splat = compute("splat.comp");
+  GlProgram wide_dispatch = compute("wide_dispatch.comp");
+  GlProgram splat_wide = compute("splat_wide.comp");
+  GlProgram front = compute("front.comp");
+  GlProgram front_wide = compute("splat_wide.comp", "#define FRONT\n");
+  GlProgram filter_depth = compute("filter_depth.comp");
+  GlProgram clean_depth = compute("clean_depth.comp");
+  GlProgram normals = compute("normals.comp");
+  GlProgram thickness_first = compute("smooth_thickness.comp", "#define FIRST\n");
+  GlProgram thickness_second = compute("smooth_thickness.comp");
+  GlProgram composite{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "composite.frag"}};
+  GlBuffer counters, wide_list, touched, no_particles;
+  GLuint vertex_array = 0;
+  std::array<ViewTargets, max_views> targets;
+  std::size_t views_drawn = 0;
+  std::int64_t particles_drawn = 0;  // over all views
+
+  State(const Scene& scene, const RenderOptions& chosen)
+      : options(chosen),
+        tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
+             static_cast<float>(scene.tank_size_m[2]), 0},
+        timer(chosen.time_passes) {
+    counters.reserve(sizeof(RenderCounts));
+    counters.fill(0);
+    no_particles.reserve(16);
+    glCreateVertexArrays(1, &vertex_array);
+  }
+  ~State() { glDeleteVertexArrays(1, &vertex_array); }
+
+  void write_block(ViewTargets& t) const;
+  void clear(ViewTargets& t, std::int64_t count);
+  void splat_particles(ViewTargets& t, unsigned particles, std::int64_t count);
+  void dispatch_wide(const GlProgram& program) const;
+  void find_front(std::int64_t count);
+  void smooth_depth(ViewTargets& t, unsigned particles);
+  void smooth_thickness(ViewTargets& t, unsigned particles);
+  void shade(const ViewTargets& t, unsigned framebuffer);
+  void draw_view(ViewTargets& t, const ParticleBuffer& particles, unsigned framebuffer);
+};
+
+void FluidRenderer::State::write_block(ViewTargets& t) const {
+  const auto step = static_cast<float>(options.thickness_step);
+  const ViewBlock block{
+      t.view.view,
+      rigid_inverse(t.view.view),
+      pack(pixel_rays(t.view)),
+      {t.width, t.height, t.cells_x, t.cells_y},
+      {static_cast<float>(t.view.viewport.x), static_cast<float>(t.view.viewport.y),
+       static_cast<float>(t.view.near_m), options.radius_scale},
+      {options.filter_sigma_r, options.filter_delta_r, options.filter_mu_r,
+       static_cast<float>(options.filter_max_px)},
+      {1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, step,
+       static_cast<float>(options.filter_max_taps)},
+      {options.absorption_per_m[0], options.absorption_per_m[1], options.absorption_per_m[2], 0},
+      tank};
+  glNamedBufferSubData(t.block.name(), 0, sizeof block, &block);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, t.block.name());
+}
+
+void FluidRenderer::State::clear(ViewTargets& t, std::int64_t count) {
+  touched.reserve(4 * count);
+  wide_list.reserve(4 * (list_header_words + 2 * count));
+  wide_list.fill(0, 4 * list_header_words);
+  t.depth.fill(infinity_bits);
+  t.front.fill(GBuffer::no_particle);
+  t.thickness.fill(0);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void FluidRenderer::State::dispatch_wide(const GlProgram& program) const {
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, wide_list.name());
+  for (int tiles = 0; tiles < 2; ++tiles) {
+    glUniform1i(program.uniform("tiles"), tiles);
+    glDispatchComputeIndirect(tiles ? 20 : 8);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FluidRenderer::State::splat_particles(ViewTargets& t, unsigned particles, std::int64_t count) {
+  bind({particles, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(), wide_list.name(),
+        touched.name()});
+  splat.use();
+  glUniform1ui(splat.uniform("particle_count"), static_cast<GLuint>(count));
+  glUniform1i(splat.uniform("thread_limit"), options.thread_px);
+  glUniform1i(splat.uniform("group_limit"), options.group_px);
+  dispatch_particles(count);
+  wide_dispatch.use();
+  glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  timer.mark("splat small");
+  splat_wide.use();
+  glUniform1ui(splat_wide.uniform("particle_count"), static_cast<GLuint>(count));
+  dispatch_wide(splat_wide);
+  timer.mark("splat wide");
+}
+
+void FluidRenderer::State::find_front(std::int64_t count) {
+  front.use();
+  glUniform1ui(front.uniform("particle_count"), static_cast<GLuint>(count));
+  glUniform1i(front.uniform("thread_limit"), options.thread_px);
+  dispatch_particles(count);
+  front_wide.use();
+  glUniform1ui(front_wide.uniform("particle_count"), static_cast<GLuint>(count));
+  dispatch_wide(front_wide);
+  timer.mark("front");
+}
+
+void FluidRenderer::State::smooth_depth(ViewTargets& t, unsigned particles) {
+  const auto direction = filter_depth.uniform("direction");
+  filter_depth.use();
+  bind({particles, t.depth.name(), t.front.name(), t.filter_a.name(), counters.name()});
+  glUniform2i(direction, 1, 0);
+  dispatch_pixels(t.width, t.height);
+  bind({particles, t.filter_a.name(), t.front.name(), t.filter_b.name(), counters.name()});
+  glUniform2i(direction, 0, 1);
+  dispatch_pixels(t.width, t.height);
+  timer.mark("filter");
+  clean_depth.use();
+  bind({particles, t.filter_b.name(), t.front.name(), t.filter_a.name()});
+  dispatch_pixels(t.width, t.height);
+  timer.mark("clean-up");
+  normals.use();
+  bind({particles, t.filter_a.name(), t.front.name(), t.normals.name()});
+  dispatch_pixels(t.width, t.height);
+  timer.mark("normals");
+}
+
+void FluidRenderer::State::smooth_thickness(ViewTargets& t, unsigned particles) {
+  thickness_first.use();
+  bind(
+      {particles, t.front.name(), t.depth.name(), t.thickness_b.name(), counters.name(), t.thickness.name()});
+  glUniform2i(thickness_first.uniform("direction"), 1, 0);
+  dispatch_pixels(t.cells_x, t.cells_y);
+  thickness_second.use();
+  bind({particles, t.front.name(), t.depth.name(), t.thickness_a.name(), counters.name(),
+        t.thickness_b.name()});
+  glUniform2i(thickness_second.uniform("direction"), 0, 1);
+  dispatch_pixels(t.cells_x, t.cells_y);
+  timer.mark("thickness");
+}
+
+void FluidRenderer::State::shade(const ViewTargets& t, unsigned framebuffer) {
+  const Viewport& v = t.view.viewport;
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glViewport(v.x, v.y, v.width, v.height);
+  composite.use();
+  bind({t.filter_a.name(), t.normals.name(), t.thickness_a.name()});
+  glBindVertexArray(vertex_array);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+  timer.mark("shade");
+}
+
+void FluidRenderer::State::draw_view(ViewTargets& t, const ParticleBuffer& particles, unsigned framebuffer) {
+  const std::int64_t count = particles.count();
+  const unsigned name = particles.gl_name() ? particles.gl_name() : no_particles.name();
+  write_block(t);
+  clear(t, count);
+  timer.mark("clear");
+  if (count > 0) {
+    splat_particles(t, name, count);
+    find_front(count);
+  }
+  smooth_depth(t, name);
+  smooth_thickness(t, name);
+  shade(t, framebuffer);
+}
+
+FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
+  check_options(options);
+  state_ = std::make_unique<State>(scene, options);
+}
+
+FluidRenderer::~FluidRenderer() = default;
+
+void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer) {
+  if (views.empty() || views.size() > max_views) {
+    throw base::Error("renderer", std::to_string(views.size()) + " views", "draw one view or two");
+  }
+  for (const View& view : views) check_view(view);
+  State& s = *state_;
+  s.timer.start();
+  s.counters.fill(0);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    s.targets[i].resize(views[i], s.options.thickness_step);
+    s.draw_view(s.targets[i], particles, framebuffer);
+  }
+  s.views_drawn = views.size();
+  s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
+  glUseProgram(0);
+}
+
+RenderCounts FluidRenderer::counts() const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  RenderCounts counts;
+  static_assert(sizeof(RenderCounts) == 40, "counters.glsl lists the same words");
+  state_->counters.read(&counts, sizeof counts);
+  counts.by_thread = static_cast<std::uint32_t>(state_->particles_drawn) - counts.not_finite -
+                     counts.outside - counts.by_group - counts.by_tiles;
+  return counts;
+}
+
+std::vector<PassTime> FluidRenderer::times() const { return state_->timer.times(); }
+
+GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
+  const State& s = *state_;
+  if (view >= s.views_drawn)
+    throw base::Error("G-buffer", "view " + std::to_string(view) + " was not drawn", "draw it first");
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  const ViewTargets& t = s.targets[view];
+  const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
+  GBuffer g;
+  g.width = t.width;
+  g.height = t.height;
+  g.view = t.view;
+  g.radius_scale = s.options.radius_scale;
+  const auto fetch = [](const GlBuffer& buffer, auto& out, std::size_t count) {
+    out.resize(count);
+    buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
+  };
+  fetch(t.depth, g.depth, pixels);
+  fetch(t.filter_a, g.filtered_depth, pixels);
+  fetch(t.front, g.front, pixels);
+  std::vector<float> normals;
+  std::vector<std::uint32_t> cells;
+  fetch(t.normals, normals, 4 * pixels);
+  fetch(t.thickness, cells, static_cast<std::size_t>(t.cells_x) * static_cast<std::size_t>(t.cells_y));
+  g.normal.resize(3 * pixels);
+  g.radius.resize(pixels);
+  g.thickness.resize(pixels);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    std::copy_n(&normals[4 * p], 3, &g.normal[3 * p]);
+    g.radius[p] = normals[4 * p + 3];
+    const std::size_t x = p % static_cast<std::size_t>(t.width), y = p / static_cast<std::size_t>(t.width);
+    const auto step = static_cast<std::size_t>(s.options.thickness_step);
+    const std::uint32_t units = cells[y / step * static_cast<std::size_t>(t.cells_x) + x / step];
+    g.thickness[p] = static_cast<float>(units) * s.options.thickness_unit_m;
+  }
+  return g;
+}
+
+}  // namespace sim

@@ -1,0 +1,94 @@
+#pragma once
+/// Screen-space fluid rendering in compute shaders (van der Laan et al. 2009; narrow-range filter of Truong
+/// and Yuksel 2018). Particles in a GL buffer go in; a picture in any framebuffer and a readable G-buffer
+/// come out.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libsim/render/camera.hpp"
+#include "libsim/render/gbuffer.hpp"
+#include "libsim/render/particle_buffer.hpp"
+#include "libsim/scene/scene.hpp"
+
+namespace sim {
+
+/// What may be chosen. Lengths in units of a particle's own radius r where a name ends in _r.
+struct RenderOptions {
+  /// Splatted radius / particle radius. Touching spheres (1) let the next layer shine through between them.
+  float radius_scale = 1.5F;
+  float filter_sigma_r = 1.5F;  ///< standard deviation of the depth filter in the world (Truong and Yuksel)
+  float filter_delta_r = 10;    ///< half-width of the narrow range
+  float filter_mu_r = 1;        ///< what is far behind counts as this far behind
+  /// The filter reaches 3 sigma, but at most this many px; pixels where it had to stop short are counted.
+  int filter_max_px = 256;
+  /// Samples a side and direction; a wider filter takes strided samples.
+  int filter_max_taps = 12;
+  /// 1: thickness at every pixel; 2: at every second pixel each way.
+  int thickness_step = 2;
+  /// Unit of the fixed-point thickness, m; a pixel saturates at 2^32 - 1 units.
+  float thickness_unit_m = 1.0F / 65536;
+  /// Share of space that touching spheres of a cubic lattice fill (pi / 6): thickness / packing is the length
+  /// of the way through water.
+  float packing = 0.5235988F;
+  /// Beer-Lambert absorption of red, green and blue, 1/m.
+  std::array<float, 3> absorption_per_m{0.32F, 0.085F, 0.055F};
+  int thread_px = 16;  ///< footprints up to this many px a side are splatted by one invocation
+  int group_px = 128;  ///< larger ones up to this by one work group; beyond it they are split among many
+  bool time_passes = false;  ///< see FluidRenderer::times(); costs waits on software GL
+};
+
+/// What the last draw met, over all its views. Nothing is dropped in silence.
+struct RenderCounts {
+  std::uint32_t not_finite = 0;      ///< particles skipped: NaN, infinity, or a radius that is not positive
+  std::uint32_t outside = 0;         ///< particles that touch no pixel
+  std::uint32_t near_crossing = 0;   ///< particles cut by the near plane
+  std::uint32_t subpixel = 0;        ///< particles too small to be sure of a pixel centre; drawn as one pixel
+  std::uint32_t by_thread = 0;       ///< footprints splatted by one invocation
+  std::uint32_t by_group = 0;        ///< footprints splatted by one work group
+  std::uint32_t by_tiles = 0;        ///< footprints split among many work groups
+  std::uint32_t filter_capped = 0;   ///< pixels whose depth filter stopped at filter_max_px
+  std::uint32_t thickness_full = 0;  ///< thickness pixels that saturated
+  std::uint32_t front_missing = 0;   ///< fluid pixels without a front particle: 0 unless the driver is broken
+};
+
+/// Milliseconds of one pass of the last draw, over all its views.
+struct PassTime {
+  std::string pass;
+  double ms = 0;
+};
+
+/// Needs a current OpenGL 4.5 context at every call and when it is destroyed. Leaves the GL state of a new
+/// context except for the viewport. The same particles, views and options give the same picture, bit for bit,
+/// on one driver, in whatever order the particles are drawn by the device; of equal depths the lower index is
+/// in front.
+class FluidRenderer {
+ public:
+  /// The scene gives the tank. Errors (base::Error): an option out of range, a shader that is missing or does
+  /// not compile.
+  explicit FluidRenderer(const Scene& scene, const RenderOptions& options = {});
+  ~FluidRenderer();
+  FluidRenderer(const FluidRenderer&) = delete;
+  FluidRenderer& operator=(const FluidRenderer&) = delete;
+
+  /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
+  /// sRGB and nothing outside them. Returns without waiting for the device.
+  void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer);
+
+  /// The G-buffer of a view of the last draw; waits for the device. base::Error when that view was not drawn.
+  GBuffer read_gbuffer(std::size_t view = 0) const;
+  /// Waits for the device.
+  RenderCounts counts() const;
+  /// In order of the passes; empty unless time_passes. Waits for the device.
+  std::vector<PassTime> times() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sim

@@ -1,0 +1,39 @@
+#pragma once
+/// An OpenGL 4.5 core context without a window. The renderer needs a current context and does not care who
+/// made it.
+
+#include <memory>
+#include <string>
+
+namespace sim {
+
+/// A headless EGL context, current on the thread that made it; destroyed with the object. Order of trial: EGL
+/// devices with hardware (a GPU without a display), Mesa's surfaceless platform, EGL's software devices.
+class GlContext {
+ public:
+  /// Errors: base::Error when there is no EGL or no driver that gives OpenGL 4.5, with what each trial said.
+  static GlContext make_headless();
+
+  GlContext(GlContext&&) noexcept;
+  GlContext& operator=(GlContext&&) noexcept;
+  ~GlContext();
+
+  /// Makes it current on the calling thread (release it on the other one first).
+  void make_current();
+  /// Leaves the calling thread without a context.
+  void release();
+
+ private:
+  struct State;
+  explicit GlContext(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// GL_RENDERER and GL_VERSION of the current context, for records and logs.
+std::string gl_description();
+/// True when the current context is drawn by the processor (llvmpipe, softpipe, SWR).
+bool gl_is_software();
+/// base::Error unless a context of OpenGL 4.5 or newer is current; call once after a window made one.
+void require_gl45();
+
+}  // namespace sim

@@ -1,0 +1,32 @@
+#pragma once
+/// A framebuffer object to draw into when there is no window, and pictures read back from any framebuffer.
+
+#include "libsim/render/png.hpp"
+
+namespace sim {
+
+/// RGBA8 colour only. Needs a current context at every call and when it is destroyed.
+class Offscreen {
+ public:
+  /// At least 1 x 1 px; a size that the driver refuses is a base::Error.
+  Offscreen(int width, int height);
+  ~Offscreen();
+  Offscreen(const Offscreen&) = delete;
+  Offscreen& operator=(const Offscreen&) = delete;
+
+  unsigned framebuffer() const { return framebuffer_; }
+  unsigned texture() const { return texture_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  Image read() const;
+
+ private:
+  int width_, height_;
+  unsigned framebuffer_ = 0;
+  unsigned texture_ = 0;
+};
+
+/// The colours of a framebuffer object (0 = the window), waiting until they are drawn.
+Image read_framebuffer(unsigned framebuffer, int width, int height);
+
+}  // namespace sim

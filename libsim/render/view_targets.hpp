@@ -1,0 +1,44 @@
+#pragma once
+/// The device buffers of one view. Internal to the renderer.
+
+#include <cstdint>
+
+#include "libsim/render/camera.hpp"
+
+namespace sim {
+
+/// A GL buffer of a fixed size; moved, never copied.
+class GlBuffer {
+ public:
+  GlBuffer() = default;
+  GlBuffer(GlBuffer&& other) noexcept;
+  GlBuffer& operator=(GlBuffer&& other) noexcept;
+  ~GlBuffer();
+  /// Makes room for at least `bytes`; the contents are lost when it grows.
+  void reserve(std::int64_t bytes);
+  /// Sets every 32-bit word of the first `bytes` (all when negative).
+  void fill(std::uint32_t word, std::int64_t bytes = -1);
+  void read(void* out, std::int64_t bytes) const;
+  unsigned name() const { return name_; }
+
+ private:
+  unsigned name_ = 0;
+  std::int64_t bytes_ = 0;
+};
+
+/// Everything that a view's passes write, on grids of width x height px and of the coarser thickness cells.
+struct ViewTargets {
+  View view;
+  int width = 0, height = 0;
+  int cells_x = 0, cells_y = 0;
+  GlBuffer block;               ///< the shaders' ViewBlock
+  GlBuffer depth, front;        ///< splatted depth (float bits), particle in front
+  GlBuffer filter_a, filter_b;  ///< filtered depth ends in filter_a
+  GlBuffer normals;
+  GlBuffer thickness;                 ///< fixed point
+  GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
+
+  void resize(const View& new_view, int thickness_step);
+};
+
+}  // namespace sim

@@ -1,0 +1,37 @@
+// Small two-dimensional narrow-range filter: removes the streaks that a separated filter leaves.
+#include "view.glsl"
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
+layout(std430, binding = 1) readonly buffer Source { float source[]; };
+layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 3) writeonly buffer Target { float target[]; };
+#include "narrow_range.glsl"
+
+// Half of a 5 x 5 window, from the centre outwards; the other half mirrors it.
+const ivec2 half_window[12] =
+    ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(-1, 1), ivec2(2, 0), ivec2(0, 2), ivec2(2, 1),
+            ivec2(-2, 1), ivec2(1, 2), ivec2(-1, 2), ivec2(2, 2), ivec2(-2, 2));
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, size.xy))) return;
+  const int at = pixel.y * size.x + pixel.x;
+  const float centre = source[at];
+  if (!is_fluid(centre) || front[at] == 0xffffffffu) {
+    target[at] = centre;
+    return;
+  }
+  const float radius = particles[front[at]].w;
+  // Never wider than the particle: droplets of a few px keep their shape.
+  const float sigma = min(1.5, 0.5 * radius / (centre * rays.x));
+  const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);
+  const ivec2 room = min(pixel, size.xy - 1 - pixel);
+  Range range = start_range(centre, radius);
+  for (int k = 0; k < 12; ++k) {
+    const ivec2 away = half_window[k];
+    if (any(greaterThan(abs(away), room))) continue;
+    const int jump = away.y * size.x + away.x;
+    add_pair(range, source[at - jump], source[at + jump], exp2(falloff * float(away.x * away.x + away.y * away.y)));
+  }
+  target[at] = range.sum / range.weight;
+}

@@ -1,0 +1,64 @@
+// Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Writes sRGB.
+#include "view.glsl"
+#include "room.glsl"
+layout(std430, binding = 0) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
+layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
+layout(location = 0) out vec4 colour;
+
+const vec3 in_scatter = vec3(0.010, 0.105, 0.135);  // light that deep water sends back
+const float thin_m = 0.03;                          // films thinner than this fade out at their rim
+
+float water_length(vec2 xy) {
+  const vec2 g = xy / thickness_rule.z - 0.5;
+  const ivec2 last = size.zw - 1;
+  const ivec2 low = clamp(ivec2(floor(g)), ivec2(0), last), high = min(low + 1, last);
+  const vec2 f = clamp(g - vec2(low), 0.0, 1.0);
+  const float a = mix(thickness[low.y * size.z + low.x], thickness[low.y * size.z + high.x], f.x);
+  const float b = mix(thickness[high.y * size.z + low.x], thickness[high.y * size.z + high.x], f.x);
+  return mix(a, b, f.y) * thickness_rule.y;
+}
+
+vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m, float distance_m) {
+  const float facing = clamp(-dot(d, n), 0.0, 1.0);
+  const float fresnel = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * smoothstep(0.0, thin_m, length_m);
+  const vec3 inside = refract(d, n, 1.0 / 1.333);
+  const float room = max(cross_tank(position, inside).leave, 0.0);
+  const float way = min(length_m, room);
+  const vec3 out_direction = normalize(mix(d, inside, clamp(length_m / max(room, 1e-3), 0.0, 1.0)));
+  const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way);
+  const vec3 kept = exp(-absorption.rgb * way);
+  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.30 * way)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
+  const vec3 mirrored = reflect(d, n);
+  vec3 reflection = seen_from_inside(position, mirrored, footprint_per_m, distance_m);
+  reflection += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
+  return mix(body, reflection, fresnel);
+}
+
+vec3 encode_srgb(vec3 c) {
+  const vec3 x = clamp(c, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}
+
+void main() {
+  const vec2 xy = gl_FragCoord.xy - origin.xy;
+  const vec2 slope = slope_at(xy);
+  const vec3 eye = eye_to_world[3].xyz;
+  const vec3 ray = vec3(slope, -1.0);
+  const vec3 d = normalize(mat3(eye_to_world) * ray);
+  const float per_depth = length(ray);
+  const float footprint_per_m = rays.z / per_depth;
+  float frame_at, cover;
+  vec3 light = seen(eye, d, footprint_per_m, frame_at, cover);
+  const ivec2 pixel = ivec2(xy);
+  const int at = pixel.y * size.x + pixel.x;
+  const float z = depth[at];
+  if (is_fluid(z)) {
+    const float distance_m = z * per_depth;
+    const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
+    const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
+    light = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+    if (distance_m < frame_at) cover = 0.0;
+  }
+  colour = vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0);
+}

@@ -1,0 +1,46 @@
+// One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle.
+#include "view.glsl"
+#include "counters.glsl"
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
+layout(std430, binding = 1) readonly buffer Source { float source[]; };
+layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 3) writeonly buffer Target { float target[]; };
+uniform ivec2 direction;
+#include "narrow_range.glsl"
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, size.xy))) return;
+  const int at = pixel.y * size.x + pixel.x;
+  const float centre = source[at];
+  if (!is_fluid(centre)) {
+    target[at] = centre;
+    return;
+  }
+  if (front[at] == 0xffffffffu) {
+    if (direction.x == 1) atomicAdd(front_missing, 1u);
+    target[at] = centre;
+    return;
+  }
+  const float radius = particles[front[at]].w;
+  const float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
+  float reach = 3.0 * sigma;
+  if (reach > narrow_range.w) {
+    atomicAdd(filter_capped, 1u);
+    reach = narrow_range.w;
+  }
+  const int taps = int(min(ceil(reach), thickness_rule.w));
+  const float stride = max(reach / float(max(taps, 1)), 1.0);
+  const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);  // exp2(falloff x^2) = exp(-x^2 / (2 sigma^2))
+  // Samples beyond the picture are left out together with their mirror images.
+  const int room = direction.x == 1 ? min(pixel.x, size.x - 1 - pixel.x) : min(pixel.y, size.y - 1 - pixel.y);
+  const int jump = direction.x == 1 ? 1 : size.x;
+  Range range = start_range(centre, radius);
+  for (int k = 1; k <= taps; ++k) {
+    const int away = int(float(k) * stride + 0.5);
+    if (away > room) break;
+    add_pair(range, source[at - away * jump], source[at + away * jump], exp2(falloff * float(away * away)));
+  }
+  target[at] = range.sum / range.weight;
+}

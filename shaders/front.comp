@@ -1,0 +1,19 @@
+// One invocation a particle: the lowest index among the small splats that hold a pixel's depth.
+#include "view.glsl"
+#include "sphere.glsl"
+#include "targets.glsl"
+layout(local_size_x = 64) in;
+uniform int thread_limit;
+
+void main() {
+  const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
+  if (i >= particle_count || touched[i] == 0u) return;
+  const Sphere s = sphere_of(particles[i]);
+  const ivec4 box = footprint(s, rays, size.xy);
+  const ivec2 extent = box.zw - box.xy;
+  if (max(extent.x, extent.y) > thread_limit) return;
+  const bool subpixel = is_subpixel(s, rays);
+  for (int y = box.y; y < box.w; ++y) {
+    for (int x = box.x; x < box.z; ++x) splat_front(s, ivec2(x, y), subpixel, i);
+  }
+}

@@ -1,0 +1,93 @@
+// What stands around the fluid: a tiled floor, a glass tank with frame and level marks, ground and sky. Linear
+// light.
+const vec3 sun = vec3(0.3536, 0.8130, 0.4625);
+const float frame_m = 0.06;
+
+vec3 sky(vec3 d) {
+  const float up = max(d.y, 0.0);
+  const vec3 air = mix(vec3(0.72, 0.80, 0.86), vec3(0.16, 0.34, 0.62), pow(up, 0.5));
+  return air + vec3(1.0, 0.85, 0.6) * (0.25 * pow(max(dot(d, sun), 0.0), 32.0));
+}
+
+vec3 outdoors(vec3 o, vec3 d) {
+  if (d.y > -1e-4) return sky(d);
+  const float t = -o.y / d.y;
+  return mix(vec3(0.72, 0.80, 0.86), vec3(0.30, 0.29, 0.27), exp(-0.012 * max(t, 0.0)));
+}
+
+// Checker of 1 m tiles, averaged over a footprint of `width` m (box filter, exact).
+float checker(vec2 p, vec2 width) {
+  const vec2 w = max(width, vec2(1e-3));
+  const vec2 i = 2.0 * (abs(fract((p - 0.5 * w) * 0.5) - 0.5) - abs(fract((p + 0.5 * w) * 0.5) - 0.5)) / w;
+  return 0.5 - 0.5 * i.x * i.y;
+}
+
+// Share of a footprint of `width` m that lies within `half_line` m of zero distance.
+float line(float distance, float half_line, float width) {
+  return clamp((half_line + 0.5 * width - distance) / max(width, 1e-4), 0.0, 1.0) *
+         min(1.0, 2.0 * half_line / max(width, 1e-4));
+}
+
+vec3 tiles(vec3 p, vec3 d, float width) {
+  const float stretched = width / max(-d.y, 0.08);
+  const float c = checker(p.xz, vec2(min(stretched, 2.0)));
+  const vec2 to_joint = abs(fract(p.xz + 0.5) - 0.5);
+  const float joint = line(min(to_joint.x, to_joint.y), 0.012, stretched);
+  return mix(mix(vec3(0.50, 0.53, 0.54), vec3(0.80, 0.80, 0.77), c), vec3(0.30, 0.31, 0.32), joint);
+}
+
+// Distance of a point on a face of the tank to the nearest edge of that face that carries a frame.
+float edge_distance(vec3 p, int axis) {
+  const vec3 to_side = min(p, tank.xyz - p);
+  if (axis == 1) return min(to_side.x, to_side.z);
+  const float along = axis == 0 ? to_side.z : to_side.x;
+  return min(along, min(p.y, abs(tank.y - p.y)));
+}
+
+struct Crossing {
+  float enter, leave;
+  int enter_axis, leave_axis;
+};
+
+Crossing cross_tank(vec3 o, vec3 d) {
+  const vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
+  const vec3 a = -o / safe, b = (tank.xyz - o) / safe;
+  const vec3 near = min(a, b), far = max(a, b);
+  Crossing c;
+  c.enter = max(near.x, max(near.y, near.z));
+  c.leave = min(far.x, min(far.y, far.z));
+  c.enter_axis = c.enter == near.x ? 0 : (c.enter == near.y ? 1 : 2);
+  c.leave_axis = c.leave == far.x ? 0 : (c.leave == far.y ? 1 : 2);
+  return c;
+}
+
+const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
+
+// How much of the pixel the frame covers where a ray pierces a face; the open top has a rim only.
+float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, axis), frame_m, width); }
+
+// From a point inside the tank.
+vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
+  const Crossing c = cross_tank(o, d);
+  const vec3 p = o + max(c.leave, 0.0) * d;
+  const float width = footprint_per_m * (travelled + max(c.leave, 0.0));
+  if (c.leave_axis == 1 && d.y < 0.0) return mix(tiles(p, d, width), frame_colour, frame_cover(p, 1, width));
+  const vec3 beyond = outdoors(p, d);
+  if (c.leave_axis == 1) return mix(beyond, frame_colour, frame_cover(p, 1, width));
+  const float mark = line(abs(fract(p.y + 0.5) - 0.5), 0.012, width) * 0.35;
+  const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
+  return mix(glass, frame_colour, frame_cover(p, c.leave_axis, width));
+}
+
+// From anywhere. `frame_at`: distance of the frame on the near side of the tank, with its cover.
+vec3 seen(vec3 o, vec3 d, float footprint_per_m, out float frame_at, out float cover) {
+  const Crossing c = cross_tank(o, d);
+  frame_at = 0.0;
+  cover = 0.0;
+  if (c.leave <= max(c.enter, 0.0)) return outdoors(o, d);
+  if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0);
+  const vec3 p = o + c.enter * d;
+  frame_at = c.enter;
+  cover = frame_cover(p, c.enter_axis, footprint_per_m * c.enter);
+  return seen_from_inside(p + 1e-4 * d, d, footprint_per_m, c.enter);
+}

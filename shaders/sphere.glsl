@@ -1,0 +1,88 @@
+// Spheres as the splat passes see them. `precise`: the depth pass and the front pass must agree in every bit.
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
+uniform uint particle_count;
+
+struct Sphere {
+  vec3 centre;  // eye space, z = positive depth
+  float radius;
+};
+
+bool is_usable(vec4 particle) {
+  const uvec4 exponent = floatBitsToUint(particle) & 0x7f800000u;
+  return all(lessThan(exponent, uvec4(0x7f800000u))) && particle.w > 0;
+}
+
+Sphere sphere_of(vec4 particle) {
+  precise vec3 eye = world_to_eye[0].xyz * particle.x + world_to_eye[1].xyz * particle.y +
+                     world_to_eye[2].xyz * particle.z + world_to_eye[3].xyz;
+  precise float radius = particle.w * origin.w;
+  return Sphere(vec3(eye.xy, -eye.z), radius);
+}
+
+bool crosses_near(Sphere s) { return s.centre.z - s.radius < origin.z; }
+
+// Radius in cells of a grid, at the centre's depth. Below sqrt(1/2) a disc may miss every cell centre.
+float radius_in_cells(Sphere s, vec4 grid) { return s.radius / (s.centre.z * max(grid.x, grid.z)); }
+bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
+
+// Depths of a ray's way in and out; a sphere below pixel size is met as if the ray went through its centre.
+bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave) {
+  precise float inverse = 1.0 / (slope.x * slope.x + slope.y * slope.y + 1.0);
+  precise float middle = (s.centre.x * slope.x + s.centre.y * slope.y + s.centre.z) * inverse;
+  precise float off_x = s.centre.x - middle * slope.x;
+  precise float off_y = s.centre.y - middle * slope.y;
+  precise float off_z = s.centre.z - middle;
+  precise float square = s.radius * s.radius - (off_x * off_x + off_y * off_y + off_z * off_z);
+  if (subpixel) square = s.radius * s.radius;
+  precise float reach = sqrt(max(square, 0.0) * inverse);
+  entry = max(middle - reach, origin.z);
+  leave = middle + reach;
+  return square > 0.0 && leave > origin.z;
+}
+
+vec2 tangent_slopes(float x, float z, float radius) {
+  const float root = radius * sqrt(x * x + z * z - radius * radius);
+  return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
+}
+
+// Slopes of the box around a sphere in front of the near plane.
+vec2 clipped_slopes(float x, float z, float radius) {
+  const float low = x - radius, high = x + radius;
+  return vec2(low / (low < 0 ? origin.z : z + radius), high / (high > 0 ? origin.z : z + radius));
+}
+
+// Cells whose centres the sphere may cover: lower corner, upper corner (exclusive). Empty: upper <= lower.
+ivec4 footprint(Sphere s, vec4 grid, ivec2 cells) {
+  if (s.centre.z + s.radius <= origin.z) return ivec4(0);
+  const vec2 limit = vec2(cells);
+  if (is_subpixel(s, grid)) {
+    const vec2 cell = floor((s.centre.xy / s.centre.z - grid.yw) / grid.xz);
+    if (any(lessThan(cell, vec2(0))) || any(greaterThanEqual(cell, limit))) return ivec4(0);
+    return ivec4(cell, cell + 1.0);
+  }
+  const bool crossing = crosses_near(s);
+  const vec2 x = crossing ? clipped_slopes(s.centre.x, s.centre.z, s.radius)
+                          : tangent_slopes(s.centre.x, s.centre.z, s.radius);
+  const vec2 y = crossing ? clipped_slopes(s.centre.y, s.centre.z, s.radius)
+                          : tangent_slopes(s.centre.y, s.centre.z, s.radius);
+  // A hundredth of a cell of slack for rounding: meets() decides.
+  const vec2 low = ceil((vec2(x.x, y.x) - grid.yw) / grid.xz - 0.51);
+  const vec2 high = floor((vec2(x.y, y.y) - grid.yw) / grid.xz - 0.49) + 1.0;
+  return ivec4(clamp(low, vec2(0), limit), clamp(high, vec2(0), limit));
+}
+
+vec4 thickness_rays() { return vec4(rays.x * thickness_rule.z, rays.y, rays.z * thickness_rule.z, rays.w); }
+
+vec2 cell_slope(ivec2 cell, vec4 grid) { return (vec2(cell) + 0.5) * grid.xz + grid.yw; }
+
+// Length of the ray inside the sphere in thickness units; below cell size the sphere's volume over the cell.
+uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid) {
+  float entry, leave;
+  if (!meets(s, slope, subpixel, entry, leave)) return 0u;
+  float chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
+  if (subpixel) {
+    const vec2 cell = s.centre.z * grid.xz;
+    chord = 4.18879 * s.radius * s.radius * s.radius / (cell.x * cell.y);
+  }
+  return uint(min(chord * thickness_rule.x + 0.5, 4294967040.0));
+}
