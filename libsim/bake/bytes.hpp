@@ -1,0 +1,78 @@
+#pragma once
+/// Little-endian values into and out of byte buffers. Every read is checked against the end.
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "stats/base/error.hpp"
+
+namespace sim {
+
+static_assert(std::endian::native == std::endian::little, "bake files are read and written little-endian");
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
+
+/// Appends to a buffer that the caller owns.
+class ByteWriter {
+ public:
+  explicit ByteWriter(Bytes& out) : out_(out) {}
+
+  template <typename T>
+  void put(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    bytes({reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
+  }
+  void bytes(ByteSpan data) { out_.insert(out_.end(), data.begin(), data.end()); }
+  /// Length in 32 bit, then the characters.
+  void string(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+
+ private:
+  Bytes& out_;
+};
+
+/// Reads from the front of a span. base::Error naming `place` when it holds less than asked for.
+class ByteReader {
+ public:
+  ByteReader(ByteSpan data, std::string place) : data_(data), place_(std::move(place)) {}
+
+  template <typename T>
+  T get() {
+    static_assert(std::is_arithmetic_v<T>);
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  ByteSpan take(std::size_t size) {
+    if (size > data_.size()) fail("ends early");
+    const ByteSpan front = data_.first(size);
+    data_ = data_.subspan(size);
+    return front;
+  }
+  std::string string(std::size_t max_size) {
+    const auto size = get<std::uint32_t>();
+    if (size > max_size) fail("holds a text of " + std::to_string(size) + " characters");
+    const ByteSpan text = take(size);
+    return {reinterpret_cast<const char*>(text.data()), text.size()};
+  }
+  ByteSpan rest() const { return data_; }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw base::Error(place_, problem, "the file is damaged; bake it again");
+  }
+
+ private:
+  ByteSpan data_;
+  std::string place_;
+};
+
+}  // namespace sim

@@ -1,0 +1,72 @@
+#pragma once
+/// Chunks of a bake file: particle frames and pictures as compressed bytes. Lossless but for the quantisation
+/// of positions.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libsim/bake/bytes.hpp"
+#include "libsim/simulation.hpp"
+
+namespace sim {
+
+/// What a frame consisted of; stands before the particles and before the picture of a frame.
+struct BakeFacts {
+  double time_s = 0;                             ///< since the gate opened
+  std::vector<std::int64_t> particles_by_level;  ///< one count for each radius of the file's header
+};
+
+/// The particles of one frame, by level and within a level in the solver's order.
+struct BakeFrame {
+  BakeFacts facts;
+  std::vector<RenderParticle> particles;
+};
+
+/// One picture, bottom row first as OpenGL reads it, 4 bytes a pixel (R, G, B, 255).
+struct BakePicture {
+  BakeFacts facts;
+  Bytes rgba;
+};
+
+/// Most particles that a frame of a bake may hold: HiRes at the largest n_*.
+inline constexpr std::int64_t max_bake_particles = std::int64_t{32} << 20;
+/// Most levels, and longest side of a picture, px.
+inline constexpr std::size_t max_bake_levels = 16;
+inline constexpr int max_picture_side = 8192;
+
+/// Quantises to 16 bit per axis over the frame's own bounding box: an axis of extent e is off by at most
+/// e / 131070 (+ float rounding). That must stay below a twentieth of the finest radius; a frame that spreads
+/// wider, a particle that is not finite or a radius that is not in `radius_by_level_m` is a base::Error at
+/// `place`.
+void encode_particles(double time_s, const std::vector<RenderParticle>& particles,
+                      const std::vector<float>& radius_by_level_m, int zstd_level, const std::string& place,
+                      Bytes& out);
+
+/// The inverse. Refuses (base::Error at `place`) counts beyond `max_particles` before it allocates, and data
+/// that decode to another size than stated. `scratch` keeps its memory between calls.
+void decode_particles(ByteSpan payload, const std::vector<float>& radius_by_level_m,
+                      std::int64_t max_particles, const std::string& place, Bytes& scratch, BakeFrame& out);
+
+/// Pictures: colour planes G, R - G, B - G; each row the residual of one of five predictors (none, left,
+/// above, gradient, previous picture), then zstd. `previous` is the picture before, or empty for a key
+/// picture. Alpha is dropped.
+void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, int width_px, int height_px,
+                    int zstd_level, Bytes& out);
+
+/// The inverse, with the same `previous`; it may not overlap out.rgba.
+void decode_picture(ByteSpan payload, std::size_t levels, ByteSpan previous, int width_px, int height_px,
+                    const std::string& place, Bytes& scratch, BakePicture& out);
+
+/// Facts as they stand at the front of both kinds of chunk.
+void put_facts(ByteWriter& out, const BakeFacts& facts);
+BakeFacts get_facts(ByteReader& in, std::size_t levels);
+
+/// zstd of `data`, or the data as they are when they would shrink by more than 4096 to 1; the first byte says
+/// which. unpack() refuses any other size than `size`, and allocates only after the ratio was checked, so
+/// that memory stays in proportion to the file.
+void pack(ByteSpan data, int zstd_level, Bytes& out);
+void unpack(ByteReader& in, std::size_t size, Bytes& out);
+
+}  // namespace sim

@@ -1,0 +1,42 @@
+/// Bake files: the whole file, and its parts without the checksums that would keep most damage from them.
+
+#include <cstdint>
+
+#include "libsim/bake/bake_file.hpp"
+#include "stats/base/error.hpp"
+
+namespace {
+
+template <typename Act>
+void attempt(Act act) {
+  try {
+    act();
+  } catch (const base::Error&) {
+  }
+}
+
+void read_file(sim::ByteSpan bytes) {
+  const sim::BakeReader bake(bytes, "fuzz");
+  sim::PictureReader pictures(bake);
+  sim::BakeFrame frame;
+  for (std::int64_t i = 0; i < bake.header().frame_count; ++i) {
+    attempt([&] { bake.read_frame(i, frame); });
+    if (bake.header().has_pictures()) attempt([&] { pictures.read(i); });
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const sim::ByteSpan bytes(data, size);
+  static const sim::Bytes previous(4 * 32 * 18, 99);
+  sim::Bytes scratch;
+  sim::BakeFrame frame;
+  sim::BakePicture picture;
+  attempt([&] { read_file(bytes); });
+  attempt([&] { sim::parse_bake_header(bytes, "fuzz"); });
+  attempt([&] { sim::decode_particles(bytes, {0.05F, 0.1F}, 1 << 20, "fuzz", scratch, frame); });
+  attempt([&] { sim::decode_picture(bytes, 2, {}, 32, 18, "fuzz", scratch, picture); });
+  attempt([&] { sim::decode_picture(bytes, 2, previous, 32, 18, "fuzz", scratch, picture); });
+  return 0;
+}
