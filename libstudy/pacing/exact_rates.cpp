@@ -1,0 +1,157 @@
+#include "libstudy/pacing/exact_rates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "libstudy/pacing/truncated_normal.hpp"
+#include "stats/base/error.hpp"
+#include "stats/root.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+double arithmetic_mean(const std::vector<double>& values) {
+  long double sum = 0;
+  for (const double value : values) sum += value;
+  return static_cast<double>(sum / static_cast<long double>(values.size()));
+}
+
+double population_sd(const std::vector<double>& values) {
+  const long double mean = arithmetic_mean(values);
+  long double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return static_cast<double>(std::sqrt(squares / static_cast<long double>(values.size())));
+}
+
+/// A setting while it is being solved.
+struct Problem {
+  FpsSetting setting;
+  FpsMean mean;
+  double low = 0;          // frames/s
+  double high = infinity;  // frames/s
+  std::size_t n = 0;
+
+  double mean_of(const std::vector<double>& rates) const { return mean_rate(rates, mean); }
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& mend) const {
+    throw base::Error("setting " + setting_name(setting) + " over " + shown(setting.duration_s) + " s (" +
+                          std::to_string(n) + " frames)",
+                      problem, mend);
+  }
+};
+
+/// Distances y above the cut, scaled to rates low + scale y.
+std::vector<double> scaled(const Problem& problem, std::vector<double> strata, double scale) {
+  for (double& y : strata) y = problem.low + scale * y;
+  return strata;
+}
+
+/// Without an upper cut the scale follows from the standard deviation in closed form, and the mean falls
+/// monotonically as the parent's lower cut (in its own standard deviations) rises.
+std::vector<double> solve_open(const Problem& problem) {
+  const double sd = problem.setting.sd;
+  const auto rates = [&](double cut) {
+    auto strata = truncated_normal_strata(cut, infinity, problem.n);
+    const double scale = sd / population_sd(strata);
+    return scaled(problem, std::move(strata), scale);
+  };
+  const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
+  const double exponential = 1e4;  // the parent's mean this far below the cut: an exponential distribution
+  const double bell = -10 * (problem.setting.mean + sd) / sd;
+  if (excess(exponential) > 0) {
+    const double least = problem.setting.mean + excess(exponential);
+    problem.fail("no truncated normal above " + shown(problem.low) +
+                     " frames/s has this mean and sd: with sd " + shown(sd) + " the mean is at least " +
+                     shown(least),
+                 "lower fps_min (and raise max_interval_ms), lengthen the trial, or lower the sd");
+  }
+  return rates(stats::find_root(excess, bell, exponential));
+}
+
+/// The parent whose window is `width` of its standard deviations wide and whose strata have the wished mean.
+std::vector<double> with_mean(const Problem& problem, double width) {
+  const double scale = (problem.high - problem.low) / width;
+  const auto rates = [&](double cut) {
+    return scaled(problem, truncated_normal_strata(cut, width, problem.n), scale);
+  };
+  const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
+  double reach = width + 4 / width;
+  while (reach < 1e7 / width + 10 * width &&
+         (excess(-0.5 * width - reach) < 0 || excess(-0.5 * width + reach) > 0))
+    reach *= 2;
+  const double left = -0.5 * width - reach, right = -0.5 * width + reach;
+  if (excess(left) < 0 || excess(right) > 0) {
+    problem.fail("the mean lies too near a cut (" + shown(problem.low) + " to " + shown(problem.high) +
+                     " frames/s) for any list of this length",
+                 "widen fps_min and fps_max");
+  }
+  return rates(stats::find_root(excess, left, right));
+}
+
+/// With an upper cut: the standard deviation falls as the window grows in the parent's standard deviations.
+std::vector<double> solve_capped(const Problem& problem) {
+  const auto excess = [&](double log_width) {
+    return population_sd(with_mean(problem, std::exp(log_width))) - problem.setting.sd;
+  };
+  const double flat = std::log(1e-2);
+  const double narrow = std::log(20 * (problem.high - problem.low) / problem.setting.sd);
+  if (excess(flat) < 0) {
+    problem.fail("no truncated normal between " + shown(problem.low) + " and " + shown(problem.high) +
+                     " frames/s has this mean and sd: at this mean the sd is at most " +
+                     shown(problem.setting.sd + excess(flat)),
+                 "raise fps_max, lower fps_min, or lower the sd");
+  }
+  return with_mean(problem, std::exp(stats::find_root(excess, flat, narrow)));
+}
+
+void check_constant(const Problem& problem) {
+  if (problem.setting.mean >= problem.low && problem.setting.mean <= problem.high) return;
+  problem.fail("a constant " + shown(problem.setting.mean) + " frames/s lies outside " + shown(problem.low) +
+                   " to " + shown(problem.high),
+               "widen fps_min, max_interval_ms or fps_max");
+}
+
+}  // namespace
+
+double mean_rate(const std::vector<double>& rates, FpsMean mean) {
+  if (mean == FpsMean::Arithmetic) return arithmetic_mean(rates);
+  long double time = 0;
+  for (const double rate : rates) time += 1.0L / rate;
+  return static_cast<double>(static_cast<long double>(rates.size()) / time);
+}
+
+std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& rules) {
+  Problem problem{setting, rules.mean, std::max(rules.fps_min, 1000 / rules.max_interval_ms),
+                  rules.fps_max.value_or(infinity), static_cast<std::size_t>(frame_count(setting))};
+  if (setting.sd == 0) {
+    check_constant(problem);
+    return std::vector<double>(problem.n, setting.mean);
+  }
+  if (problem.n < 2) problem.fail("one frame has no standard deviation", "lengthen the trial");
+  if (setting.mean <= problem.low || setting.mean >= problem.high) {
+    problem.fail("the mean is not between the cuts " + shown(problem.low) + " and " + shown(problem.high) +
+                     " frames/s",
+                 "widen fps_min, max_interval_ms or fps_max");
+  }
+  auto rates = std::isfinite(problem.high) ? solve_capped(problem) : solve_open(problem);
+  const double mean_error = std::abs(problem.mean_of(rates) / setting.mean - 1);
+  const double sd_error = std::abs(population_sd(rates) / setting.sd - 1);
+  if (!(mean_error <= 1e-9 && sd_error <= 1e-9)) {
+    problem.fail("the moments were met only to " + shown(std::max(mean_error, sd_error)) + " (relative)",
+                 "choose a mean and sd further from the cuts");
+  }
+  return rates;
+}
+
+}  // namespace study

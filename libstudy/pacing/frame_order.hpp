@@ -1,0 +1,23 @@
+#pragma once
+/// In which order the rates of a schedule are shown. The moments do not depend on it; the lag-1 correlation
+/// does.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libstudy/pacing/schedule.hpp"
+
+namespace study {
+
+/// Lag-1 autocorrelation: sum of products of neighbouring deviations from the mean over the sum of squares.
+/// 0 for fewer than two values or for equal values.
+double lag1(std::span<const double> values);
+
+/// The same values in the order that the rules ask for; equal seeds give equal orders.
+/// white: a uniform shuffle. ar1: the ranks of a Gaussian AR(1) sequence whose coefficient is tuned until the
+/// ordered list comes as near to rules.ar1 as it can. trace: the ranks of the trace's rates, repeated or cut
+/// to the length; ties fall at random.
+std::vector<double> ordered(std::vector<double> values, const PacingRules& rules, std::uint64_t seed);
+
+}  // namespace study

@@ -1,0 +1,76 @@
+#include "libstudy/pacing/truncated_normal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace study {
+
+namespace {
+
+constexpr double tail_from = 8;
+
+double upper_tail(double t) { return 0.5 * std::erfc(t / std::numbers::sqrt2); }
+
+/// Mills' ratio Q(t) / phi(t) for t >= tail_from: Laplace's continued fraction.
+double mills_tail(double t) {
+  double fraction = t;
+  for (int k = 24; k >= 1; --k) fraction = t + k / fraction;
+  return 1 / fraction;
+}
+
+double log_upper_tail(double t) { return t < 0 ? std::log1p(-upper_tail(-t)) : std::log(upper_tail(t)); }
+
+/// log(Q(cut + y) / Q(cut)), y >= 0.
+double log_survival(double cut, double y) {
+  if (cut < tail_from) {
+    const double t = cut + y;
+    if (t < 30) return log_upper_tail(t) - log_upper_tail(cut);
+    const double log_phi = -0.5 * t * t - 0.5 * std::log(2 * std::numbers::pi);
+    return log_phi + std::log(mills_tail(t)) - log_upper_tail(cut);
+  }
+  return -y * (cut + 0.5 * y) + std::log(mills_tail(cut + y) / mills_tail(cut));
+}
+
+/// phi(t) / Q(t).
+double hazard(double t) {
+  if (t >= tail_from) return 1 / mills_tail(t);
+  return std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi) / upper_tail(t);
+}
+
+/// y with log_survival(cut, y) = target < 0. log Q is concave, so Newton's method comes down monotonically
+/// from the right after its first step.
+double quantile(double cut, double target, double guess) {
+  double y = guess;
+  for (int i = 0; i < 200; ++i) {
+    const double step = (log_survival(cut, y) - target) / hazard(cut + y);
+    const double next = std::max(y + step, 0.0);
+    const bool settled = std::abs(next - y) <= 1e-14 * next;
+    y = next;
+    if (settled) break;
+  }
+  return y;
+}
+
+}  // namespace
+
+std::vector<double> truncated_normal_strata(double cut, double width, std::size_t n) {
+  // Most of the mass in the lower tail: reflect, so that upper-tail formulas stay exact.
+  const bool reflected = std::isfinite(width) && 2 * cut + width < 0;
+  const double from = reflected ? -(cut + width) : cut;
+  const double lost = std::isfinite(width) ? -std::expm1(log_survival(from, width)) : 1;
+  std::vector<double> strata(n);
+  // Where the hazard is not yet flat, so that the first step stays finite; then each from its neighbour.
+  double y = std::max(0.0, -from);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double p = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    strata[i] = y = quantile(from, std::log1p(-p * lost), y);
+  }
+  if (reflected) {
+    for (double& distance : strata) distance = width - distance;
+    std::reverse(strata.begin(), strata.end());
+  }
+  return strata;
+}
+
+}  // namespace study
