@@ -13,6 +13,7 @@ namespace study {
 /// One planned trial of a rating protocol, with what is known of it so far.
 struct RatingRow {
   std::string participant;  ///< code
+  std::string observer;     ///< simulated observer that answered; empty = a person
   std::string protocol_name;
   std::string protocol_sha256;  ///< 64 hexadecimal digits, overrides included
   bool test_data = false;       ///< pilot runs and overridden protocols: never pooled with real data

@@ -1,0 +1,47 @@
+#pragma once
+/// The parametric simulated observer: an ordinal judge of the realised frame rate (study.md section 6).
+
+#include <string>
+#include <string_view>
+
+#include "libstudy/observer/responder.hpp"
+
+namespace study {
+
+/// Latent satisfaction on a scale of K categories with midpoint m:
+///
+///   x = m + slope tau + participant + noise,   tau = mu - a exp(b delta)   (paper Eq. 11)
+///
+/// with mu the harmonic mean and delta the standard deviation of the frames shown, participant ~ N(0,
+/// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial. The score is
+/// the category whose thresholds, m +- 1/2, 3/2, ..., hold x: symmetric about m, so that E[score] = m (4 on a
+/// 7-point scale) exactly on the contour tau = 0.
+///
+/// The default slope and noise give cell means over 16 people from about 1 to 6.5 on the pilot's grid, the
+/// range of the paper's Fig. 6; what single people's scores scatter by is not printed there, so noise and
+/// participant_sd are our choice.
+struct PtpeObserverParameters {
+  double a = 0;                 ///< frames/s, > 0; must be given
+  double b = 0;                 ///< s/frame; must be given
+  double slope = 0.14;          ///< scores per frame/s, > 0
+  double noise = 1.0;           ///< scores, >= 0
+  double participant_sd = 0.5;  ///< scores, >= 0
+};
+
+/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..]". base::Error naming the place for
+/// anything else: another kind, a key unknown, repeated or missing, a bad number or one out of range.
+PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
+
+/// The score is a pure function of the parameters, (seed, participant, position), the moments and the scale.
+class PtpeObserver final : public Responder {
+ public:
+  explicit PtpeObserver(const PtpeObserverParameters& parameters) : parameters_(parameters) {}
+  std::optional<std::string> simulated() const override;
+  /// At once: no time passes.
+  Answer answer(const Question& question, const ShownTrial& trial, Clock& clock) override;
+
+ private:
+  PtpeObserverParameters parameters_;
+};
+
+}  // namespace study

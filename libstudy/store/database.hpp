@@ -1,0 +1,32 @@
+#pragma once
+/// Opens the database of a study: recognises it, checks it, brings its schema up to date.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libstudy/store/sqlite.hpp"
+
+namespace study {
+
+/// SQLite's application_id of our databases: "ViPL".
+inline constexpr std::int64_t database_application_id = 0x5669504C;
+
+/// The SQL of each schema step in order; step i leads to user_version i + 1.
+using SchemaSteps = std::vector<std::string>;
+/// The program's own steps, from libstudy/store/sql/.
+SchemaSteps read_schema_steps();
+
+/// Opens `path` with foreign keys, WAL and synchronous = FULL.
+///
+/// Open::Create makes a missing or empty file into a database, and removes it again when that fails;
+/// Open::Write upgrades an older one, each step in one transaction, after a copy "<path>.v<version>-<UTC
+/// time>.bak". base::Error, with the file left byte for byte as it was: not a database of this program, newer
+/// than `steps`, damaged or cut short (integrity check), or older when opened for reading. max_pages > 0
+/// limits the file to that many pages of 4 KiB.
+std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,
+                                                  const SchemaSteps& steps, std::int64_t max_pages = 0);
+
+}  // namespace study

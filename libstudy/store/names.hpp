@@ -1,0 +1,37 @@
+#pragma once
+/// How verdicts and grades stand in the database, the certificate and the exports.
+
+#include <string>
+
+#include "libstudy/pacing/pacer.hpp"
+
+namespace study {
+
+inline std::string verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Pass:
+      return "pass";
+    case Verdict::Degraded:
+      return "degraded";
+    case Verdict::Fail:
+      break;
+  }
+  return "fail";
+}
+
+/// The inverse; what the schema's CHECK keeps out counts as a failed trial.
+inline Verdict verdict_of(const std::string& name) {
+  if (name == "pass") return Verdict::Pass;
+  return name == "degraded" ? Verdict::Degraded : Verdict::Fail;
+}
+
+inline std::string grade_name(TimingGrade grade) { return std::string(1, static_cast<char>(grade)); }
+
+inline TimingGrade grade_of(const std::string& name) {
+  for (const auto grade : {TimingGrade::Photodiode, TimingGrade::DisplayFeedback, TimingGrade::Compositor}) {
+    if (name == grade_name(grade)) return grade;
+  }
+  return TimingGrade::CpuSubmit;
+}
+
+}  // namespace study

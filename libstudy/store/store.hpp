@@ -1,0 +1,120 @@
+#pragma once
+/// A study's database as the session writes it: the whole plan first, one commit for each answer.
+/// All failures are base::Error and name the file; what was committed before stays.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libstudy/design/plan.hpp"
+#include "libstudy/pacing/pacer.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "libstudy/store/sqlite.hpp"
+
+namespace study {
+
+/// A participant code is 1 to 32 of A-Z a-z 0-9 _ and -. base::Error otherwise.
+void check_participant_code(const std::string& code);
+
+/// What is written of a session before its first trial.
+struct SessionPlan {
+  std::string participant;
+  int visit = 1;
+  std::uint64_t seed = 0;  ///< at most 2^63 - 1
+  bool test_data = false;
+  std::optional<std::string> observer;  ///< simulated observer; none = a person
+  bool virtual_clock = false;
+  std::string display, stimulus, machine, time_zone;
+  std::optional<std::string> ptpe;  ///< the PTPE file in full
+  std::vector<PlannedTrial> trials;
+};
+
+/// What is written of a run: one command for one or more participants.
+struct RunPlan {
+  Protocol protocol;
+  std::optional<double> trial_seconds;  ///< override that is part of the protocol's hash
+  std::string options;                  ///< text from which the program rebuilds the run
+  std::vector<SessionPlan> sessions;
+};
+
+/// A trial that has no answer yet.
+struct OpenTrial {
+  std::int64_t id = 0;
+  PlannedTrial plan;
+  int attempts = 0;  ///< presentations so far, all without an answer
+};
+
+/// A session with unanswered trials, in the order of their positions.
+struct OpenSession {
+  std::int64_t id = 0;
+  SessionPlan plan;  ///< `trials` is left empty
+  std::size_t planned = 0, answered = 0;
+  std::vector<OpenTrial> trials;
+};
+
+/// Unfinished sessions that share a run, with what that run was given.
+struct OpenRun {
+  std::int64_t id = 0;
+  std::string options;
+  std::string protocol_name, protocol_text, protocol_sha256;
+  std::optional<double> trial_seconds;
+  std::vector<OpenSession> sessions;
+};
+
+/// The only writer of a database: a second Store on the same file is an error while the first lives.
+class Store {
+ public:
+  /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages.
+  Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0);
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+
+  /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
+  /// base::Error when one of the participants has that visit under that protocol already, or when the same
+  /// name and version stand there with another text.
+  std::int64_t add_run(const RunPlan& run);
+
+  /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
+  std::vector<OpenRun> open_runs();
+
+  /// Commits that a trial is about to be shown; returns the presentation's id.
+  std::int64_t begin_presentation(std::int64_t session, std::int64_t trial, int attempt,
+                                  std::int64_t start_ns);
+  /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
+  /// onset.
+  void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  /// Commits the rest of the frames and the verdict.
+  void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
+                        std::span<const FrameRecord> frames, const TimingVerdict& verdict);
+  /// Commits that a presentation was cut short; its frames stay.
+  void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
+  /// Commits an answer; with the last one of a session its end as well.
+  void answer(std::int64_t session, std::int64_t trial, std::int64_t presentation,
+              const std::string& question, int score, double response_time_s, std::int64_t clock_ns);
+  /// Appends to the event log. `detail` never holds answers or free text of participants.
+  void log(std::optional<std::int64_t> session, const std::string& kind, const std::string& detail,
+           std::optional<std::int64_t> clock_ns = {});
+
+ private:
+  struct Statements;
+  class Lock;
+
+  std::int64_t find_or_add_protocol(const RunPlan& run);
+  void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
+                   const SessionPlan& plan);
+  void mark_cut_presentations();
+  void insert_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  void insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,
+                    const std::string& kind, const std::string& detail, std::optional<std::int64_t> clock_ns);
+
+  std::unique_ptr<Lock> lock_;
+  std::unique_ptr<sqlite::Connection> database_;
+  std::unique_ptr<Statements> statements_;
+};
+
+}  // namespace study
