@@ -6,9 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "libstudy/design/plan.hpp"
+#include "libstudy/design/random.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 #include "stats/ptpe.hpp"
 
 namespace study {
@@ -63,10 +62,7 @@ double normal(std::uint64_t key, std::uint64_t counter) {
 }
 
 std::uint64_t person_key(std::uint64_t seed, const std::string& participant) {
-  const std::string digest = base::sha256_hex("observer\n" + std::to_string(seed) + "\n" + participant);
-  std::uint64_t key = 0;
-  std::from_chars(digest.data(), digest.data() + 16, key, 16);
-  return key;
+  return random_key("observer\n" + std::to_string(seed) + '\n' + participant);
 }
 
 std::string shortest(double value) {

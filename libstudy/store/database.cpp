@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::array step_files{"001_initial.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
+constexpr std::uintmax_t smallest_page_bytes = 512;
 
 struct Identity {
   std::int64_t application = 0;
@@ -47,6 +48,10 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
 void recognise_untouched(const fs::path& path, Open how, std::size_t newest) {
   std::error_code ignored;
   if (how == Open::Create && (!fs::exists(path, ignored) || fs::file_size(path, ignored) == 0)) return;
+  if (const auto bytes = fs::file_size(path, ignored); !ignored && bytes < smallest_page_bytes) {
+    // SQLite takes a file of one byte for an empty one.
+    recognise(path, {0, 0, false}, how, newest);
+  }
   // A power cut in the very first transaction leaves a blank file with a journal that undoes it.
   if (how == Open::Create && fs::exists(path.string() + "-journal", ignored)) return;
   Connection look(path, Open::Untouched);

@@ -151,7 +151,7 @@ std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
           .bind(1, protocol.name)
           .bind(2, protocol.version)
           .bind(3, protocol.text)
-          .bind(4, run.trial_seconds)
+          .bind(4, protocol.trial_seconds)
           .bind(5, protocol.test_data ? 1 : 0)
           .run();
   const Question& question = protocol.question;

@@ -36,8 +36,7 @@ struct SessionPlan {
 /// What is written of a run: one command for one or more participants.
 struct RunPlan {
   Protocol protocol;
-  std::optional<double> trial_seconds;  ///< override that is part of the protocol's hash
-  std::string options;                  ///< text from which the program rebuilds the run
+  std::string options;  ///< text from which the program rebuilds the run
   std::vector<SessionPlan> sessions;
 };
 

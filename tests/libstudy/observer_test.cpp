@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ptpe:a=nan,b=0", "'nan' is not a number"}, Bad{"ptpe:a=inf,b=0", "'inf' is not a number"},
         Bad{"ptpe:a=1e999,b=0", "is not a number"}, Bad{"ptpe:a=0,b=0", "a = 0 is out of range"},
         Bad{"ptpe:a=31,b=2", "b = 2 is out of range"},
-        Bad{"ptpe:a=31,b=0,noise=-1", "character 22: noise = -1 is out of range"},
+        Bad{"ptpe:a=31,b=0,noise=-1", "character 21: noise = -1 is out of range"},
         Bad{"ptpe:a=31,b=0,", "character 15: expected key=number"}));
 
 }  // namespace

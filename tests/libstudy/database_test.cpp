@@ -1,0 +1,162 @@
+#include "libstudy/store/database.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "libstudy/store/ratings.hpp"
+#include "libstudy/store/store.hpp"
+#include "stats/base/error.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace study {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::Connection;
+using sqlite::Open;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// A database with one planned run.
+fs::path make_study(const test::TemporaryFolder& folder) {
+  Store(folder / "study.db", Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
+  return folder / "study.db";
+}
+
+/// Opening for every purpose fails with `problem` and leaves the file and its folder alone.
+void expect_refused(const fs::path& path, const std::string& problem) {
+  const std::string before = test::bytes_of(path);
+  const auto count = [&] { return std::distance(fs::directory_iterator(path.parent_path()), {}); };
+  const auto files = count();
+  for (const Open how : {Open::Create, Open::Write, Open::Read}) {
+    EXPECT_THAT([&] { open_database(path, how, read_schema_steps()); },
+                ThrowsMessage<base::Error>(
+                    ::testing::AllOf(HasSubstr(path.string()), HasSubstr(problem), HasSubstr("mend: "))));
+    EXPECT_TRUE(test::bytes_of(path) == before);
+    EXPECT_EQ(count(), files);
+  }
+}
+
+TEST(Database, NewerIsRefusedUntouched) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  Connection(path, Open::Write).execute("PRAGMA user_version = 99");
+  expect_refused(path, "newer program (schema 99");
+}
+
+TEST(Database, ForeignDatabaseIsRefused) {
+  const test::TemporaryFolder folder;
+  Connection(folder / "foreign.db", Open::Create).execute("CREATE TABLE trial (a)");
+  expect_refused(folder / "foreign.db", "is not a database of vip-study");
+}
+
+TEST(Database, OtherFilesAreRefused) {
+  const test::TemporaryFolder folder;
+  base::write_file_atomically(folder / "text.db", std::string(5000, 'x'));
+  expect_refused(folder / "text.db", "is not a database of vip-study");
+  base::write_file_atomically(folder / "short.db", "x");
+  expect_refused(folder / "short.db", "is not a database of vip-study");
+}
+
+TEST(Database, TruncatedIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string whole = test::bytes_of(make_study(folder));
+  for (const double part : {0.1, 0.5, 0.9}) {
+    const fs::path cut = folder / "cut.db";
+    base::write_file_atomically(
+        cut, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    expect_refused(cut, "damaged or cut short");
+  }
+}
+
+TEST(Database, WrongValuesAreRefused) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  {
+    Connection database(path, Open::Write);
+    database.execute("PRAGMA ignore_check_constraints = ON");
+    database.execute("UPDATE trial SET state = 'lost' WHERE position = 4");
+  }
+  expect_refused(path, "CHECK constraint failed in trial");
+}
+
+TEST(Database, MissingIsAnErrorUnlessMade) {
+  const test::TemporaryFolder folder;
+  for (const Open how : {Open::Write, Open::Read}) {
+    EXPECT_THAT([&] { open_database(folder / "none.db", how, read_schema_steps()); },
+                ThrowsMessage<base::Error>(HasSubstr("there is no such database")));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  EXPECT_THAT([&] { open_database(folder.path(), Open::Create, read_schema_steps()); },
+              ThrowsMessage<base::Error>(HasSubstr("is a folder")));
+}
+
+TEST(Database, NameWithUriSyntaxIsAName) {
+  const test::TemporaryFolder folder;
+  open_database(folder / "a?mode=memory#%41.db", Open::Create, read_schema_steps());
+  EXPECT_TRUE(fs::exists(folder / "a?mode=memory#%41.db"));
+}
+
+TEST(Database, FullAtItsCreationLeavesNoFile) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT([&] { open_database(folder / "study.db", Open::Create, read_schema_steps(), 2); },
+              ThrowsMessage<base::Error>(HasSubstr("no room left")));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Database, FullLaterKeepsWhatWasCommitted) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create, 60);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  const auto session = store.open_runs().at(0).sessions.at(0);
+  const auto id = store.begin_presentation(session.id, session.trials[0].id, 1, 0);
+  EXPECT_THAT([&] { store.add_frames(id, 0, test::frames(0, 20000)); },
+              ThrowsMessage<base::Error>(HasSubstr("no room left")));
+  EXPECT_EQ(store.open_runs().at(0).sessions.at(0).trials.size(), 21u);
+  EXPECT_EQ(read_ratings(folder / "study.db").size(), 21u);
+}
+
+TEST(Database, UpgradeKeepsACopyAndTheData) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  SchemaSteps steps = read_schema_steps();
+  const std::string version = std::to_string(steps.size());
+  steps.push_back("ALTER TABLE session ADD COLUMN station TEXT;");
+
+  EXPECT_THAT([&] { open_database(path, Open::Read, steps); },
+              ThrowsMessage<base::Error>(HasSubstr("older program")));
+  const auto upgraded = open_database(path, Open::Write, steps);
+  EXPECT_EQ(upgraded->integer("PRAGMA user_version"), static_cast<std::int64_t>(steps.size()));
+  EXPECT_EQ(upgraded->integer("SELECT count(*) FROM trial"), 21);
+  EXPECT_EQ(upgraded->integer("SELECT count(station) FROM session"), 0);
+
+  fs::path copy;
+  for (const auto& entry : fs::directory_iterator(folder.path())) {
+    if (entry.path().extension() == ".bak") copy = entry.path();
+  }
+  ASSERT_THAT(copy.string(), HasSubstr("study.db.v" + version));
+  EXPECT_EQ(read_ratings(copy).size(), 21u);
+}
+
+TEST(Database, FailedUpgradeChangesNothing) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  SchemaSteps steps = read_schema_steps();
+  const std::string before = test::bytes_of(path);
+  steps.push_back("DROP TABLE response; CREATE TABLE trial (again);");
+  EXPECT_THROW(open_database(path, Open::Write, steps), base::Error);
+  EXPECT_TRUE(test::bytes_of(path) == before);
+  EXPECT_EQ(read_ratings(path).size(), 21u);
+}
+
+TEST(Database, ReadingLeavesNothingBehind) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  const std::string before = test::bytes_of(path);
+  EXPECT_EQ(read_ratings(path).size(), 21u);
+  EXPECT_TRUE(test::bytes_of(path) == before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace study
