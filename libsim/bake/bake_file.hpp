@@ -30,6 +30,7 @@ struct BakeHeader {
 
   std::string scene_name;
   std::string scene_sha256;
+  std::string scene_text;       ///< the scene file, so that a bake can be drawn without it; at most 1 MiB
   std::string method;           ///< as method_name() gives it
   std::string backend;          ///< that computed it
   std::string program_version;  ///< that wrote it

@@ -35,6 +35,7 @@ Bytes format_bake_header(const BakeHeader& header) {
                                   &header.program_version, &header.camera}) {
     out.string(*text);
   }
+  out.string(header.scene_text);
   out.put(header.n_star);
   out.put(header.max_particles);
   out.put(header.frame_count);
@@ -54,6 +55,7 @@ BakeHeader parse_bake_header(ByteSpan bytes, const std::string& place) {
                             &header.program_version, &header.camera}) {
     *text = in.string(max_text);
   }
+  header.scene_text = in.string(bake::max_scene_bytes);
   header.n_star = in.get<std::int64_t>();
   header.max_particles = in.get<std::int64_t>();
   header.frame_count = in.get<std::int64_t>();

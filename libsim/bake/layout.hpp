@@ -15,7 +15,8 @@ inline constexpr std::array<char, 8> end_magic{'V', 'I', 'P', 'B', 'E', 'N', 'D'
 inline constexpr std::size_t prologue_bytes = 8 + 4 + 4 + 8;
 inline constexpr std::size_t footer_bytes = 8 + 8 + 8 + 8 + 8;
 inline constexpr std::size_t entry_bytes = 4 + 8 + 8 + 8;
-inline constexpr std::size_t max_header_bytes = 64 << 10;
+inline constexpr std::size_t max_scene_bytes = 1 << 20;
+inline constexpr std::size_t max_header_bytes = max_scene_bytes + (64 << 10);
 inline constexpr std::int64_t max_frames = 1 << 20;
 /// Every 30th picture builds on none before, so that a jump costs at most 30 pictures.
 inline constexpr std::int64_t key_interval = 30;

@@ -20,6 +20,7 @@ inline sim::BakeHeader header(std::int64_t frames, int width = 0, int height = 0
   sim::BakeHeader h;
   h.scene_name = "test";
   h.scene_sha256 = std::string(64, 'a');
+  h.scene_text = "name = \"test\"\n";
   h.method = "HiRes";
   h.backend = "cpu";
   h.program_version = "0";

@@ -1,0 +1,201 @@
+#include "apps/common/fluid_stimulus.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+std::string describe(const sim::BakeReader& bake, const char* what) {
+  const sim::BakeHeader& h = bake.header();
+  return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
+         ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
+}
+
+study::FrameFacts to_facts(const sim::BakeFacts& facts) {
+  study::FrameFacts out;
+  out.simulation_time_s = facts.time_s;
+  out.particles_by_level = facts.particles_by_level;
+  return out;
+}
+
+/// The largest rectangle of the picture's shape in the middle of a framebuffer.
+struct Rectangle {
+  int x0, y0, x1, y1;
+};
+Rectangle fit(int width, int height, int into_width, int into_height) {
+  const double scale = std::min(double(into_width) / width, double(into_height) / height);
+  const int w = static_cast<int>(std::lround(width * scale));
+  const int h = static_cast<int>(std::lround(height * scale));
+  const int x = (into_width - w) / 2, y = (into_height - h) / 2;
+  return {x, y, x + w, y + h};
+}
+
+void draw_particles(std::unique_ptr<sim::FluidRenderer>& renderer, const sim::Scene& scene,
+                    const sim::RenderOptions& options, const sim::ParticleBuffer& particles,
+                    unsigned framebuffer, int width_px, int height_px) {
+  if (!renderer) renderer = std::make_unique<sim::FluidRenderer>(scene, options);
+  const sim::View view = sim::make_view(scene.view, width_px, height_px);
+  renderer->draw(particles, {&view, 1}, framebuffer);
+}
+
+}  // namespace
+
+Levels count_levels(const std::vector<sim::RenderParticle>& particles) {
+  std::map<float, std::int64_t> counts;
+  float last = -1;
+  std::int64_t* count = nullptr;
+  for (const sim::RenderParticle& particle : particles) {
+    if (particle.radius_m != last || !count) count = &counts[last = particle.radius_m];
+    ++*count;
+  }
+  Levels levels;
+  for (const auto& [radius, number] : counts) {
+    levels.radius_m.push_back(radius);
+    levels.count.push_back(number);
+  }
+  return levels;
+}
+
+BakedPictures::BakedPictures(std::unique_ptr<sim::BakeReader> bake) : bake_(std::move(bake)), ring_(*bake_) {}
+
+BakedPictures::~BakedPictures() {
+  if (!texture_) return;
+  glDeleteFramebuffers(1, &source_);
+  glDeleteTextures(1, &texture_);
+}
+
+std::string BakedPictures::description() const {
+  const sim::BakeHeader& h = bake_->header();
+  return describe(*bake_, "pictures") + ", " + std::to_string(h.picture_width_px) + "x" +
+         std::to_string(h.picture_height_px) + " from " + h.camera;
+}
+
+void BakedPictures::start(std::int64_t start_step) {
+  picture_ = nullptr;
+  ring_.start(start_step);
+}
+
+study::FrameFacts BakedPictures::prepare(std::int64_t step) {
+  picture_ = nullptr;
+  picture_ = &ring_.take(step);
+  return to_facts(picture_->facts);
+}
+
+void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
+  if (!picture_) throw std::logic_error("BakedPictures: draw before prepare");
+  const int width = bake_->header().picture_width_px, height = bake_->header().picture_height_px;
+  if (!texture_) {
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
+    glTextureStorage2D(texture_, 1, GL_RGBA8, width, height);
+    glCreateFramebuffers(1, &source_);
+    glNamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, texture_, 0);
+  }
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, picture_->rgba.data());
+  const Rectangle to = fit(width, height, width_px, height_px);
+  if (to.x0 > 0 || to.y0 > 0) {
+    const float black[4] = {0, 0, 0, 1};
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, black);
+  }
+  const bool same = to.x1 - to.x0 == width && to.y1 - to.y0 == height;
+  glBlitNamedFramebuffer(source_, framebuffer, 0, 0, width, height, to.x0, to.y0, to.x1, to.y1,
+                         GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+}
+
+BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, const sim::RenderOptions& options)
+    : bake_(std::move(bake)),
+      scene_(sim::parse_scene(bake_->header().scene_text, bake_->header().scene_name)),
+      options_(options) {}
+
+std::string BakedParticles::description() const { return describe(*bake_, "particles"); }
+
+study::FrameFacts BakedParticles::prepare(std::int64_t step) {
+  bake_->read_frame(step, frame_);
+  return to_facts(frame_.facts);
+}
+
+void BakedParticles::draw(unsigned framebuffer, int width_px, int height_px) {
+  particles_.upload(frame_.particles);
+  draw_particles(renderer_, scene_, options_, particles_, framebuffer, width_px, height_px);
+}
+
+LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
+                     const sim::RenderOptions& options)
+    : scene_(scene),
+      frame_dt_s_(frame_dt_s),
+      description_(std::move(description)),
+      make_(std::move(make)),
+      options_(options) {}
+
+void LiveFluid::start(std::int64_t start_step) {
+  if (!simulation_ || step_ != 0) simulation_ = make_();
+  for (step_ = 0; step_ < start_step; ++step_) simulation_->step_frame();
+}
+
+study::FrameFacts LiveFluid::prepare(std::int64_t step) {
+  if (!simulation_ || step < step_) start(step);
+  for (; step_ < step; ++step_) simulation_->step_frame();
+  simulation_->read_particles(copy_);
+  return facts();
+}
+
+study::FrameFacts LiveFluid::facts() const {
+  study::FrameFacts out;
+  out.simulation_time_s = static_cast<double>(step_) * frame_dt_s_;
+  out.particles_by_level = count_levels(copy_).count;
+  return out;
+}
+
+void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {
+  particles_.upload(copy_);
+  draw_particles(renderer_, scene_, options_, particles_, framebuffer, width_px, height_px);
+}
+
+namespace {
+
+std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
+  auto bake = std::make_unique<sim::BakeReader>(choice.bake);
+  const double dt = bake->header().frame_dt_s;
+  if (choice.content_step_s > 0 && std::abs(choice.content_step_s - dt) > 1e-4 * dt) {
+    char text[120];
+    std::snprintf(text, sizeof text, "holds frames %.6g s apart, but the content step is %.6g s", dt,
+                  choice.content_step_s);
+    throw base::Error(choice.bake.string(), text,
+                      "bake with the protocol's content step, or change it there");
+  }
+  if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
+  return std::make_unique<BakedParticles>(std::move(bake));
+}
+
+std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
+  const sim::Scene scene = sim::read_scene(choice.scene);
+  sim::SimulationOptions options;
+  options.method = sim::parse_method(choice.method);
+  options.n_star = sim::parse_n_star(choice.n_star);
+  options.backend = sim::choose_backend(choice.backend);
+  options.seed = choice.seed;
+  options.frame_dt_s = choice.content_step_s;
+  const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
+  return std::make_unique<LiveFluid>(scene, dt,
+                                     "live " + scene.name + ", " + sim::method_name(options.method) +
+                                         ", n_* " + std::to_string(options.n_star) + ", on " +
+                                         sim::backend_name(options.backend) + ", scene " + scene.sha256,
+                                     [scene, options] { return sim::make_simulation(scene, options); });
+}
+
+}  // namespace
+
+std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {
+  return choice.bake.empty() ? live(choice) : from_bake(choice);
+}
+
+}  // namespace apps

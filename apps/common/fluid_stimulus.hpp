@@ -1,0 +1,116 @@
+#pragma once
+/// The fluid as a study shows it: baked pictures, baked particles or a running simulation behind
+/// study::Stimulus.
+///
+/// All draw in the GL context that is current at the first draw() and hold GL objects of it afterwards:
+/// destroy them before the display. A content step is one frame of the scene.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "libsim/bake/picture_ring.hpp"
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/simulation.hpp"
+#include "libstudy/display/stimulus.hpp"
+
+namespace apps {
+
+/// The pictures of a bake, decoded ahead. draw() uploads one and copies it; a framebuffer of another size
+/// gets it scaled, whole, between black bars.
+class BakedPictures final : public study::Stimulus {
+ public:
+  explicit BakedPictures(std::unique_ptr<sim::BakeReader> bake);
+  ~BakedPictures() override;
+
+  std::string description() const override;
+  std::int64_t length() const override { return bake_->header().frame_count; }
+  /// Returns when the ring of decoded pictures is full.
+  void start(std::int64_t start_step) override;
+  study::FrameFacts prepare(std::int64_t step) override;
+  void draw(unsigned framebuffer, int width_px, int height_px) override;
+  /// How often a picture was not decoded in time since start().
+  std::int64_t waits() const { return ring_.waits(); }
+
+ private:
+  std::unique_ptr<sim::BakeReader> bake_;
+  sim::PictureRing ring_;
+  const sim::BakePicture* picture_ = nullptr;
+  unsigned texture_ = 0, source_ = 0;  ///< the picture, and a framebuffer to copy it from
+};
+
+/// The particle frames of a bake, drawn by the renderer.
+class BakedParticles final : public study::Stimulus {
+ public:
+  explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, const sim::RenderOptions& options = {});
+
+  std::string description() const override;
+  std::int64_t length() const override { return bake_->header().frame_count; }
+  void start(std::int64_t start_step) override { prepare(start_step); }
+  study::FrameFacts prepare(std::int64_t step) override;
+  void draw(unsigned framebuffer, int width_px, int height_px) override;
+
+ private:
+  std::unique_ptr<sim::BakeReader> bake_;
+  sim::Scene scene_;
+  sim::RenderOptions options_;
+  sim::BakeFrame frame_;
+  std::unique_ptr<sim::FluidRenderer> renderer_;
+  sim::ParticleBuffer particles_;
+};
+
+/// A simulation that advances one frame a content step.
+class LiveFluid final : public study::Stimulus {
+ public:
+  /// Makes the simulation at frame 0; called again for each rewind.
+  using MakeSimulation = std::function<std::unique_ptr<sim::Simulation>()>;
+
+  LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
+            const sim::RenderOptions& options = {});
+
+  std::string description() const override { return description_; }
+  std::int64_t length() const override { return 0; }
+  void start(std::int64_t start_step) override;
+  /// A step before the present one begins anew.
+  study::FrameFacts prepare(std::int64_t step) override;
+  void draw(unsigned framebuffer, int width_px, int height_px) override;
+
+ private:
+  study::FrameFacts facts() const;
+
+  sim::Scene scene_;
+  double frame_dt_s_;
+  std::string description_;
+  MakeSimulation make_;
+  sim::RenderOptions options_;
+  std::unique_ptr<sim::Simulation> simulation_;
+  std::int64_t step_ = 0;
+  std::vector<sim::RenderParticle> copy_;
+  std::unique_ptr<sim::FluidRenderer> renderer_;
+  sim::ParticleBuffer particles_;
+};
+
+/// What `vip-study run` shows: a bake when one is named, otherwise a live simulation.
+struct StimulusChoice {
+  std::filesystem::path bake;
+  std::filesystem::path scene;
+  std::string method = "HiRes";
+  std::string n_star = "32k";
+  std::string backend = "auto";
+  std::uint64_t seed = 1;
+  double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
+};
+
+/// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
+/// time apart than content_step_s.
+std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
+
+/// How many particles there are of each radius, finest first.
+struct Levels {
+  std::vector<float> radius_m;
+  std::vector<std::int64_t> count;
+};
+Levels count_levels(const std::vector<sim::RenderParticle>& particles);
+
+}  // namespace apps

@@ -1,0 +1,33 @@
+#include "apps/common/headless_display.hpp"
+
+#include <epoxy/gl.h>
+
+#include "libstudy/pacing/clock.hpp"
+
+namespace apps {
+
+HeadlessDisplay::HeadlessDisplay(int width_px, int height_px)
+    : context_(sim::GlContext::make_headless()),
+      buffers_{sim::Offscreen(width_px, height_px), sim::Offscreen(width_px, height_px)} {}
+
+std::string HeadlessDisplay::description() const {
+  return "headless " + std::to_string(width_px()) + "x" + std::to_string(height_px()) + ", " +
+         sim::gl_description();
+}
+
+void HeadlessDisplay::render(study::Stimulus& stimulus) {
+  const sim::Offscreen& back = buffers_[1 - front_];
+  stimulus.draw(back.framebuffer(), back.width(), back.height());
+  glFinish();
+}
+
+study::PresentTimes HeadlessDisplay::present(const study::Clock& clock) {
+  study::PresentTimes times;
+  times.submitted_ns = clock.now_ns();
+  front_ = 1 - front_;
+  glFinish();
+  times.gpu_done_ns = clock.now_ns();
+  return times;
+}
+
+}  // namespace apps
