@@ -15,7 +15,9 @@ namespace study {
 
 enum class AtEnd { Loop, Hold };
 
-/// How content elapses. per_frame: one content step a frame (the paper's reading); real_time: by the clock.
+/// How content elapses. per_frame: frame i shows step start_frame + i (the paper's reading). real_time: frame
+/// i shows the step that the scheduled time since the first frame has come to. A process of finite length
+/// goes back to start_frame (Loop) or stays at its last step (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;
@@ -33,13 +35,18 @@ struct FrameRecord {
   FrameFacts facts;
 };
 
-/// Shows one trial: absolute deadlines, a late frame is shown at once, no content step is skipped.
-/// `each` is called after every frame (for the journal); the returned records are all frames, plus the
-/// closing instant as `end_ns`, so that N intervals follow from N frames.
+/// All frames of a trial, plus the closing instant, so that N intervals follow from N frames.
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
 };
+
+/// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
+/// Deadlines are absolute: they are counted from the first frame, and a late frame, which is shown at once,
+/// moves none of them. No frame and no content step is skipped. The last frame stays on until the end of its
+/// interval, or for its whole interval when it came after that end. late_after_ns: bound on submitted -
+/// scheduled. `each` (may be empty) is called after every frame, for the journal. base::Error when there is
+/// no interval, one is not positive, or the content ends before start_frame.
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
                        Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
                        const std::function<void(const FrameRecord&)>& each);
@@ -52,6 +59,7 @@ struct TimingTolerance {
   double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd bounds counts
   double fail_mean_relative = 0.05;  ///< beyond this the trial has failed, not only degraded
   double fail_sd_relative = 0.20;
+  double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two counts here too
 };
 
 enum class Verdict { Pass, Degraded, Fail };
@@ -68,7 +76,18 @@ struct TimingVerdict {
   double worst_late_ms = 0;
   std::string reason;  ///< why it is not a pass
 };
+
+/// Intervals in seconds between the onsets of successive frames, the last one up to end_ns: actual display
+/// times when the grade is A or B and every frame has one, submission times otherwise.
+std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
+
+/// pass: no frame late and both realised moments within tolerance. fail: a moment beyond the fail_ bounds.
+/// degraded: everything between. The mean is the one the rules name. Needs at least one frame; onsets that do
+/// not ascend are a fail with that reason.
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade);
+
+/// "pass", "degraded" or "fail".
+std::string verdict_name(Verdict verdict);
 
 }  // namespace study

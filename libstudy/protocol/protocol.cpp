@@ -144,10 +144,13 @@ TimingTolerance read_timing(const base::TomlTable& table) {
   timing.fail_mean_relative =
       table.number_or("fail_mean_relative", timing.fail_mean_relative, tolerance_range);
   timing.fail_sd_relative = table.number_or("fail_sd_relative", timing.fail_sd_relative, tolerance_range);
+  timing.fail_sd_absolute = table.number_or("fail_sd_absolute_fps", timing.fail_sd_absolute, {0, 1000});
   if (timing.fail_mean_relative < timing.mean_relative)
     table.fail("fail_mean_relative", "is tighter than mean_relative", "make it at least as wide");
   if (timing.fail_sd_relative < timing.sd_relative)
     table.fail("fail_sd_relative", "is tighter than sd_relative", "make it at least as wide");
+  if (timing.fail_sd_absolute < timing.sd_absolute)
+    table.fail("fail_sd_absolute_fps", "is tighter than sd_absolute_fps", "make it at least as wide");
   return timing;
 }
 

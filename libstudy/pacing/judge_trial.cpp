@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "libstudy/pacing/frame_order.hpp"
+#include "libstudy/pacing/pacer.hpp"
+#include "stats/base/error.hpp"
+#include "stats/quantiles.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr double ms = 1e-6;  // nanoseconds to milliseconds
+
+bool has_display_times(const PlayedTrial& played, TimingGrade grade) {
+  return (grade == TimingGrade::Photodiode || grade == TimingGrade::DisplayFeedback) &&
+         std::all_of(played.frames.begin(), played.frames.end(),
+                     [](const FrameRecord& frame) { return frame.times.actual_display_ns >= 0; });
+}
+
+std::string format(const char* pattern, double a, double b) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+/// Collects reasons and keeps the worst verdict.
+class Judgement {
+ public:
+  void add(Verdict verdict, const std::string& reason) {
+    verdict_ = std::max(verdict_, verdict);
+    reason_ += (reason_.empty() ? "" : "; ") + reason;
+  }
+  Verdict verdict() const { return verdict_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  Verdict verdict_ = Verdict::Pass;
+  std::string reason_;
+};
+
+void judge_moments(Judgement& judgement, const TimingVerdict& trial, double mean,
+                   const TimingTolerance& tolerance) {
+  const double mean_error = std::abs(mean / trial.nominal.mean - 1);
+  if (mean_error > tolerance.mean_relative) {
+    judgement.add(mean_error > tolerance.fail_mean_relative ? Verdict::Fail : Verdict::Degraded,
+                  format("mean %.4g frames/s is off by %.2g %%", mean, 100 * mean_error));
+  }
+  const double sd = trial.nominal.sd;
+  const double sd_error = std::abs(trial.realised.sd - sd);
+  if (sd_error > std::max(tolerance.sd_relative * sd, tolerance.sd_absolute)) {
+    const bool fail = sd_error > std::max(tolerance.fail_sd_relative * sd, tolerance.fail_sd_absolute);
+    judgement.add(fail ? Verdict::Fail : Verdict::Degraded,
+                  format("sd %.4g frames/s is off by %.2g", trial.realised.sd, sd_error));
+  }
+}
+
+void judge_lateness(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& played,
+                    const TimingTolerance& tolerance) {
+  for (const auto& frame : played.frames) {
+    const double late_ms = ms * static_cast<double>(frame.times.submitted_ns - frame.scheduled_ns);
+    trial.worst_late_ms = std::max(trial.worst_late_ms, late_ms);
+    trial.late += late_ms > tolerance.late_after_ms;
+  }
+  if (trial.late > 0) {
+    judgement.add(
+        Verdict::Degraded,
+        std::to_string(trial.late) + " late frame" + (trial.late > 1 ? "s" : "") +
+            format(", the worst by %.3g ms (bound %.3g ms)", trial.worst_late_ms, tolerance.late_after_ms));
+  }
+}
+
+void describe_intervals(TimingVerdict& trial, const std::vector<double>& intervals_s) {
+  std::vector<double> sorted = intervals_s;
+  std::sort(sorted.begin(), sorted.end());
+  trial.shortest_ms = 1000 * sorted.front();
+  trial.longest_ms = 1000 * sorted.back();
+  trial.p95_ms = 1000 * stats::sorted_quantile(sorted, 0.95);
+  std::vector<double> rates;
+  for (const double dt : intervals_s) rates.push_back(1 / dt);
+  trial.lag1 = lag1(rates);
+}
+
+}  // namespace
+
+std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade) {
+  const bool shown = has_display_times(played, grade);
+  const auto onset = [&](const FrameRecord& frame) {
+    return shown ? frame.times.actual_display_ns : frame.times.submitted_ns;
+  };
+  std::vector<double> intervals_s;
+  for (std::size_t i = 0; i < played.frames.size(); ++i) {
+    const std::int64_t until = i + 1 < played.frames.size() ? onset(played.frames[i + 1]) : played.end_ns;
+    intervals_s.push_back(1e-9 * static_cast<double>(until - onset(played.frames[i])));
+  }
+  return intervals_s;
+}
+
+TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
+                          const TimingTolerance& tolerance, TimingGrade grade) {
+  if (played.frames.empty())
+    throw base::Error("trial " + setting_name(nominal), "has no frames to judge", "play it first");
+  TimingVerdict trial;
+  trial.grade = grade;
+  trial.nominal = nominal;
+  Judgement judgement;
+  judge_lateness(judgement, trial, played, tolerance);
+  const auto intervals_s = realised_intervals(played, grade);
+  if (*std::min_element(intervals_s.begin(), intervals_s.end()) > 0) {
+    trial.realised = stats::fps_moments(intervals_s);
+    describe_intervals(trial, intervals_s);
+    const double mean =
+        rules.mean == FpsMean::Harmonic ? trial.realised.mean : trial.realised.mean_arithmetic;
+    judge_moments(judgement, trial, mean, tolerance);
+  } else {
+    judgement.add(Verdict::Fail, "the onsets do not ascend");
+  }
+  trial.verdict = judgement.verdict();
+  trial.reason = judgement.reason();
+  return trial;
+}
+
+std::string verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Pass:
+      return "pass";
+    case Verdict::Degraded:
+      return "degraded";
+    case Verdict::Fail:
+      break;
+  }
+  return "fail";
+}
+
+}  // namespace study

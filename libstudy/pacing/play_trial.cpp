@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libstudy/pacing/pacer.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+// From the first frame's rendering to its deadline: long enough that it is waited for like any other.
+constexpr std::int64_t lead_ns = 2'000'000;
+
+/// Which content step a frame shows.
+class ContentCourse {
+ public:
+  ContentCourse(const ContentRules& rules, Stimulus& stimulus) : rules_(rules), stimulus_(stimulus) {
+    length_ = stimulus.length();
+    if (length_ > 0 && rules.start_frame >= length_) {
+      throw base::Error(stimulus.description(),
+                        "ends after " + std::to_string(length_) +
+                            " content steps, before start_frame = " + std::to_string(rules.start_frame),
+                        "lower start_frame in the protocol or bake more frames");
+    }
+    rewind();
+  }
+
+  /// Makes the step of frame `index`, scheduled `onset_ns` after the first, ready to draw.
+  FrameFacts prepare(std::int64_t index, std::int64_t onset_ns) {
+    const std::int64_t next = step_at(index, onset_ns);
+    if (next < step_) rewind();
+    step_ = next;
+    return stimulus_.prepare(step_);
+  }
+
+  std::int64_t step() const { return step_; }
+
+ private:
+  std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) const {
+    // A millionth of a step forgives rounding where an onset falls on a step's edge.
+    const double elapsed = 1e-9 * static_cast<double>(onset_ns) / rules_.content_step_s;
+    const std::int64_t gone = rules_.real_time ? static_cast<std::int64_t>(elapsed + 1e-6) : index;
+    if (length_ == 0) return rules_.start_frame + gone;
+    const std::int64_t span = length_ - rules_.start_frame;
+    return rules_.start_frame + (rules_.at_end == AtEnd::Loop ? gone % span : std::min(gone, span - 1));
+  }
+
+  void rewind() {
+    stimulus_.start(rules_.start_frame);
+    step_ = rules_.start_frame;
+  }
+
+  const ContentRules& rules_;
+  Stimulus& stimulus_;
+  std::int64_t length_ = 0;
+  std::int64_t step_ = 0;
+};
+
+void check_intervals(const std::vector<std::int64_t>& intervals_ns) {
+  const bool good = !intervals_ns.empty() && std::all_of(intervals_ns.begin(), intervals_ns.end(),
+                                                         [](std::int64_t ns) { return ns > 0; });
+  if (!good) {
+    throw base::Error("schedule", "is empty or holds an interval that is not positive",
+                      "compile it again from the protocol");
+  }
+}
+
+}  // namespace
+
+PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
+                       Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
+                       const std::function<void(const FrameRecord&)>& each) {
+  check_intervals(intervals_ns);
+  ContentCourse course(content, stimulus);
+  PlayedTrial played;
+  played.frames.reserve(intervals_ns.size());
+  std::int64_t first_ns = 0;
+  std::int64_t onset_ns = 0;
+  for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
+    FrameRecord record;
+    record.index = static_cast<std::int64_t>(i);
+    record.facts = course.prepare(record.index, onset_ns);
+    record.content_step = course.step();
+    display.render(stimulus);
+    if (i == 0) first_ns = clock.now_ns() + lead_ns;
+    record.scheduled_ns = first_ns + onset_ns;
+    clock.wait_until(record.scheduled_ns);
+    record.times = display.present(clock);
+    record.late = record.times.submitted_ns - record.scheduled_ns > late_after_ns;
+    played.frames.push_back(record);
+    if (each) each(record);
+    onset_ns += intervals_ns[i];
+  }
+  const std::int64_t last_ns = played.frames.back().times.submitted_ns;
+  const std::int64_t planned_end_ns = first_ns + onset_ns;
+  clock.wait_until(last_ns < planned_end_ns ? planned_end_ns : last_ns + intervals_ns.back());
+  played.end_ns = clock.now_ns();
+  return played;
+}
+
+}  // namespace study

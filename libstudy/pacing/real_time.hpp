@@ -1,0 +1,28 @@
+#pragma once
+/// Asks the operating system to wake the pacing thread on time.
+
+#include <string>
+
+namespace study {
+
+/// While it lives, the calling thread has a timer slack of 1 ns and, where the system allows it, SCHED_FIFO
+/// with the lowest real-time priority (RLIMIT_RTPRIO or CAP_SYS_NICE), else a raised nice level. Threads it
+/// starts meanwhile do not inherit SCHED_FIFO. Nothing is an error: note() says what was granted, for the
+/// session's record. Memory is not locked: a mapped bake would be pinned with it.
+class RealTimeScheduling {
+ public:
+  RealTimeScheduling();
+  ~RealTimeScheduling();
+  RealTimeScheduling(const RealTimeScheduling&) = delete;
+  RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
+  const std::string& note() const { return note_; }
+
+ private:
+  std::string note_;
+  int old_slack_ns_;
+  int old_policy_ = -1;  // -1: unchanged
+  bool niced_ = false;
+  int old_nice_ = 0;
+};
+
+}  // namespace study
