@@ -6,7 +6,7 @@ layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
 layout(location = 0) out vec4 colour;
 
-const vec3 in_scatter = vec3(0.010, 0.105, 0.135);  // light that deep water sends back
+const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light that deep water sends back
 const float thin_m = 0.03;                          // films thinner than this fade out at their rim
 
 float water_length(vec2 xy) {
@@ -28,7 +28,7 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m,
   const vec3 out_direction = normalize(mix(d, inside, clamp(length_m / max(room, 1e-3), 0.0, 1.0)));
   const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way);
   const vec3 kept = exp(-absorption.rgb * way);
-  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.30 * way)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
+  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * way)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
   const vec3 mirrored = reflect(d, n);
   vec3 reflection = seen_from_inside(position, mirrored, footprint_per_m, distance_m);
   reflection += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));

@@ -1,4 +1,5 @@
-// One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle.
+// One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle. A wide
+// filter takes strided samples; a second, dense round smooths what they step over.
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
@@ -7,6 +8,7 @@ layout(std430, binding = 1) readonly buffer Source { float source[]; };
 layout(std430, binding = 2) readonly buffer Front { uint front[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 uniform ivec2 direction;
+uniform int dense;
 #include "narrow_range.glsl"
 
 void main() {
@@ -19,19 +21,24 @@ void main() {
     return;
   }
   if (front[at] == 0xffffffffu) {
-    if (direction.x == 1) atomicAdd(front_missing, 1u);
+    if (direction.x == 1 && dense == 0) atomicAdd(front_missing, 1u);
     target[at] = centre;
     return;
   }
   const float radius = particles[front[at]].w;
-  const float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
+  float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
   float reach = 3.0 * sigma;
   if (reach > narrow_range.w) {
-    atomicAdd(filter_capped, 1u);
+    if (dense == 0) atomicAdd(filter_capped, 1u);
     reach = narrow_range.w;
   }
-  const int taps = int(min(ceil(reach), thickness_rule.w));
-  const float stride = max(reach / float(max(taps, 1)), 1.0);
+  int taps = int(min(ceil(reach), thickness_rule.w));
+  float stride = max(reach / float(max(taps, 1)), 1.0);
+  if (dense == 1) {
+    sigma = 0.75 * (stride - 1.0);
+    taps = int(ceil(2.0 * sigma));
+    stride = 1.0;
+  }
   const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);  // exp2(falloff x^2) = exp(-x^2 / (2 sigma^2))
   // Samples beyond the picture are left out together with their mirror images.
   const int room = direction.x == 1 ? min(pixel.x, size.x - 1 - pixel.x) : min(pixel.y, size.y - 1 - pixel.y);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "libsim/render/gl_context.hpp"
 #include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
 #include "libsim/render/view_targets.hpp"
@@ -43,8 +44,8 @@ void check_options(const RenderOptions& o) {
   check(o.thickness_step == 1 || o.thickness_step == 2, "thickness_step must be 1 or 2", "use 2");
   check(positive(o.thickness_unit_m) && positive(o.packing), "thickness unit and packing must be positive",
         "use 1/65536 m and pi/6");
-  check(o.thread_px >= 1 && o.group_px >= o.thread_px, "footprint limits must be 1 <= thread_px <= group_px",
-        "use about 16 and 128");
+  check(o.thread_px >= 0 && o.group_px >= std::max(o.thread_px, 1),
+        "footprint limits must be 0 <= thread_px <= group_px", "use 0 and 128");
 }
 
 std::array<float, 4> pack(const PixelRays& rays) {
@@ -115,6 +116,8 @@ struct FluidRenderer::State {
         tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
              static_cast<float>(scene.tank_size_m[2]), 0},
         timer(chosen.time_passes) {
+    // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
+    if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
     counters.reserve(sizeof(RenderCounts));
     counters.fill(0);
     no_particles.reserve(16);
@@ -202,14 +205,16 @@ void FluidRenderer::State::find_front(std::int64_t count) {
 }
 
 void FluidRenderer::State::smooth_depth(ViewTargets& t, unsigned particles) {
-  const auto direction = filter_depth.uniform("direction");
   filter_depth.use();
-  bind({particles, t.depth.name(), t.front.name(), t.filter_a.name(), counters.name()});
-  glUniform2i(direction, 1, 0);
-  dispatch_pixels(t.width, t.height);
-  bind({particles, t.filter_a.name(), t.front.name(), t.filter_b.name(), counters.name()});
-  glUniform2i(direction, 0, 1);
-  dispatch_pixels(t.width, t.height);
+  const GlBuffer* source = &t.depth;
+  for (int round = 0; round < 4; ++round) {
+    GlBuffer* target = round % 2 == 0 ? &t.filter_a : &t.filter_b;
+    bind({particles, source->name(), t.front.name(), target->name(), counters.name()});
+    glUniform1i(filter_depth.uniform("dense"), round / 2);
+    glUniform2i(filter_depth.uniform("direction"), round % 2 == 0, round % 2 == 1);
+    dispatch_pixels(t.width, t.height);
+    source = target;
+  }
   timer.mark("filter");
   clean_depth.use();
   bind({particles, t.filter_b.name(), t.front.name(), t.filter_a.name()});

@@ -22,7 +22,9 @@ struct RenderOptions {
   /// Splatted radius / particle radius. Touching spheres (1) let the next layer shine through between them.
   float radius_scale = 1.5F;
   float filter_sigma_r = 1.5F;  ///< standard deviation of the depth filter in the world (Truong and Yuksel)
-  float filter_delta_r = 10;    ///< half-width of the narrow range
+  /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five layers
+  /// of water and smears droplets over what lies behind them, so the default is two layers.
+  float filter_delta_r = 4;
   float filter_mu_r = 1;        ///< what is far behind counts as this far behind
   /// The filter reaches 3 sigma, but at most this many px; pixels where it had to stop short are counted.
   int filter_max_px = 256;
@@ -36,9 +38,11 @@ struct RenderOptions {
   /// of the way through water.
   float packing = 0.5235988F;
   /// Beer-Lambert absorption of red, green and blue, 1/m.
-  std::array<float, 3> absorption_per_m{0.32F, 0.085F, 0.055F};
-  int thread_px = 16;  ///< footprints up to this many px a side are splatted by one invocation
-  int group_px = 128;  ///< larger ones up to this by one work group; beyond it they are split among many
+  std::array<float, 3> absorption_per_m{0.45F, 0.14F, 0.10F};
+  /// Footprints up to this many px a side are splatted by one invocation; 0: 16 on a GPU, 64 on software GL.
+  int thread_px = 0;
+  /// Larger ones up to this by one work group of 8 x 8; beyond it they are split among many.
+  int group_px = 128;
   bool time_passes = false;  ///< see FluidRenderer::times(); costs waits on software GL
 };
 
