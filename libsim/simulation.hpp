@@ -2,7 +2,9 @@
 /// The fluid as programs see it: one scene, one method, one back end.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +27,14 @@ struct RenderParticle {
   float radius_m = 0;
 };
 
+/// One particle in full, for tests, checkpoints and comparisons.
+struct ParticleState {
+  int id = 0;
+  int level = 0;
+  float x_m = 0, y_m = 0, z_m = 0;
+  float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
+};
+
 struct SimulationOptions {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 32 * 1024;
@@ -32,7 +42,14 @@ struct SimulationOptions {
   int iterations = 0;     ///< constraint projections a substep; 0 = the scene's
   int substeps = 0;       ///< a frame; 0 = by the scene's rule
   double frame_dt_s = 0;  ///< 0 = the scene's
-  std::uint64_t seed = 1;
+  /// Start from these particles (all of the method's level) and skip filling and settling.
+  std::optional<std::vector<ParticleState>> start;
+  /// Called after each settling frame with (done, total).
+  std::function<void(int, int)> settling;
+  // Numbers of the solver; a negative value keeps the measured default (libsim/stages/fluid_state.hpp).
+  double relaxation = -1;
+  double tensile = -1;
+  double viscosity = -1;
 };
 
 /// What the guards met since the simulation was made. Nothing is hidden: each count says how often a rule
@@ -71,6 +88,15 @@ class Simulation {
   virtual double spacing_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
+  /// Everything about every particle, ordered by id.
+  virtual std::vector<ParticleState> read_state() const = 0;
+  /// Copies positions and radii into a GL buffer of this thread's context without a way through the host. False when this back
+  /// end cannot (the CPU, or a context on another device): read_particles and upload instead.
+  virtual bool copy_to_gl(unsigned buffer) = 0;
+  /// Waits for all launched work.
+  virtual void synchronize() = 0;
+  /// Bytes of memory that particles hold.
+  virtual std::size_t particle_bytes() const = 0;
   /// The schedule in words: each pass with why it is there, each known stage with why it is not.
   virtual std::string explain() const = 0;
 };

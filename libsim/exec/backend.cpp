@@ -1,10 +1,51 @@
-#include <cctype>
+#include <algorithm>
 
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {
 
+// Each back end is a namespace of its own, compiled from one text (libsim/exec/space.hpp).
+namespace cpu {
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
+}
+#ifdef SIM_HAS_CUDA
+namespace cuda {
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
+/// Empty when a device answers, otherwise why none does.
+std::string device_problem();
+}  // namespace cuda
+#endif
+
+namespace {
+std::string cuda_problem() {
+#ifdef SIM_HAS_CUDA
+  return cuda::device_problem();
+#else
+  return "this program was built without CUDA";
+#endif
+}
+}  // namespace
+
+Backend choose_backend(std::string_view name) {
+  if (name == "cpu") return Backend::Cpu;
+  if (name != "cuda" && name != "auto") {
+    throw base::Error("--backend " + std::string(name), "is not known", "use cpu, cuda or auto");
+  }
+  const std::string problem = cuda_problem();
+  if (problem.empty()) return Backend::Cuda;
+  if (name == "auto") return Backend::Cpu;
+  throw base::Error("--backend cuda", problem, "use --backend cpu or auto, or a machine with an NVIDIA driver");
+}
+
 std::string backend_name(Backend backend) { return backend == Backend::Cpu ? "cpu" : "cuda"; }
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
+#ifdef SIM_HAS_CUDA
+  if (options.backend == Backend::Cuda) return cuda::make_simulation(scene, options);
+#endif
+  if (options.backend == Backend::Cuda) choose_backend("cuda");
+  return cpu::make_simulation(scene, options);
+}
 
 }  // namespace sim

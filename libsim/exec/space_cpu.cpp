@@ -1,0 +1,127 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "libsim/exec/gl_sharing.hpp"
+#include "libsim/exec/space.hpp"
+
+namespace sim::SIM_BACKEND {
+
+void* allocate(std::size_t bytes) {
+  constexpr std::size_t line = 64;
+  void* pointer = std::aligned_alloc(line, (bytes + line) / line * line);
+  if (!pointer) throw std::bad_alloc();
+  return pointer;
+}
+void release(void* pointer) noexcept { std::free(pointer); }
+void copy_to_host(void* host, const void* device, std::size_t bytes) {
+  if (bytes) std::memcpy(host, device, bytes);
+}
+void copy_from_host(void* device, const void* host, std::size_t bytes) {
+  if (bytes) std::memcpy(device, host, bytes);
+}
+void copy_within(void* to, const void* from, std::size_t bytes) {
+  if (bytes) std::memcpy(to, from, bytes);
+}
+void fill_zero(void* device, std::size_t bytes) {
+  if (bytes) std::memset(device, 0, bytes);
+}
+void synchronize() {}
+
+namespace {
+
+// Least-significant-digit radix sort over fixed chunks: stable, hence equal for any number of threads. Digits that all keys
+// share are skipped, which leaves about one pass for each axis of a room-sized grid.
+constexpr int digit_bits = 11;
+constexpr int buckets = 1 << digit_bits;
+constexpr int chunks = 8;
+using Histogram = std::array<std::array<int, buckets>, chunks>;
+
+int chunk_begin(int chunk, int n) { return static_cast<int>(static_cast<std::int64_t>(n) * chunk / chunks); }
+
+void count_digits(const std::uint64_t* keys, int n, int shift, Histogram& counts) {
+#pragma omp parallel for schedule(static, 1)
+  for (int c = 0; c < chunks; ++c) {
+    auto& row = counts[static_cast<std::size_t>(c)];
+    row.fill(0);
+    for (int i = chunk_begin(c, n); i < chunk_begin(c + 1, n); ++i) ++row[(keys[i] >> shift) & (buckets - 1)];
+  }
+}
+
+/// Turns counts into first places; true when one bucket holds everything.
+bool place_digits(Histogram& counts, int n) {
+  int sum = 0;
+  for (int b = 0; b < buckets; ++b) {
+    const int before = sum;
+    for (auto& row : counts) {
+      const int count = row[static_cast<std::size_t>(b)];
+      row[static_cast<std::size_t>(b)] = sum;
+      sum += count;
+    }
+    if (sum - before == n) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
+  const int n = static_cast<int>(keys.size());
+  keys_.resize(keys.size());
+  order_.resize(keys.size());
+  auto counts = std::make_unique<Histogram>();
+  for (int shift = 0; shift < 64; shift += digit_bits) {
+    count_digits(keys.data(), n, shift, *counts);
+    if (place_digits(*counts, n)) continue;
+    const std::uint64_t* key_in = keys.data();
+    const int* order_in = order.data();
+    std::uint64_t* key_out = keys_.data();
+    int* order_out = order_.data();
+#pragma omp parallel for schedule(static, 1)
+    for (int c = 0; c < chunks; ++c) {
+      auto& next = (*counts)[static_cast<std::size_t>(c)];
+      for (int i = chunk_begin(c, n); i < chunk_begin(c + 1, n); ++i) {
+        const int place = next[(key_in[i] >> shift) & (buckets - 1)]++;
+        key_out[place] = key_in[i];
+        order_out[place] = order_in[i];
+      }
+    }
+    keys.swap(keys_);
+    order.swap(order_);
+  }
+}
+
+void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
+  sums.resize(values.size());
+  int sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) sums.data()[i] = sum += values.data()[i];
+}
+
+double fixed_order_sum(const Array<float>& values, int n) {
+  double total = 0;
+  constexpr int chunk = 4096;
+  for (int begin = 0; begin < n; begin += chunk) {
+    double part = 0;
+    for (int i = begin; i < std::min(n, begin + chunk); ++i) part += static_cast<double>(values.data()[i]);
+    total += part;
+  }
+  return total;
+}
+
+float maximum(const Array<float>& values, int n) {
+  float most = 0;
+  for (int i = 0; i < n; ++i) most = std::max(most, values.data()[i]);
+  return most;
+}
+
+// The CPU's particles reach GL by an upload.
+GlSharing::~GlSharing() = default;
+void* GlSharing::map(unsigned, std::size_t) { return nullptr; }
+void GlSharing::unmap() {}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,111 @@
+// CUB's headers cost seconds to compile: sort, scan and sums stand in this one file.
+#include <cub/cub.cuh>
+
+#include "libsim/exec/space.hpp"
+#include "stats/base/error.hpp"
+
+namespace sim::SIM_BACKEND {
+
+void check(cudaError_t status, const char* what) {
+  if (status == cudaSuccess) return;
+  throw base::Error(std::string("CUDA, ") + what, cudaGetErrorString(status),
+                    status == cudaErrorMemoryAllocation ? "use a smaller --n-star or a GPU with more memory"
+                                                        : "check the driver, or use --backend cpu");
+}
+
+std::string device_problem() {
+  int devices = 0;
+  const cudaError_t status = cudaGetDeviceCount(&devices);
+  if (status != cudaSuccess) return cudaGetErrorString(status);
+  return devices ? "" : "no CUDA device answers";
+}
+
+void* allocate(std::size_t bytes) {
+  void* pointer = nullptr;
+  if (bytes) check(cudaMalloc(&pointer, bytes), "allocation");
+  return pointer;
+}
+void release(void* pointer) noexcept {
+  if (pointer) cudaFree(pointer);
+}
+void copy_to_host(void* host, const void* device, std::size_t bytes) {
+  if (bytes) check(cudaMemcpy(host, device, bytes, cudaMemcpyDeviceToHost), "copy to host");
+}
+void copy_from_host(void* device, const void* host, std::size_t bytes) {
+  if (bytes) check(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), "copy from host");
+}
+void copy_within(void* to, const void* from, std::size_t bytes) {
+  if (bytes) check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice), "copy");
+}
+void fill_zero(void* device, std::size_t bytes) {
+  if (bytes) check(cudaMemsetAsync(device, 0, bytes), "clear");
+}
+void synchronize() { check(cudaDeviceSynchronize(), "synchronise"); }
+
+void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
+  const int n = static_cast<int>(keys.size());
+  if (n == 0) return;
+  keys_.resize(keys.size());
+  order_.resize(keys.size());
+  cub::DoubleBuffer<std::uint64_t> key_buffer(keys.data(), keys_.data());
+  cub::DoubleBuffer<int> order_buffer(order.data(), order_.data());
+  std::size_t bytes = 0;
+  check(cub::DeviceRadixSort::SortPairs(nullptr, bytes, key_buffer, order_buffer, n), "sort");
+  if (bytes > scratch_.size()) scratch_.resize(bytes);
+  bytes = scratch_.size();
+  check(cub::DeviceRadixSort::SortPairs(scratch_.data(), bytes, key_buffer, order_buffer, n), "sort");
+  if (key_buffer.Current() != keys.data()) keys.swap(keys_);
+  if (order_buffer.Current() != order.data()) order.swap(order_);
+}
+
+void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
+  const int n = static_cast<int>(values.size());
+  sums.resize(values.size());
+  if (n == 0) return;
+  std::size_t bytes = 0;
+  check(cub::DeviceScan::InclusiveSum(nullptr, bytes, values.data(), sums.data(), n), "scan");
+  if (bytes > scratch_.size()) scratch_.resize(bytes);
+  bytes = scratch_.size();
+  check(cub::DeviceScan::InclusiveSum(scratch_.data(), bytes, values.data(), sums.data(), n), "scan");
+}
+
+namespace {
+
+// One block a chunk, a fixed tree within it, the chunks added in order on the host: the same sum every time.
+constexpr int chunk = 4096;
+
+__global__ void chunk_sums(const float* values, int n, double* sums) {
+  using Reduce = cub::BlockReduce<double, 256>;
+  __shared__ typename Reduce::TempStorage storage;
+  double part = 0;
+  for (int i = threadIdx.x; i < chunk; i += 256) {
+    const int at = static_cast<int>(blockIdx.x) * chunk + i;
+    if (at < n) part += static_cast<double>(values[at]);
+  }
+  part = Reduce(storage).Sum(part);
+  if (threadIdx.x == 0) sums[blockIdx.x] = part;
+}
+
+}  // namespace
+
+double fixed_order_sum(const Array<float>& values, int n) {
+  if (n <= 0) return 0;
+  Array<double> sums(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  chunk_sums<<<static_cast<unsigned>(sums.size()), 256>>>(values.data(), n, sums.data());
+  check(cudaGetLastError(), "sum");
+  double total = 0;
+  for (const double part : sums.to_host()) total += part;
+  return total;
+}
+
+float maximum(const Array<float>& values, int n) {
+  if (n <= 0) return 0;
+  Array<float> most(1);
+  std::size_t bytes = 0;
+  check(cub::DeviceReduce::Max(nullptr, bytes, values.data(), most.data(), n), "maximum");
+  Array<unsigned char> scratch(bytes);
+  check(cub::DeviceReduce::Max(scratch.data(), bytes, values.data(), most.data(), n), "maximum");
+  return most.to_host()[0];
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,164 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "apps/bench/commands.hpp"
+#include "apps/common/program.hpp"
+#include "libsim/simulation.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct FrameOptions {
+  std::string scene = "data/scenes/single_dam.toml";
+  std::string method = "HiRes";
+  std::string n_star = "4k";
+  std::string backend = "auto";
+  std::string json;
+  int frames = 100;
+  int warm_up = 5;
+  int substeps = 0;
+  int iterations = 0;
+  double dt_s = 0;
+  double relaxation = -1;
+  double tensile = -1;
+  double viscosity = -1;
+};
+
+double milliseconds_now() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Nearest-rank quantile of sorted values.
+double quantile(const std::vector<double>& sorted, double q) {
+  const auto last = static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::lround(q * last))];
+}
+
+std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
+  sim::SimulationOptions out;
+  out.method = sim::parse_method(options.method);
+  out.n_star = sim::parse_n_star(options.n_star);
+  out.backend = sim::choose_backend(options.backend);
+  out.substeps = options.substeps;
+  out.iterations = options.iterations;
+  out.frame_dt_s = options.dt_s;
+  out.relaxation = options.relaxation;
+  out.tensile = options.tensile;
+  out.viscosity = options.viscosity;
+  Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
+  out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
+  return sim::make_simulation(scene, out);
+}
+
+/// Density error averaged over ten states spread over the run, so that one calm or wild moment does not decide.
+struct Accuracy {
+  double error_mean = 0;
+  double density_max = 0;
+  double neighbours_mean = 0;
+  int samples = 0;
+  void add(const sim::FrameReport& report) {
+    ++samples;
+    error_mean += (report.density_error_mean - error_mean) / samples;
+    neighbours_mean += (report.neighbours_mean - neighbours_mean) / samples;
+    density_max = std::max(density_max, report.density_max);
+  }
+};
+
+nlohmann::json run_frames(const FrameOptions& options) {
+  const sim::Scene scene = sim::read_scene(options.scene);
+  const auto fluid = make_fluid(scene, options);
+  for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
+  fluid->synchronize();
+
+  std::vector<double> solve_ms;
+  Accuracy accuracy;
+  Progress progress("frames", static_cast<std::size_t>(options.frames));
+  const int stride = std::max(1, options.frames / 10);
+  for (int frame = 0; frame < options.frames; ++frame) {
+    const double start = milliseconds_now();
+    fluid->step_frame();
+    fluid->synchronize();
+    solve_ms.push_back(milliseconds_now() - start);
+    if (frame % stride == stride - 1) accuracy.add(fluid->report());
+    progress.update(static_cast<std::size_t>(frame) + 1);
+  }
+  const auto report = fluid->report();
+  const double mean = std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
+  std::sort(solve_ms.begin(), solve_ms.end());
+  return {{"program", "vip-bench frame"},
+          {"version", base::version()},
+          {"scene", scene.name},
+          {"scene_sha256", scene.sha256},
+          {"method", options.method},
+          {"n_star", options.n_star},
+          {"backend", sim::backend_name(sim::choose_backend(options.backend))},
+          {"threads", omp_get_max_threads()},
+          {"frames", options.frames},
+          {"particles", fluid->particle_count()},
+          {"solve_ms_mean", mean},
+          {"solve_ms_median", quantile(solve_ms, 0.5)},
+          {"solve_ms_p95", quantile(solve_ms, 0.95)},
+          {"h_over_d", 2.0},
+          {"neighbours_mean", accuracy.neighbours_mean},
+          {"density_error_mean", accuracy.error_mean},
+          {"density_max", accuracy.density_max},
+          {"speed_max_m_s", report.speed_max_m_s},
+          {"particle_bytes", fluid->particle_bytes()},
+          {"guards",
+           {{"speed_limited", report.guards.speed_limited},
+            {"coincident_pairs", report.guards.coincident_pairs},
+            {"not_finite", report.guards.not_finite},
+            {"neighbours_dropped", report.guards.neighbours_dropped},
+            {"wall_projected", report.guards.wall_projected}}},
+          {"schedule", fluid->explain()}};
+}
+
+void print_table(const nlohmann::json& result) {
+  std::printf("%s %s n_* %s on %s: %lld particles, %d frames\n", result["scene"].get<std::string>().c_str(),
+              result["method"].get<std::string>().c_str(), result["n_star"].get<std::string>().c_str(),
+              result["backend"].get<std::string>().c_str(), result["particles"].get<long long>(), result["frames"].get<int>());
+  std::printf("  solve        %8.3f ms a frame (median), %.3f mean, %.3f p95\n", result["solve_ms_median"].get<double>(),
+              result["solve_ms_mean"].get<double>(), result["solve_ms_p95"].get<double>());
+  std::printf("  h/d          %8.3f\n  neighbours   %8.2f mean within h\n", result["h_over_d"].get<double>(),
+              result["neighbours_mean"].get<double>());
+  std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
+              100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
+  std::printf("  guards       %s\n", result["guards"].dump().c_str());
+}
+
+}  // namespace
+
+void add_frame_command(CLI::App& app) {
+  auto options = std::make_shared<FrameOptions>();
+  auto* command = app.add_subcommand("frame", "Milliseconds a frame of one scene and method");
+  command->add_option("scene", options->scene, "Scene file")->capture_default_str();
+  command->add_option("--method", options->method, "LoRes or HiRes")->capture_default_str();
+  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")->capture_default_str();
+  command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();
+  command->add_option("--frames", options->frames, "Timed frames")->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--warm-up", options->warm_up, "Untimed frames before")->check(CLI::Range(0, 10000))->capture_default_str();
+  command->add_option("--substeps", options->substeps, "Substeps a frame; 0 = the scene's rule")->check(CLI::Range(0, 64));
+  command->add_option("--iterations", options->iterations, "Projections a substep; 0 = the scene's")->check(CLI::Range(0, 64));
+  command->add_option("--dt", options->dt_s, "Frame step in s; 0 = the scene's")->check(CLI::Range(0.0, 1.0));
+  command->add_option("--relaxation", options->relaxation, "Constraint relaxation; negative = default");
+  command->add_option("--tensile", options->tensile, "s_corr strength; negative = default");
+  command->add_option("--viscosity", options->viscosity, "XSPH c; negative = default");
+  command->add_option("--json", options->json, "Also write the figures to this file");
+  command->callback([options] {
+    const auto result = run_frames(*options);
+    print_table(result);
+    if (!options->json.empty()) base::write_file_atomically(options->json, result.dump(2) + "\n");
+  });
+}
+
+}  // namespace apps

@@ -1,0 +1,8 @@
+#include "apps/bench/commands.hpp"
+#include "apps/common/program.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"What accuracy costs in time", "vip-bench"};
+  apps::add_frame_command(app);
+  return apps::run_program(app, argc, argv);
+}

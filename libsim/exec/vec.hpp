@@ -1,0 +1,32 @@
+#pragma once
+/// Small vectors for kernels. They live in the back end's namespace: two compilers must not share one weak symbol.
+
+#include <cmath>
+
+#include "libsim/exec/space.hpp"
+
+namespace sim::SIM_BACKEND {
+
+struct Vec3 {
+  float x, y, z;
+};
+
+/// A particle's place in memory: one aligned 16-byte load.
+struct alignas(16) Vec4 {
+  float x, y, z, w;
+};
+
+SIM_FN Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+SIM_FN Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+SIM_FN Vec3 operator*(float s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+SIM_FN Vec3& operator+=(Vec3& a, Vec3 b) {
+  a = a + b;
+  return a;
+}
+SIM_FN float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+SIM_FN float length(Vec3 a) { return sqrtf(dot(a, a)); }
+SIM_FN Vec3 xyz(Vec4 a) { return {a.x, a.y, a.z}; }
+SIM_FN Vec4 with_w(Vec3 a, float w) { return {a.x, a.y, a.z, w}; }
+SIM_FN bool all_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,80 @@
+#include "libsim/neighbors/neighbour_list.hpp"
+
+#include <algorithm>
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct ListNeighbours {
+  const Vec4* predicted;
+  const int* cell_of;
+  const IndexRange* rows;
+  Neighbours list;
+  int* entry;
+  int* count;
+  int* longest;
+  std::uint64_t* dropped;
+  float margin;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = predicted[i];
+    int found = 0;
+    for (int row = 0; row < Grid::rows_per_cell; ++row) {
+      const IndexRange range = rows[cell_of[i] * Grid::rows_per_cell + row];
+      for (int j = range.begin; j < range.end; ++j) {
+        const Vec4 other = predicted[j];
+        const Vec3 offset = xyz(self) - xyz(other);
+        const float radius = margin * 0.5f * (self.w + other.w);
+        const bool near = dot(offset, offset) < radius * radius && j != i;
+        append(i, found, j, near);
+      }
+    }
+    // The last slot only takes what is not kept.
+    const int kept = list.capacity - 1;
+    if (found > kept) {
+      atomic_add(dropped, static_cast<std::uint64_t>(found - kept));
+      atomic_max(longest, found);
+    }
+    count[i] = found < kept ? found : kept;
+  }
+
+  SIM_FN void append(int i, int& found, int j, bool near) const {
+#ifdef SIM_CUDA
+    if (!near) return;
+    if (found < list.capacity) entry[list.place(i, found)] = j;
+    ++found;
+#else
+    // Stored in any case and kept by the count: a branch here is mispredicted every third time.
+    entry[list.place(i, found < list.capacity ? found : list.capacity - 1)] = j;
+    found += near;
+#endif
+  }
+};
+
+}  // namespace
+
+void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+  const auto n = static_cast<std::size_t>(particles.size());
+  const std::size_t groups = (n + list_interleave - 1) / list_interleave;
+  count_.resize(n);
+  entry_.resize(groups * list_interleave * static_cast<std::size_t>(capacity_));
+  if (longest_.size() == 0) {
+    longest_.resize(1);
+    longest_.zero();
+  }
+  for_each("list neighbours", particles.size(),
+           ListNeighbours{particles.predicted.data(), grid.cell_of_particle(), grid.rows(), view(), entry_.data(), count_.data(),
+                          longest_.data(), dropped, margin});
+}
+
+bool NeighbourList::grow() {
+  if (longest_.size() == 0) return false;
+  const int longest = longest_.to_host()[0];
+  if (longest < capacity_ || capacity_ >= most_capacity) return false;
+  capacity_ = std::min(most_capacity, (longest + 1) * 5 / 4);
+  longest_.zero();
+  return true;
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,50 @@
+#pragma once
+/// One list of neighbours a substep, with a margin, that all passes of the substep read; iterations never walk the grid.
+
+#include "libsim/neighbors/grid.hpp"
+
+namespace sim::SIM_BACKEND {
+
+#ifdef SIM_CUDA
+/// Lists of 32 consecutive particles interleave, so that a warp reads whole lines.
+constexpr int list_interleave = 32;
+#else
+constexpr int list_interleave = 1;
+#endif
+
+/// The list as kernels see it.
+struct Neighbours {
+  const int* count;
+  const int* entry;
+  int capacity;
+  SIM_FN int size(int i) const { return count[i]; }
+  SIM_FN std::size_t place(int i, int k) const {
+    const int group = i / list_interleave;
+    const int lane = i % list_interleave;
+    return (static_cast<std::size_t>(group) * static_cast<std::size_t>(capacity) + static_cast<std::size_t>(k)) * list_interleave +
+           static_cast<std::size_t>(lane);
+  }
+  SIM_FN int operator()(int i, int k) const { return entry[place(i, k)]; }
+};
+
+class NeighbourList {
+ public:
+  /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
+  static constexpr float margin = 1.1f;
+
+  /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond the capacity are
+  /// left out and counted in `dropped`.
+  void build(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
+
+  /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries. True when it grew.
+  bool grow();
+  static constexpr int most_capacity = 512;
+  int capacity() const { return capacity_; }
+
+ private:
+  int capacity_ = 80;
+  Array<int> count_, entry_, longest_;
+};
+
+}  // namespace sim::SIM_BACKEND

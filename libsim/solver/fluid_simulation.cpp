@@ -1,0 +1,205 @@
+#include "libsim/solver/fluid_simulation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "libsim/exec/gl_sharing.hpp"
+#include "libsim/scene/fill.hpp"
+#include "stats/base/error.hpp"
+
+namespace sim::SIM_BACKEND {
+
+SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
+  SolverParameters out;
+  const double frame_dt = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  out.substeps = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
+  out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
+  out.dt = static_cast<float>(frame_dt / out.substeps);
+  out.gravity = static_cast<float>(scene.gravity_m_s2);
+  const auto choose = [](float& number, double wish) {
+    if (wish >= 0) number = static_cast<float>(wish);
+  };
+  choose(out.relaxation, options.relaxation);
+  choose(out.tensile, options.tensile);
+  choose(out.viscosity, options.viscosity);
+  return out;
+}
+
+Walls walls_of(const Scene& scene, bool gate_closed) {
+  Vec3d low{0, 0, 0};
+  Vec3d high = scene.tank_size_m;
+  if (gate_closed) {
+    low = scene.fill_min_m;
+    high = scene.fill_max_m;
+  }
+  const auto f = [](double value) { return static_cast<float>(value); };
+  Walls out{};
+  out.planes[out.count++] = {{1, 0, 0}, f(low[0])};
+  out.planes[out.count++] = {{-1, 0, 0}, f(-high[0])};
+  out.planes[out.count++] = {{0, 0, 1}, f(low[2])};
+  out.planes[out.count++] = {{0, 0, -1}, f(-high[2])};
+  out.planes[out.count++] = {{0, 1, 0}, f(low[1])};
+  return out;
+}
+
+namespace {
+
+std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& options, int level) {
+  std::vector<ParticleState> out;
+  for (const auto& point : fill_positions(scene, options.method, options.n_star)) {
+    ParticleState particle;
+    particle.id = static_cast<int>(out.size());
+    particle.level = level;
+    particle.x_m = static_cast<float>(point[0]);
+    particle.y_m = static_cast<float>(point[1]);
+    particle.z_m = static_cast<float>(point[2]);
+    out.push_back(particle);
+  }
+  return out;
+}
+
+struct PackForDrawing {
+  const Vec4* position;
+  Vec4* out;
+  // h = 4 r
+  SIM_FN void operator()(int i) const { out[i] = with_w(xyz(position[i]), 0.25f * position[i].w); }
+};
+
+class FluidSimulation final : public Simulation {
+ public:
+  FluidSimulation(const Scene& scene, const SimulationOptions& options)
+      : scene_(scene), options_(options), resolution_(resolution_of(scene, options.method, options.n_star)) {
+    state_.parameters = solver_parameters(scene, options);
+    state_.guards.resize(1);
+    state_.guards.zero();
+    state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
+                     static_cast<float>(scene.tank_size_m[2] / 2)};
+    if (options.start) {
+      open(*options.start);
+    } else {
+      open(filled(scene, options, resolution_.level));
+      settle();
+    }
+  }
+
+  void step_frame() override {
+    run_frame(schedule_, state_);
+    state_.neighbours.grow();
+    ++frame_;
+  }
+
+  FrameReport report() override {
+    const Measured measured = measure(state_);
+    const Guards met = state_.guards.to_host()[0];
+    FrameReport out;
+    out.frame = frame_;
+    out.time_s = frame_ * static_cast<double>(state_.parameters.dt) * state_.parameters.substeps;
+    out.particles = particle_count();
+    out.particles_by_level.assign(static_cast<std::size_t>(resolution_.level) + 1, 0);
+    out.particles_by_level.back() = out.particles;
+    out.density_error_mean = measured.density_error_mean;
+    out.density_max = measured.density_max;
+    out.neighbours_mean = measured.neighbours_mean;
+    out.speed_max_m_s = measured.speed_max_m_s;
+    out.guards = {met.speed_limited, met.coincident_pairs, met.not_finite, met.neighbours_dropped, met.wall_projected};
+    return out;
+  }
+
+  std::int64_t particle_count() const override { return state_.particles.size(); }
+  double spacing_m() const override { return resolution_.spacing_m; }
+  void synchronize() override { SIM_BACKEND::synchronize(); }
+  std::size_t particle_bytes() const override { return state_.particles.bytes(); }
+
+  void read_particles(std::vector<RenderParticle>& out) const override {
+    out.resize(static_cast<std::size_t>(state_.particles.size()));
+    static_assert(sizeof(RenderParticle) == sizeof(Vec4));
+    copy_to_host(out.data(), state_.particles.position.data(), out.size() * sizeof(Vec4));
+    for (auto& particle : out) particle.radius_m *= 0.25f;  // h = 4 r
+  }
+
+  std::vector<ParticleState> read_state() const override {
+    const auto position = state_.particles.position.to_host();
+    const auto velocity = state_.particles.velocity.to_host();
+    const auto id = state_.particles.id.to_host();
+    const auto level = state_.particles.level.to_host();
+    std::vector<ParticleState> out(position.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = {id[i], level[i], position[i].x, position[i].y, position[i].z, velocity[i].x, velocity[i].y, velocity[i].z};
+    }
+    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    return out;
+  }
+
+  bool copy_to_gl(unsigned buffer) override {
+    const int n = state_.particles.size();
+    Vec4* target = static_cast<Vec4*>(gl_.map(buffer, static_cast<std::size_t>(n) * sizeof(Vec4)));
+    if (!target) return false;
+    for_each("pack for drawing", n, PackForDrawing{state_.particles.position.data(), target});
+    gl_.unmap();
+    return true;
+  }
+
+  std::string explain() const override {
+    const auto& k = state_.parameters;
+    return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
+           std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
+           std::to_string(particle_count()) + " particles of level " + std::to_string(resolution_.level) + ", " +
+           std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
+  }
+
+ private:
+  void open(const std::vector<ParticleState>& start) {
+    // Two columns of int indices per neighbour list entry bound the count.
+    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2) {
+      throw base::Error("particles", "are too many", "use a smaller --n-star");
+    }
+    schedule_ = compile_schedule({state_.parameters, false});
+    auto& p = state_.particles;
+    p.allocate(schedule_.columns, static_cast<int>(start.size()));
+    const auto h = static_cast<float>(2 * resolution_.spacing_m);
+    std::vector<Vec4> position;
+    std::vector<Vec4> velocity;
+    std::vector<int> id;
+    std::vector<std::uint8_t> level;
+    for (const auto& particle : start) {
+      position.push_back({particle.x_m, particle.y_m, particle.z_m, h});
+      velocity.push_back({particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0});
+      id.push_back(particle.id);
+      level.push_back(static_cast<std::uint8_t>(particle.level));
+    }
+    p.position.from_host(position);
+    p.velocity.from_host(velocity);
+    p.id.from_host(id);
+    p.level.from_host(level);
+    state_.walls = walls_of(scene_, false);
+  }
+
+  void settle() {
+    const Schedule settling = compile_schedule({state_.parameters, true});
+    state_.walls = walls_of(scene_, scene_.gate);
+    for (int frame = 0; frame < scene_.settle_frames; ++frame) {
+      run_frame(settling, state_);
+      state_.neighbours.grow();
+      if (options_.settling) options_.settling(frame + 1, scene_.settle_frames);
+    }
+    state_.walls = walls_of(scene_, false);
+    // What was met on the way to rest is not part of the run.
+    state_.guards.zero();
+  }
+
+  Scene scene_;
+  SimulationOptions options_;
+  Resolution resolution_;
+  FluidState state_;
+  Schedule schedule_;
+  GlSharing gl_;
+  int frame_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
+  return std::make_unique<FluidSimulation>(scene, options);
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,27 @@
+#pragma once
+/// sim::Simulation on this back end.
+
+#include <memory>
+
+#include "libsim/simulation.hpp"
+#include "libsim/solver/schedule.hpp"
+
+namespace sim::SIM_BACKEND {
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
+
+/// Solver numbers that follow from scene and options.
+SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
+/// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
+Walls walls_of(const Scene& scene, bool gate_closed);
+
+/// Density and neighbour counts at the present positions; the state's columns are permuted but not changed.
+struct Measured {
+  double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
+  double density_max = 0;
+  double neighbours_mean = 0;  ///< within h, without self
+  double speed_max_m_s = 0;
+};
+Measured measure(FluidState& state);
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,55 @@
+#include "libsim/solver/fluid_simulation.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct MeasureOne {
+  const Vec4* position;
+  const Vec4* velocity;
+  const float* density;
+  Neighbours neighbours;
+  float* excess;
+  float* near;
+  float* speed;
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = position[i];
+    int within = 0;
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const Vec4 other = position[neighbours(i, k)];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float h = 0.5f * (self.w + other.w);
+      within += dot(offset, offset) < h * h;
+    }
+    excess[i] = fmaxf(density[i] - 1, 0.0f);
+    near[i] = static_cast<float>(within);
+    speed[i] = length(xyz(velocity[i]));
+  }
+};
+
+}  // namespace
+
+Measured measure(FluidState& state) {
+  Measured out;
+  auto& p = state.particles;
+  const int n = p.size();
+  if (n == 0) return out;
+  copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
+  neighbours_stage().run(state);
+  p.reorder_velocity(state.grid.order());
+  density_stage().run(state);
+  const auto size = static_cast<std::size_t>(n);
+  Array<float> excess(size);
+  Array<float> near(size);
+  Array<float> speed(size);
+  for_each("measure", n,
+           MeasureOne{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(), excess.data(), near.data(),
+                      speed.data()});
+  out.density_error_mean = fixed_order_sum(excess, n) / n;
+  out.neighbours_mean = fixed_order_sum(near, n) / n;
+  out.density_max = static_cast<double>(maximum(p.density, n));
+  out.speed_max_m_s = static_cast<double>(maximum(speed, n));
+  return out;
+}
+
+}  // namespace sim::SIM_BACKEND

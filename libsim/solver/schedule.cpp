@@ -1,0 +1,86 @@
+#include "libsim/solver/schedule.hpp"
+
+#include "stats/base/error.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
+  switch (phase) {
+    case Phase::Substep: return schedule.substep;
+    case Phase::Iteration: return schedule.iteration;
+    case Phase::SubstepEnd: return schedule.substep_end;
+    case Phase::FrameEnd: break;
+  }
+  return schedule.frame_end;
+}
+
+const char* phase_name(Phase phase) {
+  switch (phase) {
+    case Phase::Substep: return "substep";
+    case Phase::Iteration: return "iteration";
+    case Phase::SubstepEnd: return "substep end";
+    case Phase::FrameEnd: break;
+  }
+  return "frame end";
+}
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size() + 1), ' ');
+  return text;
+}
+
+void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
+  for (const auto& pass : passes) {
+    const ColumnSet missing = pass.reads & ~written;
+    for (std::size_t c = 0; c < missing.size(); ++c) {
+      if (!missing.test(c)) continue;
+      throw base::Error("schedule, pass '" + std::string(pass.name) + "'",
+                        std::string("reads the column ") + column_name(static_cast<Column>(c)) + ", which nothing has written",
+                        "add the stage that writes it");
+    }
+    written |= pass.writes;
+  }
+}
+
+void run_all(const std::vector<Stage>& passes, FluidState& state) {
+  for (const auto& pass : passes) pass.run(state);
+}
+
+}  // namespace
+
+Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages) {
+  Schedule out;
+  std::string absent;
+  out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
+  ColumnSet written = out.columns;
+  for (const auto& stage : stages) {
+    const std::string reason = stage.called_for(demand);
+    if (reason.empty()) {
+      absent += "  -  " + padded(stage.name, 20) + "not called for\n";
+      continue;
+    }
+    phase_of(out, stage.phase).push_back(stage);
+    out.columns |= stage.reads | stage.writes;
+    out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) + padded(reason, 40) + stage.source + "\n";
+  }
+  for (const auto* passes : {&out.substep, &out.iteration, &out.substep_end, &out.frame_end}) check_reads(*passes, written);
+  out.explanation += absent + "  columns:";
+  for (std::size_t c = 0; c < out.columns.size(); ++c) {
+    if (out.columns.test(c)) out.explanation += std::string(" ") + column_name(static_cast<Column>(c));
+  }
+  out.explanation += "\n";
+  return out;
+}
+
+void run_frame(const Schedule& schedule, FluidState& state) {
+  for (int substep = 0; substep < state.parameters.substeps; ++substep) {
+    run_all(schedule.substep, state);
+    for (int iteration = 0; iteration < state.parameters.iterations; ++iteration) run_all(schedule.iteration, state);
+    run_all(schedule.substep_end, state);
+  }
+  run_all(schedule.frame_end, state);
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,82 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
+/// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m (method.md section 2).
+/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
+template <bool OneLevel>
+struct Density {
+  const Vec4* predicted;
+  Neighbours neighbours;
+  Walls walls;
+  float* lambda;
+  float* density;
+  Guards* guards;
+  float rest_density, relaxation;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = predicted[i];
+    const PairKernel<OneLevel> pair(self.w);
+    float rho = Kernel(self.w).density(0);
+    float gx = 0;
+    float gy = 0;
+    float gz = 0;
+    float squares = 0;
+    int zero = 0;
+    const int count = neighbours.size(i);
+    SIM_LANES(rho, gx, gy, gz, squares, zero)
+    for (int k = 0; k < count; ++k) {
+      const Vec4 other = predicted[neighbours(i, k)];
+      const Kernel kernel = pair.with(other.w);
+      const float ratio = pair.mass_ratio(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      const float least = coincident * kernel.h;
+      zero += r2 < least * least;
+      const float r = sqrtf(fmaxf(r2, least * least));
+      const float slope = kernel.slope(r);
+      const float along = ratio * slope / r;
+      rho += ratio * kernel.density(r2);
+      gx -= along * dx;
+      gy -= along * dy;
+      gz -= along * dz;
+      squares += ratio * slope * slope;
+    }
+    // A pair is met twice, once from either side.
+    if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
+    const float mass = mass_of(self.w, rest_density);
+    const float volume = mass / rest_density;
+    Vec3 wall_gradient;
+    const float filled = volume * rho + walls.missing(xyz(self), self.w, wall_gradient);
+    const Vec3 gradient = Vec3{volume * gx, volume * gy, volume * gz} + wall_gradient;
+    const float spacing = 0.5f * self.w;
+    const float softness = relaxation / (spacing * spacing);
+    const float stiffness = dot(gradient, gradient) + volume * volume * squares + softness;
+    lambda[i] = -mass * fmaxf(filled - 1, 0.0f) / stiffness;
+    density[i] = filled;
+  }
+};
+
+template <bool OneLevel>
+void launch(FluidState& state) {
+  auto& p = state.particles;
+  for_each("density", p.size(),
+           Density<OneLevel>{p.predicted.data(), state.neighbours.view(), state.walls, p.lambda.data(), p.density.data(),
+                             state.guard(), state.parameters.rest_density, state.parameters.relaxation});
+}
+
+}  // namespace
+
+Stage density_stage() {
+  return {"density constraint", "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral", Phase::Iteration,
+          columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density),
+          [](const Demand&) -> std::string { return "every method keeps the density"; },
+          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+}
+
+}  // namespace sim::SIM_BACKEND

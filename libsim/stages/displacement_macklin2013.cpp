@@ -1,0 +1,108 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i W_ij]; the pair term is
+/// antisymmetric, so that sum m_i Delta p_i = 0 away from walls (method.md section 2).
+template <bool OneLevel, bool Tensile>
+struct Displace {
+  const Vec4* predicted;
+  const float* lambda;
+  const int* id;
+  Neighbours neighbours;
+  Walls walls;
+  Vec4* next;
+  Guards* guards;
+  float rest_density, tensile, wall_gap;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = predicted[i];
+    const PairKernel<OneLevel> pair(self.w);
+    const float own = lambda[i];
+    float px = 0;
+    float py = 0;
+    float pz = 0;
+    int zero = 0;
+    const int count = neighbours.size(i);
+    SIM_LANES(px, py, pz, zero)
+    for (int k = 0; k < count; ++k) {
+      const int j = neighbours(i, k);
+      const Vec4 other = predicted[j];
+      const Kernel kernel = pair.with(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      const float least = coincident * kernel.h;
+      zero += r2 < least * least;
+      const float r = sqrtf(fmaxf(r2, least * least));
+      float push = pair.mass_ratio(other.w) * own + lambda[j];
+      if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
+      const float along = push * kernel.slope(r) / r;
+      px -= along * dx;
+      py -= along * dy;
+      pz -= along * dz;
+    }
+    Vec3 push{px, py, pz};
+    if (zero) part_coincident(i, self, own, push);
+    Vec3 wall_gradient;
+    walls.missing(xyz(self), self.w, wall_gradient);
+    const float mass = mass_of(self.w, rest_density);
+    Vec3 x = xyz(self) + (1 / rest_density) * push + (own / mass) * wall_gradient;
+    if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    next[i] = with_w(x, self.w);
+  }
+
+  /// w_i s_ij with s_ij = -tensile m_i m_j dbar^2 (W_ij / W(0.2 hbar))^4: the artificial pressure of Macklin and Mueller 2013,
+  /// Eq. 13, with the units of m_j lambda_i.
+  SIM_FN float tensile_term(const Kernel& kernel, float r2, float h_other) const {
+    const float reference = kernel.density(0.04f * kernel.h2);
+    const float q = kernel.density(r2) / reference;
+    const float spacing = 0.5f * kernel.h;
+    return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
+  }
+
+  /// The loop gives coincident pairs no direction; here they get one from their ids.
+  SIM_FN void part_coincident(int i, Vec4 self, float own, Vec3& push) const {
+    const PairKernel<OneLevel> pair(self.w);
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int j = neighbours(i, k);
+      const Vec4 other = predicted[j];
+      const Kernel kernel = pair.with(other.w);
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float least = coincident * kernel.h;
+      if (dot(offset, offset) >= least * least) continue;
+      const float strength = (pair.mass_ratio(other.w) * own + lambda[j]) * kernel.slope(least);
+      push += (-strength) * parting_direction(id[i], id[j]);
+    }
+  }
+};
+
+template <bool OneLevel, bool Tensile>
+void launch(FluidState& state) {
+  auto& p = state.particles;
+  const auto& k = state.parameters;
+  for_each("displacement", p.size(),
+           Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(), state.walls,
+                                       p.predicted_next.data(), state.guard(), k.rest_density, k.tensile, k.wall_gap});
+  p.predicted.swap(p.predicted_next);
+}
+
+template <bool OneLevel>
+void launch(FluidState& state) {
+  state.parameters.tensile > 0 ? launch<OneLevel, true>(state) : launch<OneLevel, false>(state);
+}
+
+}  // namespace
+
+Stage displacement_stage() {
+  return {"displacement", "Macklin and Mueller 2013, Eq. 12-14, mass-weighted", Phase::Iteration,
+          columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
+          columns(Column::PredictedNext, Column::Predicted),
+          [](const Demand&) -> std::string { return "every method keeps the density"; },
+          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,42 @@
+#pragma once
+/// Everything a stage may touch.
+
+#include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/stages/kernels.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Numbers of the solver. Defaults are measured ones; libsim/README.md says how.
+struct SolverParameters {
+  float rest_density = 1000;   ///< rho_0, kg/m3
+  float gravity = 9.81f;       ///< along -y, m/s2
+  float dt = 1.0f / 180;       ///< substep, s
+  int substeps = 3;            ///< a frame
+  int iterations = 4;          ///< constraint projections a substep
+  /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
+  float relaxation = 0.01f;
+  /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.
+  float tensile = 0;
+  /// XSPH c; 0 leaves the pass out.
+  float viscosity = 0.1f;
+  /// Longest way of a particle in a substep, as a share of h.
+  float longest_step = 0.5f;
+  /// Nearest distance to a wall, as a share of d.
+  float wall_gap = 0.1f;
+};
+
+/// The fluid between two passes. Arrays of particles are in the grid's order of the last substep.
+struct FluidState {
+  SolverParameters parameters;
+  Walls walls{};
+  Vec3 refuge{};  ///< where a particle goes whose place is lost
+  bool one_level = true;
+  Particles particles;
+  Grid grid;
+  NeighbourList neighbours;
+  Array<Guards> guards;
+
+  Guards* guard() { return guards.data(); }
+};
+
+}  // namespace sim::SIM_BACKEND

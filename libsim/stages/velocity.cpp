@@ -1,0 +1,43 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct Advance {
+  Vec4* position;
+  const Vec4* predicted;
+  Vec4* velocity;
+  float inverse_dt;
+  SIM_FN void operator()(int i) const {
+    velocity[i] = with_w(inverse_dt * (xyz(predicted[i]) - xyz(position[i])), 0);
+    position[i] = predicted[i];
+  }
+};
+
+struct Damp {
+  Vec4* velocity;
+  SIM_FN void operator()(int i) const { velocity[i] = with_w(0.9f * xyz(velocity[i]), 0); }
+};
+
+}  // namespace
+
+Stage velocity_stage() {
+  return {"velocity", "Macklin and Mueller 2013, Alg. 1 lines 20-23", Phase::SubstepEnd,
+          columns(Column::Predicted, Column::Position), columns(Column::Velocity, Column::Position),
+          [](const Demand&) -> std::string { return "every method moves its particles"; },
+          [](FluidState& state) {
+            auto& p = state.particles;
+            for_each("velocity", p.size(),
+                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), 1 / state.parameters.dt});
+          }};
+}
+
+Stage settling_stage() {
+  return {"settling", "fill rule of the scenes: velocity x 0.9 each frame", Phase::FrameEnd, columns(Column::Velocity),
+          columns(Column::Velocity),
+          [](const Demand& demand) -> std::string { return demand.settling ? "the gate is closed" : ""; },
+          [](FluidState& state) { for_each("settling", state.particles.size(), Damp{state.particles.velocity.data()}); }};
+}
+
+}  // namespace sim::SIM_BACKEND

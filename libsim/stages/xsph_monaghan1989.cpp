@@ -1,0 +1,71 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// v_i += c sum_j 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
+template <bool OneLevel>
+struct Xsph {
+  const Vec4* position;
+  const Vec4* velocity;
+  const float* density;
+  Neighbours neighbours;
+  Vec4* next;
+  float viscosity;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = position[i];
+    const PairKernel<OneLevel> pair(self.w);
+    const Vec4 own = velocity[i];
+    const float own_density = density[i];
+    float vx = 0;
+    float vy = 0;
+    float vz = 0;
+    const int count = neighbours.size(i);
+    SIM_LANES(vx, vy, vz)
+    for (int k = 0; k < count; ++k) {
+      const int j = neighbours(i, k);
+      const Vec4 other = position[j];
+      const Kernel kernel = pair.with(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float weight =
+          pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      const Vec4 v = velocity[j];
+      vx += weight * (v.x - own.x);
+      vy += weight * (v.y - own.y);
+      vz += weight * (v.z - own.z);
+    }
+    // Volume m_i / rho_0; densities are relative to rho_0.
+    const float scale = viscosity * 2 * mass_of(self.w, 1);
+    next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
+  }
+};
+
+template <bool OneLevel>
+void launch(FluidState& state) {
+  auto& p = state.particles;
+  for_each("xsph", p.size(),
+           Xsph<OneLevel>{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
+                          p.velocity_next.data(), state.parameters.viscosity});
+  p.velocity.swap(p.velocity_next);
+}
+
+}  // namespace
+
+Stage xsph_stage() {
+  return {"xsph", "Monaghan 1989; Macklin and Mueller 2013, Eq. 17", Phase::SubstepEnd,
+          columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
+          columns(Column::VelocityNext, Column::Velocity),
+          [](const Demand& demand) -> std::string { return demand.parameters.viscosity > 0 ? "viscosity c > 0" : ""; },
+          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+}
+
+std::vector<Stage> all_stages() {
+  return {predict_stage(),  neighbours_stage(), density_stage(), displacement_stage(),
+          velocity_stage(), xsph_stage(),       settling_stage()};
+}
+
+}  // namespace sim::SIM_BACKEND
