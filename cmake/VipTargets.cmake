@@ -5,6 +5,8 @@ set(_cxx "$<COMPILE_LANGUAGE:CXX>")
 target_compile_options(vip_flags INTERFACE
   $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<${_cxx}:-Wshadow> $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
   $<${_cxx}:-Wno-sign-conversion>
+  # False alarms of g++ 12 inside std::string (GCC bug 105651).
+  $<$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>>:-Wno-restrict>
   # Nobody reads errno or FP traps of <cmath>; NaN and infinity keep their meaning.
   $<${_cxx}:-fno-math-errno> $<${_cxx}:-fno-trapping-math>)
 if(VIP_WERROR)

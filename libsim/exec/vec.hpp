@@ -1,5 +1,6 @@
 #pragma once
-/// Small vectors for kernels. They live in the back end's namespace: two compilers must not share one weak symbol.
+/// Small vectors for kernels. They live in the back end's namespace: two compilers must not share one weak
+/// symbol.
 
 #include <cmath>
 
@@ -24,6 +25,10 @@ SIM_FN Vec3& operator+=(Vec3& a, Vec3 b) {
   return a;
 }
 SIM_FN float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+/// a + s b with one rounding, the same in every kernel that computes it.
+SIM_FN Vec3 fused(Vec3 a, float s, Vec3 b) {
+  return {fmaf(s, b.x, a.x), fmaf(s, b.y, a.y), fmaf(s, b.z, a.z)};
+}
 SIM_FN float length(Vec3 a) { return sqrtf(dot(a, a)); }
 SIM_FN Vec3 xyz(Vec4 a) { return {a.x, a.y, a.z}; }
 SIM_FN Vec4 with_w(Vec3 a, float w) { return {a.x, a.y, a.z, w}; }

@@ -8,26 +8,22 @@ struct Gather {
   const int* order;
   const Vec4* position_in;
   const Vec4* predicted_in;
+  const Vec4* velocity_in;
   const int* id_in;
   const std::uint8_t* level_in;
   Vec4* position;
   Vec4* predicted;
+  Vec4* velocity;
   int* id;
   std::uint8_t* level;
   SIM_FN void operator()(int i) const {
     const int from = order[i];
     position[i] = position_in[from];
     predicted[i] = predicted_in[from];
+    velocity[i] = velocity_in[from];
     id[i] = id_in[from];
     level[i] = level_in[from];
   }
-};
-
-struct GatherVelocity {
-  const int* order;
-  const Vec4* velocity_in;
-  Vec4* velocity;
-  SIM_FN void operator()(int i) const { velocity[i] = velocity_in[order[i]]; }
 };
 
 template <class T>
@@ -43,7 +39,8 @@ void fit(Array<T>& column, bool wanted, std::size_t n) {
 
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position", "velocity", "id", "level", "predicted", "predicted_next", "velocity_next", "lambda", "density", "neighbours"};
+      "position",       "velocity",      "id",     "level",   "predicted",
+      "predicted_next", "velocity_next", "lambda", "density", "neighbours"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -64,30 +61,26 @@ void Particles::allocate(ColumnSet set, int n) {
 }
 
 std::size_t Particles::bytes() const {
-  return position.bytes() + velocity.bytes() + predicted.bytes() + predicted_next.bytes() + velocity_next.bytes() + id.bytes() +
-         level.bytes() + lambda.bytes() + density.bytes() + spare_a_.bytes() + spare_b_.bytes() + spare_id_.bytes() +
-         spare_level_.bytes();
+  return position.bytes() + velocity.bytes() + predicted.bytes() + predicted_next.bytes() +
+         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() + density.bytes() +
+         spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
 }
 
 void Particles::reorder(const Array<int>& order) {
   const auto size = static_cast<std::size_t>(n_);
   spare_a_.resize(size);
   spare_b_.resize(size);
+  spare_c_.resize(size);
   spare_id_.resize(size);
   spare_level_.resize(size);
   for_each("reorder", n_,
-           Gather{order.data(), position.data(), predicted.data(), id.data(), level.data(), spare_a_.data(), spare_b_.data(),
-                  spare_id_.data(), spare_level_.data()});
+           Gather{order.data(), position.data(), predicted.data(), velocity.data(), id.data(), level.data(),
+                  spare_a_.data(), spare_b_.data(), spare_c_.data(), spare_id_.data(), spare_level_.data()});
   position.swap(spare_a_);
   predicted.swap(spare_b_);
+  velocity.swap(spare_c_);
   id.swap(spare_id_);
   level.swap(spare_level_);
-}
-
-void Particles::reorder_velocity(const Array<int>& order) {
-  spare_a_.resize(static_cast<std::size_t>(n_));
-  for_each("reorder velocity", n_, GatherVelocity{order.data(), velocity.data(), spare_a_.data()});
-  velocity.swap(spare_a_);
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -59,14 +59,12 @@ class Particles {
 
   /// Permutes the columns that outlive a substep: new[i] = old[order[i]].
   void reorder(const Array<int>& order);
-  /// The same for the velocity, which a substep makes anew and so does not permute.
-  void reorder_velocity(const Array<int>& order);
 
  private:
   int n_ = 0;
   ColumnSet set_;
   // Targets of the permutation, swapped with the columns.
-  Array<Vec4> spare_a_, spare_b_;
+  Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
   Array<std::uint8_t> spare_level_;
 };

@@ -36,15 +36,14 @@ Measured measure(FluidState& state) {
   if (n == 0) return out;
   copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
   neighbours_stage().run(state);
-  p.reorder_velocity(state.grid.order());
   density_stage().run(state);
   const auto size = static_cast<std::size_t>(n);
   Array<float> excess(size);
   Array<float> near(size);
   Array<float> speed(size);
   for_each("measure", n,
-           MeasureOne{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(), excess.data(), near.data(),
-                      speed.data()});
+           MeasureOne{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
+                      excess.data(), near.data(), speed.data()});
   out.density_error_mean = fixed_order_sum(excess, n) / n;
   out.neighbours_mean = fixed_order_sum(near, n) / n;
   out.density_max = static_cast<double>(maximum(p.density, n));

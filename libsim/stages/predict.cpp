@@ -27,12 +27,13 @@ struct Predict {
       atomic_add(&guards->speed_limited, std::uint64_t{1});
     }
     velocity[i] = with_w(v, 0);
-    x += dt * v;
+    x = fused(x, dt, v);
     if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
-  /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads either.
+  /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
+  /// either.
   SIM_FN void quarantine(Vec3& x, Vec3& v) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
@@ -45,21 +46,27 @@ struct Predict {
 }  // namespace
 
 Stage predict_stage() {
-  return {"predict", "Macklin and Mueller 2013, Alg. 1 lines 1-4", Phase::Substep, columns(Column::Position, Column::Velocity),
+  return {"predict",
+          "Macklin and Mueller 2013, Alg. 1 lines 1-4",
+          Phase::Substep,
+          columns(Column::Position, Column::Velocity),
           columns(Column::Predicted, Column::Position, Column::Velocity),
           [](const Demand&) -> std::string { return "every method moves its particles"; },
           [](FluidState& state) {
             auto& p = state.particles;
             const auto& k = state.parameters;
             for_each("predict", p.size(),
-                     Predict{p.position.data(), p.velocity.data(), p.predicted.data(), state.walls, state.refuge, state.guard(), k.gravity, k.dt,
-                             k.longest_step, k.wall_gap});
+                     Predict{p.position.data(), p.velocity.data(), p.predicted.data(), state.walls,
+                             state.refuge, state.guard(), k.gravity, k.dt, k.longest_step, k.wall_gap});
           }};
 }
 
 Stage neighbours_stage() {
-  return {"neighbours", "compact grid and one combined list a substep", Phase::Substep,
-          columns(Column::Predicted, Column::Position, Column::Id, Column::Level), columns(Column::Neighbours),
+  return {"neighbours",
+          "compact grid and one combined list a substep",
+          Phase::Substep,
+          columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id, Column::Level),
+          columns(Column::Neighbours),
           [](const Demand&) -> std::string { return "the density constraint needs neighbours"; },
           [](FluidState& state) {
             state.grid.build(state.particles, NeighbourList::margin);

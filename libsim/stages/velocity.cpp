@@ -4,13 +4,16 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but free of the rounding of x while nothing pushes.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  float inverse_dt;
+  float dt;
   SIM_FN void operator()(int i) const {
-    velocity[i] = with_w(inverse_dt * (xyz(predicted[i]) - xyz(position[i])), 0);
+    const Vec3 v = xyz(velocity[i]);
+    const Vec3 free = fused(xyz(position[i]), dt, v);
+    velocity[i] = with_w(v + (1 / dt) * (xyz(predicted[i]) - free), 0);
     position[i] = predicted[i];
   }
 };
@@ -23,21 +26,29 @@ struct Damp {
 }  // namespace
 
 Stage velocity_stage() {
-  return {"velocity", "Macklin and Mueller 2013, Alg. 1 lines 20-23", Phase::SubstepEnd,
-          columns(Column::Predicted, Column::Position), columns(Column::Velocity, Column::Position),
+  return {"velocity",
+          "Macklin and Mueller 2013, Alg. 1 lines 20-23",
+          Phase::SubstepEnd,
+          columns(Column::Predicted, Column::Position, Column::Velocity),
+          columns(Column::Velocity, Column::Position),
           [](const Demand&) -> std::string { return "every method moves its particles"; },
           [](FluidState& state) {
             auto& p = state.particles;
             for_each("velocity", p.size(),
-                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), 1 / state.parameters.dt});
+                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), state.parameters.dt});
           }};
 }
 
 Stage settling_stage() {
-  return {"settling", "fill rule of the scenes: velocity x 0.9 each frame", Phase::FrameEnd, columns(Column::Velocity),
+  return {"settling",
+          "fill rule of the scenes: velocity x 0.9 each frame",
+          Phase::FrameEnd,
+          columns(Column::Velocity),
           columns(Column::Velocity),
           [](const Demand& demand) -> std::string { return demand.settling ? "the gate is closed" : ""; },
-          [](FluidState& state) { for_each("settling", state.particles.size(), Damp{state.particles.velocity.data()}); }};
+          [](FluidState& state) {
+            for_each("settling", state.particles.size(), Damp{state.particles.velocity.data()});
+          }};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,0 +1,138 @@
+/// The fluid against closed forms and experiments (method.md sections 3 and 4).
+
+#include <gtest/gtest.h>
+
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+using fluid_test::ParticleState;
+
+/// x_front of a plane dam: 99.5th percentile among particles with at least five neighbours, plus r.
+double front_of(const std::vector<ParticleState>& state, double spacing) {
+  const auto counts = fluid_test::neighbour_counts(state, 2 * spacing);
+  std::vector<double> x;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (counts[i] >= 5) x.push_back(static_cast<double>(state[i].x_m));
+  }
+  const auto rank = static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(x.size()));
+  std::nth_element(x.begin(), x.begin() + rank, x.end());
+  return x[static_cast<std::size_t>(rank)] + spacing / 2;
+}
+
+double interpolate(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
+  const auto above = std::upper_bound(xs.begin(), xs.end(), x);
+  if (above == xs.begin()) return ys.front();
+  if (above == xs.end()) return ys.back();
+  const auto i = static_cast<std::size_t>(above - xs.begin());
+  const double t = (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
+  return ys[i - 1] + t * (ys[i] - ys[i - 1]);
+}
+
+/// Root mean square over the experiment's points, after the best time shift within 0.2 (the gate takes time
+/// to open).
+double best_rmse(const std::vector<double>& t, const std::vector<double>& z, const std::vector<double>& t_ref,
+                 const std::vector<double>& z_ref, double& best_shift) {
+  double best = 1e9;
+  for (double shift = -0.2; shift <= 0.2001; shift += 0.01) {
+    double sum = 0;
+    for (std::size_t i = 0; i < t_ref.size(); ++i) {
+      const double error = interpolate(t, z, t_ref[i] + shift) - z_ref[i];
+      sum += error * error;
+    }
+    const double rmse = std::sqrt(sum / static_cast<double>(t_ref.size()));
+    if (rmse < best) {
+      best = rmse;
+      best_shift = shift;
+    }
+  }
+  return best;
+}
+
+TEST(MartinMoyce, FrontFollowsTheExperiment) {
+  const auto scene = sim::read_scene("data/scenes/martin_moyce.toml");
+  sim::SimulationOptions options;
+  options.n_star = 2 * 1024;
+  const auto fluid = sim::make_simulation(scene, options);
+  EXPECT_EQ(fluid->particle_count(), 16 * 1024);
+  const double a = scene.fill_max_m[0];
+  std::vector<double> time{0};
+  std::vector<double> front{front_of(fluid->read_state(), fluid->spacing_m()) / a};
+  for (int frame = 1; frame <= 75; ++frame) {
+    fluid->step_frame();
+    if (frame % 3) continue;
+    time.push_back(frame * scene.frame_dt_s * std::sqrt(2 * scene.gravity_m_s2 / a));
+    front.push_back(front_of(fluid->read_state(), fluid->spacing_m()) / a);
+  }
+  const auto truth = fluid_test::read_columns("data/truth/martin_moyce_1952_table2_front.csv");
+  double shift = 0;
+  const double rmse = best_rmse(time, front, truth.at("T"), truth.at("Z"), shift);
+  const double largest = *std::max_element(truth.at("Z").begin(), truth.at("Z").end());
+  RecordProperty("rmse_over_max", std::to_string(rmse / largest));
+  RecordProperty("time_shift", std::to_string(shift));
+  std::printf("Martin and Moyce front: RMSE(Z)/max(Z) = %.4f at a time shift of %.2f\n", rmse / largest,
+              shift);
+  EXPECT_LE(rmse / largest, 0.05);
+}
+
+TEST(FreeFall, EqualsSymplecticEuler) {
+  auto scene = fluid_test::tank({10, 10, 10}, {10, 10, 10});
+  sim::SimulationOptions options;
+  options.n_star = 64;
+  options.substeps = 1;
+  std::vector<ParticleState> start{{0, 0, 5, 10, 5, 0, 0, 0}};
+  options.start = start;
+  const auto fluid = sim::make_simulation(scene, options);
+  constexpr int frames = 60;
+  for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
+  const double dt = scene.frame_dt_s;
+  const auto state = fluid->read_state();
+  // z0 - g dt^2 n (n + 1) / 2 (data/truth/free_fall.csv).
+  EXPECT_NEAR(static_cast<double>(state[0].y_m), 10 - 9.81 * dt * dt * frames * (frames + 1) / 2, 1e-5);
+  EXPECT_NEAR(static_cast<double>(state[0].vy_m_s), -9.81 * dt * frames, 1e-5);
+  EXPECT_EQ(state[0].x_m, 5);
+}
+
+struct RestResult {
+  double drift = 0, density_mean = 0, density_max = 0, rms = 0, loss = 0;
+  int out = 0;
+};
+
+RestResult rest(const sim::Scene& scene, const sim::SimulationOptions& options, int frames) {
+  const auto fluid = sim::make_simulation(scene, options);
+  const double filled = fluid_test::centre_height(fluid->read_state());
+  RestResult result;
+  double half = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid->step_frame();
+    if (frame == frames / 2) half = fluid_test::centre_height(fluid->read_state());
+    if (frame >= frames / 2 && frame % 20 == 0)
+      result.density_max = std::max(result.density_max, fluid->report().density_max);
+  }
+  const auto state = fluid->read_state();
+  result.density_mean = fluid->report().density_error_mean;
+  result.drift = std::abs(fluid_test::centre_height(state) - half) / half;
+  result.loss = 1 - fluid_test::centre_height(state) / filled;
+  result.rms = fluid_test::rms_speed(state);
+  result.out = fluid_test::outside(state, scene.tank_size_m, 0.1 * fluid->spacing_m());
+  std::printf(
+      "rest: density error mean %.5f, max %.4f, centre of mass loss %.4f, drift %.5f, v_rms %.4f m/s\n",
+      result.density_mean, result.density_max, result.loss, result.drift, result.rms);
+  return result;
+}
+
+TEST(RestTank, StaysAtRest) {
+  // S1: 20 layers for 10 s. n_* = 400 -> 3,200 particles, d = cbrt(V / 3200).
+  const double d = 0.15;
+  const auto scene = fluid_test::tank({16 * d, 40 * d, 10 * d}, {16 * d, 20 * d, 10 * d});
+  sim::SimulationOptions options;
+  options.n_star = 400;
+  const auto result = rest(scene, options, 600);
+  EXPECT_LT(result.density_mean, 0.01);
+  EXPECT_LT(result.density_max, 1.08);
+  EXPECT_LT(result.drift, 0.005);
+  EXPECT_LT(result.rms, 0.02 * std::sqrt(9.81 * 20 * d));
+  EXPECT_EQ(result.out, 0);
+}
+
+}  // namespace
