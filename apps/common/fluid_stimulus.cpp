@@ -182,7 +182,6 @@ std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
   options.method = sim::parse_method(choice.method);
   options.n_star = sim::parse_n_star(choice.n_star);
   options.backend = sim::choose_backend(choice.backend);
-  options.seed = choice.seed;
   options.frame_dt_s = choice.content_step_s;
   const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
   return std::make_unique<LiveFluid>(scene, dt,

@@ -98,7 +98,6 @@ struct StimulusChoice {
   std::string method = "HiRes";
   std::string n_star = "32k";
   std::string backend = "auto";
-  std::uint64_t seed = 1;
   double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
 };
 
