@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@ struct BootstrapOptions {
   int resamples = 2000;
   std::uint64_t seed = 1;
   double confidence = 0.95;  ///< in (0, 1)
+  /// Told how many resamples are done, after each; may be empty.
+  std::function<void(int)> progress = {};
 };
 
 /// How often each of n units is drawn in one resample of n with replacement. A pure function of (n, seed,

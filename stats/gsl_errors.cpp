@@ -1,6 +1,7 @@
 #include "stats/gsl_errors.hpp"
 
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_version.h>
 
 namespace stats {
 
@@ -8,5 +9,7 @@ void use_gsl_codes() {
   static const bool off = (gsl_set_error_handler_off(), true);
   static_cast<void>(off);
 }
+
+const char* gsl_library_version() { return ::gsl_version; }
 
 }  // namespace stats

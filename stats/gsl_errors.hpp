@@ -7,4 +7,7 @@ namespace stats {
 /// Switches GSL's aborting handler off, once for the process.
 void use_gsl_codes();
 
+/// Version of GSL at run time, e.g. "2.7.1".
+const char* gsl_library_version();
+
 }  // namespace stats

@@ -118,6 +118,7 @@ Result<PilotSpread> spread_over_participants(const PilotTable& table, PilotMean 
   for (int i = 0; i < options.resamples; ++i) {
     const auto weights = resample_weights(n, options.seed, static_cast<std::uint64_t>(i));
     const auto fit = estimate_contour(table.grid(mean, weights), level);
+    if (options.progress) options.progress(i + 1);
     if (!fit) continue;
     a.push_back(fit->a);
     b.push_back(fit->b);

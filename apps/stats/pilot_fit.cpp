@@ -1,0 +1,143 @@
+#include "apps/stats/pilot_fit.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "apps/common/program.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+using stats::PilotEstimate;
+using stats::PilotMean;
+
+std::string counted(int n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour) {
+  const auto lines = [&](int n) { return std::to_string(n) + " of " + counted(contour.lines, "line"); };
+  if (contour.above_grid > 0) {
+    flags.push_back(
+        {"leaves_grid_above", "on " + lines(contour.above_grid) +
+                                  " the contour lies above the largest mean frame rate; the fit uses "
+                                  "its inner part"});
+  }
+  if (contour.below_grid > 0) {
+    flags.push_back(
+        {"leaves_grid_below", "on " + lines(contour.below_grid) +
+                                  " the contour lies below the smallest mean frame rate; the fit uses "
+                                  "its inner part"});
+  }
+  if (contour.on_node > 0) {
+    flags.push_back(
+        {"on_node", "on " + lines(contour.on_node) +
+                        " the level is met at a setting and not crossed; such lines are left out"});
+  }
+  if (contour.crossed_twice > 0) {
+    flags.push_back(
+        {"not_monotone", "on " + lines(contour.crossed_twice) +
+                             " the scores cross the level more than once; every crossing is used"});
+  }
+  if (2 * contour.crossed < contour.lines) {
+    flags.push_back({"short_contour", "only " + lines(contour.crossed) + " cross the level"});
+  }
+}
+
+void flag_data(std::vector<FitFlag>& flags, const PilotData& data, const stats::PilotTable& table) {
+  if (data.test_data) flags.push_back({"test_data", "these are test data, not a study"});
+  if (data.simulated_participants > 0) {
+    flags.push_back({"simulated", counted(data.simulated_participants, "participant") + " simulated"});
+  }
+  if (table.incomplete_participants() > 0) {
+    flags.push_back(
+        {"incomplete_participants", counted(table.incomplete_participants(), "participant") +
+                                        " lack settings that others rated; means use what is there"});
+  }
+  int excluded = 0;
+  for (const auto& [verdict, n] : data.excluded_by_verdict) excluded += n;
+  if (excluded > 0)
+    flags.push_back({"excluded_trials", counted(excluded, "trial") + " excluded by timing verdict"});
+  if (data.used_by_verdict.contains("degraded")) {
+    flags.push_back({"degraded_trials", counted(data.used_by_verdict.at("degraded"), "trial") +
+                                            " with degraded timing enter at what was really shown"});
+  }
+}
+
+void flag_spread(std::vector<FitFlag>& flags, const PilotEstimate& main) {
+  if (!main.spread) return;
+  if (main.spread->failed > 0) {
+    flags.push_back(
+        {"resamples_without_fit", counted(main.spread->failed, "resample") + " without a fit left out"});
+  }
+  if (main.spread->extremes) {
+    flags.push_back({"few_participants", "the intervals end at the outermost resamples and are too narrow"});
+  }
+  if (main.spread->b_ci[0] <= 0 && main.spread->b_ci[1] >= 0) {
+    flags.push_back({"b_holds_zero", "the interval of b holds 0: no effect of the fluctuation is shown"});
+  }
+}
+
+/// What the solver's file cannot take is no usable fit.
+std::string unusable(const PilotFit& fit, const PilotData& data, const stats::PilotTable& table) {
+  if (table.ratings() == 0) return "no answered trial is left to analyse";
+  if (!(fit.level > data.scale_min && fit.level < data.scale_max)) {
+    return "the level does not lie within the rating scale, " +
+           std::to_string(static_cast<int>(data.scale_min)) + " to " +
+           std::to_string(static_cast<int>(data.scale_max));
+  }
+  if (table.all_equal()) return "all ratings are equal: there is no contour";
+  const auto& main = fit.main();
+  if (!main.fit) return main.fit.reason();
+  if (!main.spread) return main.spread.reason();
+  if (!(main.fit->a >= 1e-3 && main.fit->a <= 1e4 && std::abs(main.fit->b) <= 1)) {
+    return "the curve is none that a solver can use: a = " + std::to_string(main.fit->a) +
+           ", b = " + std::to_string(main.fit->b);
+  }
+  return "";
+}
+
+}  // namespace
+
+PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& bootstrap) {
+  const stats::PilotTable table(data.ratings);
+  PilotFit fit;
+  fit.level = level;
+  fit.bootstrap = bootstrap;
+  fit.participants = table.participants();
+  fit.settings = table.settings();
+  fit.grid = table.grid(PilotMean::Harmonic);
+  const std::set<double> levels{4.0, 5.0, level};
+  Progress progress("resampling participants",
+                    2 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
+  std::size_t done = 0;
+  auto options = bootstrap;
+  options.progress = [&](int) { progress.update(++done); };
+  for (const double at : levels) {
+    fit.harmonic[at] = stats::estimate_pilot(table, PilotMean::Harmonic, at, options);
+    fit.arithmetic[at] = stats::estimate_pilot(table, PilotMean::Arithmetic, at, options);
+  }
+  fit.reason = unusable(fit, data, table);
+  flag_data(fit.flags, data, table);
+  flag_contour(fit.flags, fit.main().contour);
+  flag_spread(fit.flags, fit.main());
+  fit.data = std::move(data);
+  return fit;
+}
+
+sim::PtpeFile ptpe_file(const PilotFit& fit) {
+  sim::PtpeFile file;
+  file.model = {fit.main().fit->a, fit.main().fit->b};
+  file.level = fit.level;
+  file.a_ci = fit.main().spread->a_ci;
+  file.b_ci = fit.main().spread->b_ci;
+  file.n_participants = fit.participants;
+  file.fps_mean = "harmonic";
+  file.protocol_sha256 = fit.data.protocol_sha256;
+  file.date_utc = base::utc_now();
+  return file;
+}
+
+}  // namespace apps

@@ -1,0 +1,49 @@
+#pragma once
+/// vip-stats fit-ptpe: everything between the ratings and the files.
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/stats/pilot_data.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/pilot.hpp"
+
+namespace apps {
+
+/// Something a reader of the fit has to know.
+struct FitFlag {
+  std::string code;  ///< stable, snake_case
+  std::string text;
+};
+
+/// The estimates at the level wished and at 4.0 and 5.0, with the harmonic and with the arithmetic realised
+/// mean.
+struct PilotFit {
+  PilotData data;
+  double level = 4;
+  stats::BootstrapOptions bootstrap;
+  int participants = 0;
+  std::size_t settings = 0;
+  stats::ScoreGrid grid;                                        ///< harmonic
+  std::map<double, stats::PilotEstimate> harmonic, arithmetic;  ///< by level
+  std::vector<FitFlag> flags;
+  std::string reason;  ///< why there is no usable fit; empty = there is one
+
+  bool ok() const { return reason.empty(); }
+  /// The one that goes to the solver: level wished, harmonic mean, as the solver's own mu.
+  const stats::PilotEstimate& main() const { return harmonic.at(level); }
+};
+
+/// `level` is finite; outside the rating scale there is no fit.
+PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& bootstrap);
+
+/// The same for a database without usable data: only the reason is known.
+nlohmann::ordered_json failed_fit_json(double level, const std::string& reason);
+/// Every number of the fit, for fit.json. No NaN: what is undefined is null with its reason beside it.
+nlohmann::ordered_json fit_json(const PilotFit& fit);
+/// For the solver; the fit is ok().
+sim::PtpeFile ptpe_file(const PilotFit& fit);
+
+}  // namespace apps
