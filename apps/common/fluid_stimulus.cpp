@@ -4,11 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
-
-#include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -158,43 +154,6 @@ study::FrameFacts LiveFluid::facts() const {
 void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {
   particles_.upload(copy_);
   draw_particles(renderer_, scene_, options_, particles_, framebuffer, width_px, height_px);
-}
-
-namespace {
-
-std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
-  auto bake = std::make_unique<sim::BakeReader>(choice.bake);
-  const double dt = bake->header().frame_dt_s;
-  if (choice.content_step_s > 0 && std::abs(choice.content_step_s - dt) > 1e-4 * dt) {
-    char text[120];
-    std::snprintf(text, sizeof text, "holds frames %.6g s apart, but the content step is %.6g s", dt,
-                  choice.content_step_s);
-    throw base::Error(choice.bake.string(), text,
-                      "bake with the protocol's content step, or change it there");
-  }
-  if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake));
-}
-
-std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
-  const sim::Scene scene = sim::read_scene(choice.scene);
-  sim::SimulationOptions options;
-  options.method = sim::parse_method(choice.method);
-  options.n_star = sim::parse_n_star(choice.n_star);
-  options.backend = sim::choose_backend(choice.backend);
-  options.frame_dt_s = choice.content_step_s;
-  const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
-  return std::make_unique<LiveFluid>(scene, dt,
-                                     "live " + scene.name + ", " + sim::method_name(options.method) +
-                                         ", n_* " + std::to_string(options.n_star) + ", on " +
-                                         sim::backend_name(options.backend) + ", scene " + scene.sha256,
-                                     [scene, options] { return sim::make_simulation(scene, options); });
-}
-
-}  // namespace
-
-std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {
-  return choice.bake.empty() ? live(choice) : from_bake(choice);
 }
 
 }  // namespace apps

@@ -26,7 +26,7 @@ class BakedPictures final : public study::Stimulus {
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
-  /// Returns when the ring of decoded pictures is full.
+  /// Returns when pictures are decoded ahead; at once when this is where they loop to.
   void start(std::int64_t start_step) override;
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
@@ -47,7 +47,7 @@ class BakedParticles final : public study::Stimulus {
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
-  void start(std::int64_t start_step) override { prepare(start_step); }
+  void start(std::int64_t) override {}
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
 
@@ -104,6 +104,9 @@ struct StimulusChoice {
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
 /// time apart than content_step_s.
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
+
+/// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
+bool shows_pictures(const StimulusChoice& choice);
 
 /// How many particles there are of each radius, finest first.
 struct Levels {

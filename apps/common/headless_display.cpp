@@ -2,12 +2,21 @@
 
 #include <epoxy/gl.h>
 
+#include <cstdlib>
+
 #include "libstudy/pacing/clock.hpp"
 
 namespace apps {
 
-HeadlessDisplay::HeadlessDisplay(int width_px, int height_px)
-    : context_(sim::GlContext::make_headless()),
+namespace {
+sim::GlContext make_context(bool only_copies) {
+  if (only_copies) setenv("LP_NUM_THREADS", "0", 0);
+  return sim::GlContext::make_headless();
+}
+}  // namespace
+
+HeadlessDisplay::HeadlessDisplay(int width_px, int height_px, bool only_copies)
+    : context_(make_context(only_copies)),
       buffers_{sim::Offscreen(width_px, height_px), sim::Offscreen(width_px, height_px)} {}
 
 std::string HeadlessDisplay::description() const {

@@ -12,8 +12,10 @@ namespace apps {
 /// Double buffered like a screen. Use it on the thread that made it; destroy stimuli that drew on it first.
 class HeadlessDisplay final : public study::Display {
  public:
-  /// Errors (base::Error): no OpenGL 4.5, a size out of range.
-  HeadlessDisplay(int width_px, int height_px);
+  /// With only_copies, software GL draws on the calling thread alone: enough for baked pictures, and no frame
+  /// waits for a helper thread to be woken. ($LP_NUM_THREADS of Mesa, when set, decides instead.) Errors
+  /// (base::Error): no OpenGL 4.5, a size out of range.
+  HeadlessDisplay(int width_px, int height_px, bool only_copies = false);
 
   std::string description() const override;
   study::TimingGrade grade() const override { return study::TimingGrade::CpuSubmit; }

@@ -13,97 +13,116 @@ PictureRing::PictureRing(const BakeReader& bake, std::size_t capacity)
                      static_cast<std::size_t>(bake.header().picture_height_px) * 4;
   if (bytes == 0) throw std::logic_error("PictureRing: the bake has no pictures");
   // Touched now, so that no page is first seen while frames are shown.
-  for (Slot& slot : slots_) slot.picture.rgba.assign(bytes, 0);
+  for (Slot& each : slots_) each.picture.rgba.assign(bytes, 0);
   thread_ = std::thread([this] { decode_loop(); });
 }
 
 PictureRing::~PictureRing() {
-  {
-    const std::scoped_lock lock(mutex_);
-    stop_ = true;
-  }
-  room_.notify_all();
+  stop_ = true;
+  ++calls_;
+  calls_.notify_one();
   thread_.join();
 }
 
 void PictureRing::start(std::int64_t frame) {
-  std::unique_lock lock(mutex_);
+  if (round_ > 0 && expected_ == frame && loop_to_ == frame) return;
   loop_to_ = frame;
-  waits_ = 0;
   restart_at(frame);
-  decoded_.wait(lock, [this] { return filled_ == slots_.size(); });
+  while (true) {
+    const std::uint64_t filled = filled_;
+    while (freed_ < filled && slot(freed_).round != round_) drop_front();
+    if (filled - freed_ == slots_.size()) break;
+    wait_beyond(filled);
+  }
+  waits_ = 0;
 }
 
 const BakePicture& PictureRing::take(std::int64_t frame) {
-  std::unique_lock lock(mutex_);
-  if (held_ && slots_[begin_].frame == frame) return slots_[begin_].picture;
+  if (held_ == frame) return slot(freed_).picture;
   if (held_) drop_front();
   if (!comes_later(frame)) restart_at(frame);
-  while (filled_ == 0 || slots_[begin_].frame != frame) {
-    if (filled_ > 0) {
-      drop_front();
-      continue;
+  while (true) {
+    if (freed_ == filled_) {
+      ++waits_;
+      wait_beyond(freed_);
     }
-    ++waits_;
-    decoded_.wait(lock, [this] { return filled_ > 0; });
+    const Slot& front = slot(freed_);
+    if (front.round == round_ && front.frame == frame) break;
+    drop_front();
   }
-  held_ = true;
-  if (slots_[begin_].error) std::rethrow_exception(slots_[begin_].error);
-  return slots_[begin_].picture;
+  held_ = frame;
+  expected_ = after(frame);
+  if (slot(freed_).error) std::rethrow_exception(slot(freed_).error);
+  return slot(freed_).picture;
 }
 
 /// A jump forwards of up to two rings is decoded through; any other begins anew at its key picture.
 bool PictureRing::comes_later(std::int64_t frame) const {
-  for (std::size_t i = 0; i < filled_; ++i) {
-    if (slots_[(begin_ + i) % slots_.size()].frame == frame) return true;
+  std::int64_t next = expected_;
+  for (std::size_t i = 0; i < 2 * slots_.size(); ++i, next = after(next)) {
+    if (next == frame) return true;
   }
-  return frame >= next_ && frame - next_ < static_cast<std::int64_t>(2 * slots_.size());
+  return false;
+}
+
+std::int64_t PictureRing::after(std::int64_t frame) const {
+  return frame + 1 < bake_.header().frame_count ? frame + 1 : loop_to_.load();
 }
 
 void PictureRing::drop_front() {
-  begin_ = (begin_ + 1) % slots_.size();
-  --filled_;
-  held_ = false;
-  room_.notify_one();
+  held_.reset();
+  ++freed_;
+  ++calls_;
+  calls_.notify_one();
 }
 
 void PictureRing::restart_at(std::int64_t frame) {
+  if (held_) drop_front();
+  expected_ = frame;
+  first_ = frame;
   ++round_;
-  begin_ = filled_ = 0;
-  held_ = false;
-  next_ = frame;
-  room_.notify_one();
+  ++calls_;
+  calls_.notify_one();
+}
+
+void PictureRing::wait_beyond(std::uint64_t seen) {
+  while (filled_ <= seen) filled_.wait(seen);
 }
 
 void PictureRing::decode_loop() {
   // The thread that shows pictures goes first. Refused only under exotic limits, and then merely not so.
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 5);
-  std::unique_lock lock(mutex_);
+  std::uint64_t round = 0;
+  std::int64_t next = 0;
   while (true) {
-    room_.wait(lock, [this] { return stop_ || filled_ < slots_.size(); });
+    const std::uint64_t calls = calls_;
     if (stop_) return;
-    Slot& slot = slots_[(begin_ + filled_) % slots_.size()];
-    const std::int64_t frame = next_;
-    const std::uint64_t round = round_;
-    lock.unlock();
-    fill(slot, frame);
-    lock.lock();
-    if (round != round_) continue;
+    if (round != round_) {
+      // When a newer round is written meanwhile, what follows carries the older number and is dropped.
+      round = round_;
+      next = first_;
+    }
+    if (round == 0 || filled_ - freed_ == slots_.size()) {
+      calls_.wait(calls);
+      continue;
+    }
+    decode_into(slot(filled_), round, next);
+    next = after(next);
     ++filled_;
-    next_ = frame + 1 < bake_.header().frame_count ? frame + 1 : loop_to_;
-    decoded_.notify_one();
+    filled_.notify_one();
   }
 }
 
-void PictureRing::fill(Slot& slot, std::int64_t frame) {
-  slot.frame = frame;
-  slot.error = nullptr;
+void PictureRing::decode_into(Slot& into, std::uint64_t round, std::int64_t frame) {
+  into.round = round;
+  into.frame = frame;
+  into.error = nullptr;
   try {
     const BakePicture& picture = reader_.read(frame);
-    slot.picture.facts = picture.facts;
-    slot.picture.rgba.assign(picture.rgba.begin(), picture.rgba.end());
+    into.picture.facts = picture.facts;
+    into.picture.rgba.assign(picture.rgba.begin(), picture.rgba.end());
   } catch (...) {
-    slot.error = std::current_exception();
+    into.error = std::current_exception();
   }
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 /// Pictures of a bake, decoded ahead by a thread of its own, so that showing one costs no decoding.
 
-#include <condition_variable>
+#include <atomic>
 #include <cstdint>
 #include <exception>
-#include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -12,7 +12,8 @@
 
 namespace sim {
 
-/// One consumer. The BakeReader must have pictures and outlive the ring.
+/// One consumer. The BakeReader must have pictures and outlive the ring. Taking a picture that is ready takes
+/// no lock: a decoding thread that was preempted can never hold the consumer up.
 class PictureRing {
  public:
   /// 24 pictures are 0.2 s at the shortest interval of the pilot (8 ms), and 22 MB at 640x360.
@@ -32,30 +33,45 @@ class PictureRing {
 
  private:
   struct Slot {
+    std::uint64_t round = 0;
     std::int64_t frame = -1;
     BakePicture picture;
     std::exception_ptr error;
   };
 
+  // The decoding thread's side.
   void decode_loop();
-  void fill(Slot& slot, std::int64_t frame);
+  void decode_into(Slot& into, std::uint64_t round, std::int64_t frame);
+
+  // The consumer's side.
   void restart_at(std::int64_t frame);
   void drop_front();
+  /// Waits until more than `seen` slots were ever filled.
+  void wait_beyond(std::uint64_t seen);
   bool comes_later(std::int64_t frame) const;
+  std::int64_t after(std::int64_t frame) const;
+  Slot& slot(std::uint64_t count) { return slots_[count % slots_.size()]; }
+  const Slot& slot(std::uint64_t count) const { return slots_[count % slots_.size()]; }
 
   const BakeReader& bake_;
   PictureReader reader_;
   std::vector<Slot> slots_;
-  std::size_t begin_ = 0;   ///< oldest decoded slot
-  std::size_t filled_ = 0;  ///< decoded slots
-  bool held_ = false;       ///< the oldest is in the consumer's hands
-  std::int64_t next_ = 0;   ///< frame to decode next
-  std::int64_t loop_to_ = 0;
-  std::uint64_t round_ = 0;  ///< counts restarts, so that a picture of an old round is thrown away
+
+  // Slots ever filled and ever given back: filled_ - freed_ of them are ready. Each is written by one side
+  // only.
+  std::atomic<std::uint64_t> filled_ = 0;
+  std::atomic<std::uint64_t> freed_ = 0;
+  // What the consumer wants: a round begins at first_ and loops to loop_to_. Slots of older rounds are
+  // dropped.
+  std::atomic<std::uint64_t> round_ = 0;
+  std::atomic<std::int64_t> first_ = 0;
+  std::atomic<std::int64_t> loop_to_ = 0;
+  std::atomic<std::uint64_t> calls_ = 0;  ///< grows with everything the decoding thread must look at
+  std::atomic<bool> stop_ = false;
+
+  std::optional<std::int64_t> held_;  ///< frame in the consumer's hands: the slot at freed_
+  std::int64_t expected_ = 0;         ///< next frame of this round that the consumer has not seen
   std::int64_t waits_ = 0;
-  bool stop_ = false;
-  std::mutex mutex_;
-  std::condition_variable decoded_, room_;
   std::thread thread_;
 };
 

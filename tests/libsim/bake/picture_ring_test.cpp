@@ -31,6 +31,18 @@ TEST_F(PictureRingTest, GivesEveryPictureInOrderAndLoopsToTheStart) {
   }
 }
 
+TEST_F(PictureRingTest, StartWhereItLoopsGoesOnWithoutANewRound) {
+  const sim::BakeReader bake(folder_ / "a.bake");
+  sim::PictureRing ring(bake, 4);
+  ring.start(60);
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 60; i < frames; ++i) ASSERT_NO_FATAL_FAILURE(expect(ring, i));
+    ring.start(60);
+  }
+  ring.start(2);
+  ASSERT_NO_FATAL_FAILURE(expect(ring, 2));
+}
+
 TEST_F(PictureRingTest, RewindsJumpsAndHolds) {
   const sim::BakeReader bake(folder_ / "a.bake");
   sim::PictureRing ring(bake, 5);
