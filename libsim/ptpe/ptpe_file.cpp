@@ -1,8 +1,9 @@
 #include "libsim/ptpe/ptpe_file.hpp"
 
-#include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "stats/base/file.hpp"
 #include "stats/base/toml.hpp"
@@ -10,15 +11,23 @@
 namespace sim {
 
 namespace {
-/// The shortest text that reads back to the same double, always with a point so that TOML sees a float.
+/// The shortest text that reads back to the same double, always with a point or exponent so that TOML sees a
+/// float.
 std::string exact(double value) {
-  char text[32];
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    if (std::stod(text) == value) break;
-  }
-  const std::string out = text;
+  if (!std::isfinite(value)) throw std::invalid_argument("a PTPE file holds finite numbers only");
+  std::array<char, 32> text{};
+  const std::string out(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
   return out.find_first_of(".e") == std::string::npos ? out + ".0" : out;
+}
+
+/// yyyy-mm-ddThh:mm:ssZ.
+bool is_utc(const std::string& text) {
+  constexpr std::string_view form = "dddd-dd-ddTdd:dd:ddZ";
+  if (text.size() != form.size()) return false;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    if (form[i] == 'd' ? text[i] < '0' || text[i] > '9' : text[i] != form[i]) return false;
+  }
+  return true;
 }
 
 std::array<double, 2> interval(const base::TomlTable& table, const char* key) {
@@ -49,6 +58,9 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
                     file.protocol_sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (!hash) table.fail("protocol_sha256", "is not a SHA-256", "write 64 hexadecimal digits");
   file.date_utc = table.string("date_utc");
+  if (!is_utc(file.date_utc)) {
+    table.fail("date_utc", "is not a date in UTC", "write it as \"2026-01-31T12:00:00Z\"");
+  }
   root.finish();
   return file;
 }

@@ -14,19 +14,20 @@ struct PtpeFile {
   static constexpr int format_version = 1;
 
   stats::PtpeModel model;            ///< a in frames/s, b in s/frame
-  double level = 4;                  ///< satisfaction score of the contour, in (1, 7)
+  double level = 4;                  ///< satisfaction score of the contour, in [1, 7]
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};
   int n_participants = 0;
   std::string fps_mean = "harmonic";  ///< which realised mean was the predictor: harmonic | arithmetic
   std::string protocol_sha256;        ///< 64 hexadecimal digits
-  std::string date_utc;               ///< ISO 8601
+  std::string date_utc;               ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
 };
 
 /// Errors (base::Error at file:line:column): unknown key, wrong type or range, newer format.
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name);
 PtpeFile read_ptpe_file(const std::filesystem::path& path);
-/// The text of a file that parse_ptpe_file reads back to the same values.
+/// The text of a file that parse_ptpe_file reads back to the same values. std::invalid_argument for a number
+/// that is not finite.
 std::string format_ptpe_file(const PtpeFile& file);
 
 }  // namespace sim

@@ -1,0 +1,19 @@
+/// Any bytes as a PTPE file: refused with base::Error, or read to what writes and reads back the same.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/base/error.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto file =
+        sim::parse_ptpe_file(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz");
+    const auto text = sim::format_ptpe_file(file);
+    if (sim::format_ptpe_file(sim::parse_ptpe_file(text, "again")) != text) std::abort();
+  } catch (const base::Error&) {
+  }
+  return 0;
+}

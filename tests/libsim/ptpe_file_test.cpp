@@ -1,0 +1,116 @@
+#include "libsim/ptpe/ptpe_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stats/base/error.hpp"
+
+namespace {
+
+sim::PtpeFile example() {
+  sim::PtpeFile file;
+  file.model = {23.68, 0.1 + 0.2 - 0.28};  // no short decimal
+  file.level = 4;
+  file.a_ci = {1.0 / 3, 25};
+  file.b_ci = {-1e-17, 0.03};
+  file.n_participants = 16;
+  file.fps_mean = "arithmetic";
+  file.protocol_sha256 = std::string(64, 'a');
+  file.date_utc = "2026-01-31T12:00:00Z";
+  return file;
+}
+
+std::string with(const std::string& from, const std::string& to) {
+  auto text = sim::format_ptpe_file(example());
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    sim::parse_ptpe_file(text, "fitted.toml");
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PtpeFile, ReadsBackEveryBitOfWhatItWrites) {
+  const auto file = example();
+  const auto back = sim::parse_ptpe_file(sim::format_ptpe_file(file), "x");
+  EXPECT_EQ(back.model.a, file.model.a);
+  EXPECT_EQ(back.model.b, file.model.b);
+  EXPECT_EQ(back.level, file.level);
+  EXPECT_EQ(back.a_ci, file.a_ci);
+  EXPECT_EQ(back.b_ci, file.b_ci);
+  EXPECT_EQ(back.n_participants, file.n_participants);
+  EXPECT_EQ(back.fps_mean, file.fps_mean);
+  EXPECT_EQ(back.protocol_sha256, file.protocol_sha256);
+  EXPECT_EQ(back.date_utc, file.date_utc);
+}
+
+TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"a_fps = 23.68", "a_fps = 0.0"},
+      {"a_fps = 23.68", "a_fps = \"23\""},
+      {"a_fps = 23.68", "a_fps = nan"},
+      {"a_fps = 23.68", "a = 23.68"},
+      {"level = 4.0", "level = 8.0"},
+      {"level = 4.0", "level = 4.0\nlevel = 4.0"},
+      {"level = 4.0", "level = 4.0\nsize = 1"},
+      {"b_s", "b_ms"},
+      {"b_ci95_s = [-1e-17", "b_ci95_s = [1.0"},
+      {"n_participants = 16", "n_participants = 0"},
+      {"n_participants = 16", "n_participants = 16.5"},
+      {"arithmetic", "geometric"},
+      {"aaaa", "AAAA"},
+      {"2026-01-31T12:00:00Z", "yesterday"},
+      {"[ptpe]", "[ptpe"},
+      {"25.0]", "25.0, 26.0]"}};
+  for (const auto& [from, to] : changes) {
+    const auto words = error_of(with(from, to));
+    EXPECT_TRUE(words.starts_with("fitted.toml:")) << from << " -> " << to << ": " << words;
+    EXPECT_NE(words.find("mend"), std::string::npos) << words;
+  }
+  EXPECT_NE(error_of(""), "");
+}
+
+TEST(PtpeFile, NamesTheLineOfTheFault) {
+  // Comment, format, blank, [ptpe], a, b, level.
+  EXPECT_TRUE(error_of(with("level = 4.0", "level = 8.0")).starts_with("fitted.toml:7:"));
+}
+
+TEST(PtpeFile, RefusesANewerFormat) {
+  const auto words = error_of(with("format = 1", "format = 2"));
+  EXPECT_NE(words.find("format"), std::string::npos) << words;
+}
+
+TEST(PtpeFile, IsRefusedAtEveryTruncation) {
+  const auto text = sim::format_ptpe_file(example());
+  // Without its last line feed the file is still whole.
+  for (std::size_t size = 0; size + 1 < text.size(); ++size)
+    EXPECT_NE(error_of(text.substr(0, size)), "") << size;
+}
+
+TEST(PtpeFile, IsNamedWhenItIsMissing) {
+  try {
+    sim::read_ptpe_file("no/such/fitted.toml");
+    FAIL() << "read a file that is not there";
+  } catch (const base::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no/such/fitted.toml"), std::string::npos);
+  }
+}
+
+TEST(PtpeFile, IsNeverWrittenWithANumberThatIsNone) {
+  auto file = example();
+  file.model.b = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(sim::format_ptpe_file(file), std::invalid_argument);
+}
+
+}  // namespace
