@@ -68,6 +68,23 @@ void NeighbourList::build(const Particles& particles, const Grid& grid, std::uin
                           longest_.data(), dropped, margin});
 }
 
+void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {
+  std::vector<int> counts;
+  for (const auto& list : lists) {
+    counts.push_back(static_cast<int>(list.size()));
+    capacity_ = std::max(capacity_, counts.back() + 1);
+  }
+  const std::size_t groups = (lists.size() + list_interleave - 1) / list_interleave;
+  std::vector<int> entries(groups * list_interleave * static_cast<std::size_t>(capacity_));
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    for (std::size_t k = 0; k < lists[i].size(); ++k) {
+      entries[view().place(static_cast<int>(i), static_cast<int>(k))] = lists[i][k];
+    }
+  }
+  count_.from_host(counts);
+  entry_.from_host(entries);
+}
+
 bool NeighbourList::grow() {
   if (longest_.size() == 0) return false;
   const int longest = longest_.to_host()[0];

@@ -35,6 +35,8 @@ class NeighbourList {
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond the capacity are
   /// left out and counted in `dropped`.
   void build(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  /// Takes lists made elsewhere, each within most_capacity; a test's way in.
+  void assign(const std::vector<std::vector<int>>& lists);
   Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
 
   /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries. True when it grew.

@@ -4,8 +4,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i W_ij]; the pair term is
-/// antisymmetric, so that sum m_i Delta p_i = 0 away from walls (method.md section 2).
+/// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
+/// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls (method.md section
+/// 2).
 template <bool OneLevel, bool Tensile>
 struct Displace {
   const Vec4* predicted;
@@ -45,18 +46,17 @@ struct Displace {
       py -= along * dy;
       pz -= along * dz;
     }
-    Vec3 push{px, py, pz};
-    if (zero) part_coincident(i, self, own, push);
     Vec3 wall_gradient;
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
-    Vec3 x = xyz(self) + (1 / rest_density) * push + (own / mass) * wall_gradient;
+    Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
+    if (zero) x += parted(i, self, own);
     if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     next[i] = with_w(x, self.w);
   }
 
-  /// w_i s_ij with s_ij = -tensile m_i m_j dbar^2 (W_ij / W(0.2 hbar))^4: the artificial pressure of Macklin and Mueller 2013,
-  /// Eq. 13, with the units of m_j lambda_i.
+  /// w_i s_ij with s_ij = -tensile m_i m_j dbar^2 (W_ij / W(0.2 hbar))^4: the artificial pressure of Macklin
+  /// and Mueller 2013, Eq. 13, with the units of m_j lambda_i.
   SIM_FN float tensile_term(const Kernel& kernel, float r2, float h_other) const {
     const float reference = kernel.density(0.04f * kernel.h2);
     const float q = kernel.density(r2) / reference;
@@ -64,9 +64,12 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// The loop gives coincident pairs no direction; here they get one from their ids.
-  SIM_FN void part_coincident(int i, Vec4 self, float own, Vec3& push) const {
+  /// The loop gives coincident pairs no direction; here they get one from their ids, and a small step even
+  /// where the density alone would let them stay together. Steps are weighted so that the pair's centre of
+  /// mass rests.
+  SIM_FN Vec3 parted(int i, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);
+    Vec3 step{0, 0, 0};
     for (int k = 0; k < neighbours.size(i); ++k) {
       const int j = neighbours(i, k);
       const Vec4 other = predicted[j];
@@ -74,9 +77,12 @@ struct Displace {
       const Vec3 offset = xyz(self) - xyz(other);
       const float least = coincident * kernel.h;
       if (dot(offset, offset) >= least * least) continue;
-      const float strength = (pair.mass_ratio(other.w) * own + lambda[j]) * kernel.slope(least);
-      push += (-strength) * parting_direction(id[i], id[j]);
+      const float ratio = pair.mass_ratio(other.w);
+      const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
+      const float apart = 0.05f * kernel.h * 2 * ratio / (1 + ratio);
+      step += (pressed + apart) * parting_direction(id[i], id[j]);
     }
+    return step;
   }
 };
 
@@ -85,8 +91,9 @@ void launch(FluidState& state) {
   auto& p = state.particles;
   const auto& k = state.parameters;
   for_each("displacement", p.size(),
-           Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(), state.walls,
-                                       p.predicted_next.data(), state.guard(), k.rest_density, k.tensile, k.wall_gap});
+           Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(),
+                                       state.neighbours.view(), state.walls, p.predicted_next.data(),
+                                       state.guard(), k.rest_density, k.tensile, k.wall_gap});
   p.predicted.swap(p.predicted_next);
 }
 
@@ -98,7 +105,9 @@ void launch(FluidState& state) {
 }  // namespace
 
 Stage displacement_stage() {
-  return {"displacement", "Macklin and Mueller 2013, Eq. 12-14, mass-weighted", Phase::Iteration,
+  return {"displacement",
+          "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
+          Phase::Iteration,
           columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
           columns(Column::PredictedNext, Column::Predicted),
           [](const Demand&) -> std::string { return "every method keeps the density"; },

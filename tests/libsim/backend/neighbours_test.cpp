@@ -1,0 +1,153 @@
+#include "libsim/neighbors/neighbour_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "tests/libsim/backend/backend_test.hpp"
+
+namespace sim::SIM_BACKEND {
+namespace {
+
+struct Listed {
+  std::vector<int> id;               // by place
+  std::vector<Vec4> position;        // by place
+  std::vector<std::set<int>> sets;   // by id
+  std::uint64_t dropped = 0;
+  int cells = 0;
+  std::size_t entries = 0;
+};
+
+Listed list(const std::vector<Vec4>& points, bool reversed = false) {
+  const int n = static_cast<int>(points.size());
+  Particles particles;
+  particles.allocate(columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level), n);
+  std::vector<Vec4> at = points;
+  std::vector<int> id(points.size());
+  for (int i = 0; i < n; ++i) id[static_cast<std::size_t>(i)] = i;
+  if (reversed) {
+    std::reverse(at.begin(), at.end());
+    std::reverse(id.begin(), id.end());
+  }
+  particles.position.from_host(at);
+  particles.predicted.from_host(at);
+  particles.id.from_host(id);
+  particles.velocity.zero();
+  particles.level.zero();
+  Grid grid;
+  NeighbourList neighbours;
+  Array<std::uint64_t> dropped(1);
+  dropped.zero();
+  do {
+    dropped.zero();
+    grid.build(particles, NeighbourList::margin);
+    neighbours.build(particles, grid, dropped.data());
+  } while (neighbours.grow());
+
+  Listed out;
+  out.id = particles.id.to_host();
+  out.position = particles.predicted.to_host();
+  out.dropped = dropped.to_host()[0];
+  out.cells = grid.count_cells();
+  out.sets.resize(points.size());
+  const Neighbours view = neighbours.view();
+  std::vector<int> count(points.size());
+  std::vector<int> entry((points.size() + list_interleave) * static_cast<std::size_t>(view.capacity));
+  copy_to_host(count.data(), view.count, count.size() * sizeof(int));
+  const std::size_t groups = (points.size() + list_interleave - 1) / list_interleave;
+  copy_to_host(entry.data(), view.entry, groups * list_interleave * static_cast<std::size_t>(view.capacity) * sizeof(int));
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < count[static_cast<std::size_t>(i)]; ++k) {
+      const int j = entry[view.place(i, k)];
+      out.sets[static_cast<std::size_t>(out.id[static_cast<std::size_t>(i)])].insert(out.id[static_cast<std::size_t>(j)]);
+      ++out.entries;
+    }
+  }
+  return out;
+}
+
+std::vector<std::set<int>> brute_force(const std::vector<Vec4>& points) {
+  std::vector<std::set<int>> out(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const Vec3 offset = xyz(points[i]) - xyz(points[j]);
+      const float radius = NeighbourList::margin * 0.5f * (points[i].w + points[j].w);
+      if (i != j && dot(offset, offset) < radius * radius) out[i].insert(static_cast<int>(j));
+    }
+  }
+  return out;
+}
+
+void expect_brute_force(const std::vector<Vec4>& points) {
+  const Listed listed = list(points);
+  EXPECT_EQ(listed.dropped, 0u);
+  std::size_t distinct = 0;
+  for (const auto& set : listed.sets) distinct += set.size();
+  EXPECT_EQ(listed.entries, distinct) << "an entry is listed twice";
+  EXPECT_EQ(listed.sets, brute_force(points));
+  EXPECT_EQ(list(points, true).id, listed.id) << "the order depends on the order before";
+}
+
+std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(-size, size);
+  std::vector<Vec4> out;
+  for (int i = 0; i < n; ++i) out.push_back({coordinate(random), coordinate(random), coordinate(random), h});
+  return out;
+}
+
+SIM_TEST(NeighbourList, EqualsBruteForceOnRandomPoints) {
+  for (const float size : {0.2f, 1.0f, 3.0f}) expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
+}
+
+SIM_TEST(NeighbourList, EqualsBruteForceOnCellPlanes) {
+  // Lattice points that lie exactly on the planes of the cells.
+  std::vector<Vec4> points;
+  const float h = 0.25f;
+  for (int i = 0; i < 1000; ++i) {
+    points.push_back({static_cast<float>(i % 10 - 5) * 0.275f, static_cast<float>(i / 10 % 10 - 5) * 0.275f,
+                      static_cast<float>(i / 100 - 5) * 0.275f, h});
+  }
+  expect_brute_force(points);
+}
+
+SIM_TEST(NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
+  expect_brute_force(random_points(300, 0.05f, 0.3f, 3));
+  // Cells at the far ends of the key's range, and beyond it.
+  std::vector<Vec4> points;
+  for (const float far : {-1e9f, -6e5f, 0.0f, 6e5f, 1e9f}) {
+    for (int i = 0; i < 5; ++i) points.push_back({far, 0.1f * static_cast<float>(i), -far, 0.3f});
+  }
+  expect_brute_force(points);
+}
+
+SIM_TEST(NeighbourList, CountsWhatFindsNoRoom) {
+  // 600 coincident points: each has 599 neighbours, the longest list holds 511.
+  const std::vector<Vec4> points(600, Vec4{1, 1, 1, 0.3f});
+  const Listed listed = list(points);
+  EXPECT_EQ(listed.dropped, 600u * (599 - (NeighbourList::most_capacity - 1)));
+  EXPECT_EQ(listed.cells, 1);
+  for (const auto& set : listed.sets) EXPECT_EQ(set.size(), static_cast<std::size_t>(NeighbourList::most_capacity - 1));
+}
+
+SIM_TEST(NeighbourList, TakesNoneAndOne) {
+  expect_brute_force({});
+  expect_brute_force({{1, 2, 3, 0.1f}});
+  expect_brute_force({{0, 0, 0, 0.1f}, {0.101f, 0, 0, 0.1f}});
+}
+
+SIM_TEST(CellKey, KeepsItsFields) {
+  for (const int x : {-cell_limit_xz, -1, 0, 5, cell_limit_xz - 1}) {
+    for (const int y : {-cell_limit_y, -1, 0, cell_limit_y - 1}) {
+      const auto c = cell_of_key(cell_key({3, x, y, -x - 1}));
+      EXPECT_EQ(c.x, x);
+      EXPECT_EQ(c.y, y);
+      EXPECT_EQ(c.z, -x - 1);
+      EXPECT_EQ(c.level, 3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,201 @@
+#include "libsim/stages/stages.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "libsim/solver/schedule.hpp"
+#include "stats/base/error.hpp"
+#include "tests/libsim/backend/backend_test.hpp"
+
+namespace sim::SIM_BACKEND {
+namespace {
+
+/// A state with all pairs listed, whatever their supports.
+FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
+  FluidState state;
+  state.one_level = one_level;
+  state.guards.resize(1);
+  state.guards.zero();
+  auto& p = state.particles;
+  p.allocate(ColumnSet().set(), static_cast<int>(points.size()));
+  p.position.from_host(points);
+  p.predicted.from_host(points);
+  std::vector<int> id(points.size());
+  std::vector<std::vector<int>> lists(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    id[i] = static_cast<int>(i);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (j != i) lists[i].push_back(static_cast<int>(j));
+    }
+  }
+  p.id.from_host(id);
+  p.level.zero();
+  p.velocity.zero();
+  state.neighbours.assign(lists);
+  return state;
+}
+
+std::vector<Vec4> crowd(int n, unsigned seed, bool mixed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> at(0, 0.5f);
+  std::vector<Vec4> out;
+  for (int i = 0; i < n; ++i) {
+    const float level = mixed ? static_cast<float>(i % 4) : 0;
+    out.push_back({at(random), at(random), at(random), 0.3f * std::exp2(level / 3)});
+  }
+  return out;
+}
+
+double mass(const Vec4& p) { return 1000.0 * std::pow(static_cast<double>(p.w) / 2, 3); }
+
+SIM_TEST(Displacement, KeepsTheCentreOfMassForMixedMasses) {
+  for (const bool tensile : {false, true}) {
+    auto state = state_of(crowd(120, 11, true), false);
+    state.parameters.tensile = tensile ? 0.01f : 0;
+    const auto before = state.particles.predicted.to_host();
+    density_stage().run(state);
+    displacement_stage().run(state);
+    const auto after = state.particles.predicted.to_host();
+    double moment[3] = {};
+    double moved = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const double d[3] = {static_cast<double>(after[i].x) - static_cast<double>(before[i].x),
+                           static_cast<double>(after[i].y) - static_cast<double>(before[i].y),
+                           static_cast<double>(after[i].z) - static_cast<double>(before[i].z)};
+      for (int k = 0; k < 3; ++k) {
+        moment[k] += mass(before[i]) * d[k];
+        moved += mass(before[i]) * std::abs(d[k]);
+      }
+    }
+    ASSERT_GT(moved, 1.0) << "the crowd must be pushed apart for the test to mean anything";
+    for (const double m : moment) EXPECT_LT(std::abs(m), 1e-6 * moved);
+  }
+}
+
+SIM_TEST(Xsph, KeepsMomentumForMixedMasses) {
+  auto state = state_of(crowd(120, 5, true), false);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> speed(-2, 2);
+  std::vector<Vec4> velocity;
+  for (int i = 0; i < 120; ++i) velocity.push_back({speed(random), speed(random), speed(random), 0});
+  state.particles.velocity.from_host(velocity);
+  density_stage().run(state);
+  xsph_stage().run(state);
+  const auto points = state.particles.position.to_host();
+  const auto after = state.particles.velocity.to_host();
+  double momentum = 0;
+  double exchanged = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const double change = static_cast<double>(after[i].x) - static_cast<double>(velocity[i].x);
+    momentum += mass(points[i]) * change;
+    exchanged += mass(points[i]) * std::abs(change);
+  }
+  ASSERT_GT(exchanged, 1.0);
+  EXPECT_LT(std::abs(momentum), 1e-6 * exchanged);
+}
+
+SIM_TEST(Density, OneLevelAndMixedKernelsAgreeAtOneLevel) {
+  auto one = state_of(crowd(100, 9, false), true);
+  auto mixed = state_of(crowd(100, 9, false), false);
+  for (auto* state : {&one, &mixed}) {
+    density_stage().run(*state);
+    displacement_stage().run(*state);
+  }
+  const auto a = one.particles.predicted.to_host();
+  const auto b = mixed.particles.predicted.to_host();
+  const auto lambda_a = one.particles.lambda.to_host();
+  const auto lambda_b = mixed.particles.lambda.to_host();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR(lambda_a[i], lambda_b[i], 1e-4f * std::abs(lambda_a[i]));
+    EXPECT_NEAR(a[i].x, b[i].x, 1e-5f);
+    EXPECT_NEAR(a[i].y, b[i].y, 1e-5f);
+  }
+}
+
+SIM_TEST(Density, LatticeHasTheRestDensity) {
+  std::vector<Vec4> points;
+  const float d = 0.15f;
+  for (int i = 0; i < 343; ++i) {
+    points.push_back({d * static_cast<float>(i % 7), d * static_cast<float>(i / 7 % 7), d * static_cast<float>(i / 49), 2 * d});
+  }
+  auto state = state_of(points, true);
+  density_stage().run(state);
+  EXPECT_NEAR(state.particles.density.to_host()[3 + 3 * 7 + 3 * 49], 1, 1e-5);
+}
+
+SIM_TEST(Density, LonelyParticleIsLeftAlone) {
+  auto state = state_of({{0, 0, 0, 0.3f}}, true);
+  density_stage().run(state);
+  displacement_stage().run(state);
+  EXPECT_EQ(state.particles.lambda.to_host()[0], 0);
+  EXPECT_EQ(state.particles.predicted.to_host()[0].x, 0);
+}
+
+SIM_TEST(Walls, MakeUpHalvesQuartersAndCorners) {
+  Walls walls{};
+  const Vec3 normals[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const float missing[3] = {0.5f, 0.75f, 0.875f};
+  for (int k = 0; k < 3; ++k) {
+    walls.planes[walls.count++] = {normals[k], 0};
+    Vec3 gradient;
+    EXPECT_NEAR(walls.missing({0, 0, 0}, 0.3f, gradient), missing[k], 1e-6f);
+  }
+  Vec3 gradient;
+  EXPECT_EQ(walls.missing({1, 1, 1}, 0.3f, gradient), 0);
+  EXPECT_EQ(gradient.x, 0);
+}
+
+SIM_TEST(Walls, ShareIsTheKernelsIntegralBehindThePlane) {
+  // Numeric integral of poly6 over discs behind the plane, h = 1; and of the spiky kernel's slope along the normal.
+  for (const double q : {0.0, 0.2, 0.5, 0.8}) {
+    double behind = 0;
+    double slope = 0;
+    constexpr int steps = 400;
+    for (int i = 0; i < steps; ++i) {
+      const double z = q + (1 - q) * (i + 0.5) / steps;
+      for (int k = 0; k < steps; ++k) {
+        const double s = (k + 0.5) / steps;
+        const double r2 = z * z + s * s;
+        if (r2 >= 1) continue;
+        const double ring = 2 * 3.14159265358979 * s / steps * (1 - q) / steps;
+        behind += ring * 315 / (64 * 3.14159265358979) * std::pow(1 - r2, 3);
+        slope += ring * 45 / 3.14159265358979 * std::pow(1 - std::sqrt(r2), 2) * z / std::sqrt(r2);
+      }
+    }
+    EXPECT_NEAR(Walls::behind(static_cast<float>(q)), behind, 2e-4);
+    EXPECT_NEAR(Walls::slope(static_cast<float>(q)), slope, 2e-3);
+  }
+}
+
+SIM_TEST(PartingDirection, IsAUnitVectorAndAntisymmetric) {
+  for (int i = 0; i < 50; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const Vec3 a = parting_direction(i, j);
+      const Vec3 b = parting_direction(j, i);
+      EXPECT_NEAR(length(a), 1, 1e-5f);
+      EXPECT_EQ(length(a + b), 0);
+    }
+  }
+}
+
+SIM_TEST(Schedule, LeavesOutWhatNothingCallsFor) {
+  Demand demand;
+  demand.parameters.viscosity = 0;
+  const auto without = compile_schedule(demand);
+  EXPECT_EQ(without.explanation.find("substep end  xsph"), std::string::npos);
+  EXPECT_NE(without.explanation.find("-  xsph"), std::string::npos);
+  EXPECT_FALSE(without.columns.test(static_cast<std::size_t>(Column::VelocityNext)));
+  demand.parameters.viscosity = 0.1f;
+  demand.settling = true;
+  const auto with = compile_schedule(demand);
+  EXPECT_TRUE(with.columns.test(static_cast<std::size_t>(Column::VelocityNext)));
+  EXPECT_EQ(with.frame_end.size(), 1u);
+  EXPECT_EQ(without.frame_end.size(), 0u);
+}
+
+SIM_TEST(Schedule, RefusesAPassThatReadsWhatNobodyWrote) {
+  EXPECT_THROW(compile_schedule({}, {predict_stage(), density_stage()}), base::Error);
+}
+
+}  // namespace
+}  // namespace sim::SIM_BACKEND
