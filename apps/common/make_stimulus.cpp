@@ -11,7 +11,7 @@ namespace {
 std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
   auto bake = std::make_unique<sim::BakeReader>(choice.bake);
   const double dt = bake->header().frame_dt_s;
-  if (choice.content_step_s > 0 && std::abs(choice.content_step_s - dt) > 1e-4 * dt) {
+  if (choice.content_step_s > 0 && std::abs(choice.content_step_s - dt) > 1e-3 * dt) {
     char text[120];
     std::snprintf(text, sizeof text, "holds frames %.6g s apart, but the content step is %.6g s", dt,
                   choice.content_step_s);
@@ -30,11 +30,16 @@ std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
   options.backend = sim::choose_backend(choice.backend);
   options.frame_dt_s = choice.content_step_s;
   const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
-  return std::make_unique<LiveFluid>(scene, dt,
-                                     "live " + scene.name + ", " + sim::method_name(options.method) +
-                                         ", n_* " + std::to_string(options.n_star) + ", on " +
-                                         sim::backend_name(options.backend) + ", scene " + scene.sha256,
-                                     [scene, options] { return sim::make_simulation(scene, options); });
+  const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
+                                  std::to_string(options.n_star) + ", on " +
+                                  sim::backend_name(options.backend) + ", scene " + scene.sha256;
+  // Settled once; each rewind starts from that state.
+  const auto make = [scene, options]() mutable {
+    auto simulation = sim::make_simulation(scene, options);
+    if (!options.start) options.start = simulation->read_state();
+    return simulation;
+  };
+  return std::make_unique<LiveFluid>(scene, dt, description, make);
 }
 
 }  // namespace

@@ -61,6 +61,8 @@ struct BakeSizes {
 class BakeWriter {
  public:
   BakeWriter(const std::filesystem::path& path, const BakeHeader& header, bool overwrite = false);
+  /// The errors that the constructor would meet at this path, without touching it: ask before long work.
+  static void check_target(const std::filesystem::path& path, bool overwrite);
   ~BakeWriter();
   BakeWriter(const BakeWriter&) = delete;
   BakeWriter& operator=(const BakeWriter&) = delete;

@@ -40,11 +40,7 @@ struct BakeWriter::State {
   }
 
   void open(bool overwrite) {
-    std::error_code ignored;
-    if (!overwrite && fs::exists(fs::symlink_status(path, ignored))) {
-      throw base::Error(path.string(), "exists already", "name another file, or overwrite it with --force");
-    }
-    if (fs::is_directory(path, ignored)) throw base::Error(path.string(), "is a folder", "name a file");
+    check_target(path, overwrite);
     const fs::path wanted = path.string() + ".tmp" + std::to_string(::getpid());
     fd = ::open(wanted.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd < 0) fail("cannot be created");
@@ -111,6 +107,19 @@ struct BakeWriter::State {
     temporary.clear();
   }
 };
+
+void BakeWriter::check_target(const fs::path& path, bool overwrite) {
+  std::error_code ignored;
+  if (!overwrite && fs::exists(fs::symlink_status(path, ignored))) {
+    throw base::Error(path.string(), "exists already", "name another file, or overwrite it with --force");
+  }
+  if (fs::is_directory(path, ignored)) throw base::Error(path.string(), "is a folder", "name a file");
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw base::Error(path.string(), std::string("cannot be created: ") + std::strerror(errno),
+                      "write to a folder that exists and that you may write to");
+  }
+}
 
 BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool overwrite)
     : state_(std::make_unique<State>()) {

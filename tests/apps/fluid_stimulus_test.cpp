@@ -1,0 +1,178 @@
+#include "apps/common/fluid_stimulus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/common/headless_display.hpp"
+#include "libstudy/pacing/clock.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/libsim/bake/make_bake.hpp"
+
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string scene_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
+sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
+
+/// A block of the test bake's particles, one frame further with each step.
+class FakeSimulation final : public sim::Simulation {
+ public:
+  void step_frame() override { ++frame_; }
+  sim::FrameReport report() override { return {}; }
+  std::int64_t particle_count() const override { return 960; }
+  double spacing_m() const override { return 0.1; }
+  void read_particles(std::vector<sim::RenderParticle>& out) const override {
+    out = bake_test::particles(frame_);
+  }
+  std::vector<sim::ParticleState> read_state() const override { return {}; }
+  bool copy_to_gl(unsigned) override { return false; }
+  void synchronize() override {}
+  std::size_t particle_bytes() const override { return 0; }
+  std::string explain() const override { return ""; }
+
+ private:
+  std::int64_t frame_ = 0;
+};
+
+TEST(FluidStimulus, LevelsAreCountedFinestFirst) {
+  const auto levels = apps::count_levels({{0, 0, 0, 2}, {0, 0, 0, 1}, {0, 0, 0, 2}, {0, 0, 0, 2}});
+  EXPECT_THAT(levels.radius_m, ElementsAre(1, 2));
+  EXPECT_THAT(levels.count, ElementsAre(1, 3));
+  EXPECT_TRUE(apps::count_levels({}).count.empty());
+}
+
+TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
+  int made = 0;
+  apps::LiveFluid fluid(scene(), 0.02, "fake", [&] {
+    ++made;
+    return std::make_unique<FakeSimulation>();
+  });
+  fluid.start(3);
+  EXPECT_DOUBLE_EQ(fluid.prepare(3).simulation_time_s, 0.06);
+  EXPECT_THAT(fluid.prepare(7).particles_by_level, ElementsAre(768, 192));
+  EXPECT_DOUBLE_EQ(fluid.prepare(7).simulation_time_s, 0.14);
+  EXPECT_EQ(made, 1);
+  EXPECT_DOUBLE_EQ(fluid.prepare(2).simulation_time_s, 0.04);
+  fluid.start(0);
+  EXPECT_EQ(made, 3);
+  EXPECT_EQ(fluid.length(), 0);
+}
+
+TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
+  const bake_test::Folder folder;
+  bake_test::write(folder / "a.bake", 2, 32, 18);
+  apps::StimulusChoice choice;
+  choice.bake = folder / "a.bake";
+  choice.content_step_s = 0.01667;  // 1/60 as a protocol may round it
+  EXPECT_EQ(apps::make_stimulus(choice)->length(), 2);
+  EXPECT_TRUE(apps::shows_pictures(choice));
+  choice.content_step_s = 0.02;
+  try {
+    apps::make_stimulus(choice);
+    FAIL() << "accepted";
+  } catch (const base::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.bake: holds frames 0.0166667 s apart"));
+  }
+}
+
+class FluidStimulusGl : public ::testing::Test {
+ protected:
+  /// The picture that the display shows, bottom row first.
+  static sim::Bytes shown(const apps::HeadlessDisplay& display) {
+    const sim::Image image = display.read();
+    const std::size_t row = 4 * static_cast<std::size_t>(image.width);
+    sim::Bytes out;
+    for (std::size_t y = static_cast<std::size_t>(image.height); y-- > 0;) {
+      const auto begin = image.rgba.begin() + static_cast<std::ptrdiff_t>(y * row);
+      out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+    }
+    return out;
+  }
+  bake_test::Folder folder_;
+  study::RealClock clock_;
+};
+
+TEST_F(FluidStimulusGl, BakedPicturesAreShownExactly) {
+  bake_test::write(folder_ / "a.bake", 40, 64, 36);
+  apps::HeadlessDisplay display(64, 36, true);
+  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  EXPECT_THAT(pictures.description(), HasSubstr("pictures of test, HiRes, n_* 64"));
+  for (const int start : {0, 5}) {
+    pictures.start(start);
+    for (int step = start; step < 40; step += 3) {
+      const study::FrameFacts facts = pictures.prepare(step);
+      EXPECT_DOUBLE_EQ(facts.simulation_time_s, step / 60.0);
+      EXPECT_THAT(facts.particles_by_level, ElementsAre(768, 192));
+      display.render(pictures);
+      const study::PresentTimes times = display.present(clock_);
+      EXPECT_GE(times.gpu_done_ns, times.submitted_ns);
+      ASSERT_EQ(shown(display), bake_test::picture(step, 64, 36)) << step;
+    }
+  }
+}
+
+TEST_F(FluidStimulusGl, RenderStaysUnseenUntilItIsPresented) {
+  bake_test::write(folder_ / "a.bake", 2, 64, 36);
+  apps::HeadlessDisplay display(64, 36, true);
+  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  pictures.start(0);
+  for (const int step : {0, 1}) {
+    pictures.prepare(step);
+    display.render(pictures);
+    if (step == 1) {
+      EXPECT_EQ(shown(display), bake_test::picture(0, 64, 36));
+    }
+    display.present(clock_);
+    EXPECT_EQ(shown(display), bake_test::picture(step, 64, 36));
+  }
+}
+
+TEST_F(FluidStimulusGl, PicturesOfAnotherShapeStandBetweenBlackBars) {
+  bake_test::write(folder_ / "a.bake", 1, 32, 18);
+  apps::HeadlessDisplay display(64, 64, true);
+  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  pictures.start(0);
+  pictures.prepare(0);
+  display.render(pictures);
+  display.present(clock_);
+  const sim::Bytes out = shown(display);
+  const auto blue = [&](std::size_t x, std::size_t y) { return out[4 * (64 * y + x) + 2]; };
+  EXPECT_EQ(blue(5, 13), 0);
+  EXPECT_GE(blue(5, 15), 76);
+  EXPECT_GE(blue(5, 48), 76);
+  EXPECT_EQ(blue(5, 50), 0);
+}
+
+TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
+  sim::BakeHeader header = bake_test::header(3);
+  header.scene_text = scene_text();
+  {
+    sim::BakeWriter writer(folder_ / "a.bake", header);
+    for (int i = 0; i < 3; ++i) writer.add_frame(i / 60.0, bake_test::particles(i));
+    writer.finish();
+  }
+  apps::HeadlessDisplay display(96, 54);
+  apps::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  apps::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
+  const auto picture = [&](study::Stimulus& stimulus, int step) {
+    stimulus.prepare(step);
+    display.render(stimulus);
+    display.present(clock_);
+    return shown(display);
+  };
+  live.start(0);
+  const sim::Bytes first = picture(live, 0), want = picture(live, 2), got = picture(baked, 2);
+  // Positions differ by 0.15 mm at most, so few bytes differ by more than a little.
+  std::size_t far = 0, moved = 0;
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    far += std::abs(int(want[i]) - int(got[i])) > 8;
+    moved += std::abs(int(want[i]) - int(first[i])) > 8;
+  }
+  EXPECT_LT(far, want.size() / 100);
+  EXPECT_GT(moved, want.size() / 50);
+}
+
+}  // namespace
