@@ -57,18 +57,30 @@ enum class Feasibility { Exact, Approximate, Unreachable };
 /// What a fixed refresh makes of a setting.
 struct RefreshVerdict {
   Feasibility feasibility = Feasibility::Unreachable;
-  double mean = 0;  ///< best reachable, frames/s (harmonic)
-  double sd = 0;
-  int longest_hold = 0;  ///< periods
-  std::vector<int>
-      holds;  ///< periods each frame is held, compiled for the least distance to the target distribution
+  std::int64_t frames = 0;  ///< N
+  double mean = 0;          ///< best found, frames/s; the mean that the rules name
+  double sd = 0;            ///< frames/s
+  double distance = 0;      ///< 2-Wasserstein distance to the unquantised rates, frames/s
+  int longest_hold = 0;     ///< periods
+  /// Periods each frame is held, in the order of `seed`; empty when unreachable.
+  std::vector<int> holds;
   std::string reason;  ///< why it is not exact
 };
 
-/// exact: N = round(10 mu) hold counts with sum R T meet mu, and delta within max(2 %, 0.25), no hold longer
-/// than the unquantised schedule's longest interval rounded up; approximate: mu within 0.5 %, nearest delta,
-/// same bound.
+/// exact: some N = round(mean * duration) hold counts whose sum is exactly R N / mean periods (R T where mean
+/// * duration is whole), with delta within max(2 %, 0.25 frames/s) and no hold longer than the unquantised
+/// schedule's longest interval rounded up to a period, nor than max_interval_ms. approximate: mu within 0.5
+/// %, delta as near as possible, same bound on the holds. unreachable: neither, or no unquantised schedule.
+/// Of the lists that meet the moments, the one nearest to the unquantised rates is searched
+/// (hold_search.hpp). With the arithmetic mean, sums of R / k seldom hit a number exactly: there mu counts as
+/// met within 0.01 %. refresh_hz > 0. rules.fps_max_is_refresh is taken at its word.
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& rules, double refresh_hz,
                         std::uint64_t seed);
+
+/// The schedule that a list of holds makes.
+Schedule schedule_of_holds(const std::vector<int>& holds, double refresh_hz);
+
+/// "exact", "approximate" or "unreachable".
+std::string feasibility_name(Feasibility feasibility);
 
 }  // namespace study

@@ -1,0 +1,272 @@
+#include "libstudy/pacing/hold_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace study {
+
+namespace {
+
+/// The list as counts, with the sums that its moments follow from.
+class Holds {
+ public:
+  explicit Holds(const HoldTarget& target)
+      : target_(target),
+        n_(static_cast<std::int64_t>(target.rates.size())),
+        counts_(static_cast<std::size_t>(target.longest - target.shortest + 1), 0) {
+    counts_.back() = n_;
+    recount();
+  }
+
+  /// Edges 0 ... edges() - 1 lie between hold shortest + edge and the next longer one.
+  int edges() const { return static_cast<int>(counts_.size()) - 1; }
+  std::int64_t total() const { return total_; }
+  double rate(int edge) const { return target_.refresh_hz / (target_.shortest + edge); }
+  double distance2() const { return static_cast<double>(distance2_); }
+
+  double mean() const {
+    const double n = static_cast<double>(n_);
+    return target_.mean_kind == FpsMean::Harmonic ? n * target_.refresh_hz / static_cast<double>(total_)
+                                                  : static_cast<double>(sum_) / n;
+  }
+  double sd() const {
+    const long double n = static_cast<long double>(n_);
+    return static_cast<double>(std::sqrt(std::max(0.0L, squares_ / n - (sum_ / n) * (sum_ / n))));
+  }
+  double excess() const {
+    return mean_weight_ * std::max(0.0, std::abs(mean() - target_.mean) - target_.mean_tolerance) +
+           std::max(0.0, std::abs(sd() - target_.sd) - target_.sd_tolerance);
+  }
+
+  /// How much a missed mean counts beside a missed standard deviation while searching.
+  void weigh_mean(double weight) { mean_weight_ = weight; }
+
+  void set(int edge, std::int64_t count) { counts_[static_cast<std::size_t>(edge)] = count; }
+
+  bool can_move(int edge, int by) const {
+    const auto at = static_cast<std::size_t>(edge);
+    return by > 0 ? counts_[at] < counts_[at + 1] : counts_[at] > (edge ? counts_[at - 1] : 0);
+  }
+
+  /// Moves one frame across an edge: by = 1 shortens its hold by a period, -1 lengthens it.
+  void move(int edge, int by) {
+    auto& count = counts_[static_cast<std::size_t>(edge)];
+    const long double fast = rate(edge), slow = rate(edge + 1);
+    const long double x = target_.rates[static_cast<std::size_t>(by > 0 ? count : count - 1)];
+    count += by;
+    total_ -= by;
+    sum_ += by * (fast - slow);
+    squares_ += by * (fast * fast - slow * slow);
+    distance2_ += by * ((fast - x) * (fast - x) - (slow - x) * (slow - x));
+  }
+
+  std::vector<int> list() const {
+    std::vector<int> holds;
+    holds.reserve(static_cast<std::size_t>(n_));
+    for (std::size_t edge = 0; edge < counts_.size(); ++edge)
+      holds.resize(static_cast<std::size_t>(counts_[edge]), target_.shortest + static_cast<int>(edge));
+    return holds;
+  }
+
+  void recount() {
+    total_ = 0;
+    sum_ = squares_ = distance2_ = 0;
+    const auto holds = list();
+    for (std::size_t i = 0; i < holds.size(); ++i) {
+      const long double f = target_.refresh_hz / holds[i];
+      total_ += holds[i];
+      sum_ += f;
+      squares_ += f * f;
+      distance2_ += (f - target_.rates[i]) * (f - target_.rates[i]);
+    }
+  }
+
+ private:
+  const HoldTarget& target_;
+  std::int64_t n_;
+  std::vector<std::int64_t> counts_;
+  double mean_weight_ = 1;
+  std::int64_t total_ = 0;
+  long double sum_ = 0, squares_ = 0, distance2_ = 0;
+};
+
+/// Minimises the objective + spread x (sum of squared deviations from the mean) + price x (the mean's sum):
+/// frame i crosses an edge when its x_i lies above a threshold.
+void place(Holds& holds, const HoldTarget& target, double spread, double price) {
+  std::int64_t last = 0;
+  const auto& x = target.rates;
+  for (int edge = 0; edge < holds.edges(); ++edge) {
+    const double fast = holds.rate(edge), slow = holds.rate(edge + 1);
+    const double per_unit = target.mean_kind == FpsMean::Harmonic ? 1 / (fast - slow) : 1;
+    const double threshold = 0.5 * (fast + slow) * (1 + spread) - spread * target.mean - price * per_unit;
+    const auto above =
+        std::partition_point(x.begin(), x.end(), [&](double rate) { return rate > threshold; });
+    last = std::max<std::int64_t>(last, above - x.begin());
+    holds.set(edge, last);
+  }
+  holds.recount();
+}
+
+/// Finds the price at which the wished mean is passed; more price shortens holds.
+void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
+  double low = -1, high = 1;
+  const auto mean_at = [&](double price) {
+    place(holds, target, spread, price);
+    return holds.mean();
+  };
+  while (mean_at(low) > target.mean && low > -1e9) low *= 4;
+  while (mean_at(high) < target.mean && high < 1e9) high *= 4;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (mean_at(middle) < target.mean ? low : high) = middle;
+  }
+  place(holds, target, spread, high);
+}
+
+/// Bisects the weight on the spread until the standard deviation is passed.
+void place_with_moments(Holds& holds, const HoldTarget& target) {
+  const auto sd_at = [&](double log_weight) {
+    place_with_mean(holds, target, std::exp(log_weight) - 1);
+    return holds.sd();
+  };
+  if (std::abs(sd_at(0) - target.sd) <= target.sd_tolerance) return;
+  double low = -6, high = 6;  // the standard deviation falls from low to high
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    const double sd = sd_at(middle);
+    if (std::abs(sd - target.sd) <= 0.5 * target.sd_tolerance) return;
+    (sd > target.sd ? low : high) = middle;
+  }
+}
+
+/// Brings the total to the wished one by the moves that cost the objective least.
+void fix_total(Holds& holds, std::int64_t total) {
+  while (holds.total() != total) {
+    const int by = holds.total() > total ? 1 : -1;
+    int best = -1;
+    double best_cost = 0;
+    for (int edge = 0; edge < holds.edges(); ++edge) {
+      if (!holds.can_move(edge, by)) continue;
+      const double before = holds.distance2();
+      holds.move(edge, by);
+      const double cost = holds.distance2() - before;
+      holds.move(edge, -by);
+      if (best < 0 || cost < best_cost) best = edge, best_cost = cost;
+    }
+    if (best < 0) return;
+    holds.move(best, by);
+  }
+}
+
+/// First the moments' excess, then the objective.
+struct Score {
+  double excess, distance2;
+  explicit Score(const Holds& holds) : excess(holds.excess()), distance2(holds.distance2()) {}
+  bool better_than(const Score& other) const {
+    if (std::abs(excess - other.excess) > 1e-12) return excess < other.excess;
+    return distance2 < other.distance2 - 1e-9;
+  }
+};
+
+/// One frame gives a period, another takes it: the total stays.
+bool exchange(Holds& holds, Score& score) {
+  bool moved = false;
+  for (int up = 0; up < holds.edges(); ++up) {
+    for (int down = 0; down < holds.edges(); ++down) {
+      if (up == down || !holds.can_move(up, 1)) continue;
+      holds.move(up, 1);
+      if (holds.can_move(down, -1)) {
+        holds.move(down, -1);
+        const Score tried(holds);
+        if (tried.better_than(score)) {
+          score = tried;
+          moved = true;
+          continue;
+        }
+        holds.move(down, 1);
+      }
+      holds.move(up, -1);
+    }
+  }
+  return moved;
+}
+
+/// One frame's hold changes by a period: the total changes.
+bool adjust(Holds& holds, Score& score) {
+  bool moved = false;
+  for (int edge = 0; edge < holds.edges(); ++edge) {
+    for (const int by : {-1, 1}) {
+      if (!holds.can_move(edge, by)) continue;
+      holds.move(edge, by);
+      const Score tried(holds);
+      if (tried.better_than(score)) {
+        score = tried;
+        moved = true;
+      } else {
+        holds.move(edge, -by);
+      }
+    }
+  }
+  return moved;
+}
+
+void descend(Holds& holds, std::int64_t total) {
+  if (total > 0) fix_total(holds, total);
+  Score score(holds);
+  for (int sweep = 0; sweep < 5000; ++sweep) {
+    const bool exchanged = exchange(holds, score);
+    const bool adjusted = total == 0 && adjust(holds, score);
+    if (!exchanged && !adjusted) break;
+  }
+}
+
+HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total) {
+  const double n = static_cast<double>(target.rates.size());
+  return {holds.list(), holds.mean(), holds.sd(), std::sqrt(std::max(0.0, holds.distance2()) / n),
+          total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
+}
+
+/// Two holds that bracket the mean are the extremes of the standard deviation: descend from each such pair.
+HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
+  const auto n = static_cast<std::int64_t>(target.rates.size());
+  const auto first = static_cast<std::int64_t>(target.shortest);
+  for (std::int64_t fast = first; fast * n <= total && best.excess > 0; ++fast) {
+    for (std::int64_t slow = fast + 1; slow <= target.longest && best.excess > 0; ++slow) {
+      if (slow * n < total) continue;
+      const std::int64_t fast_count = n - (total - fast * n) / (slow - fast);
+      Holds holds(target);
+      for (int edge = 0; edge < holds.edges(); ++edge) {
+        const std::int64_t hold = first + edge;
+        holds.set(edge, hold < fast ? 0 : hold < slow ? fast_count : n);
+      }
+      holds.recount();
+      descend(holds, total);
+      auto found = result(holds, target, total);
+      if (found.excess < best.excess) best = std::move(found);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+HoldList search_holds(const HoldTarget& target, std::int64_t total) {
+  Holds holds(target);
+  place_with_moments(holds, target);
+  Holds strict = holds;
+  descend(holds, total);
+  auto best = result(holds, target, total);
+  if (best.excess == 0) return best;
+  if (total > 0) return from_pairs(target, total, std::move(best));
+  // A free total may trade the mean for the standard deviation and stop halfway: insist on the mean.
+  for (Holds* start : {&holds, &strict}) {
+    start->weigh_mean(1000);
+    descend(*start, total);
+    auto found = result(*start, target, total);
+    if (found.excess < best.excess || std::abs(best.mean - target.mean) > target.mean_tolerance)
+      best = std::move(found);
+  }
+  return best;
+}
+
+}  // namespace study

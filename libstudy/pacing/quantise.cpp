@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "libstudy/pacing/exact_rates.hpp"
+#include "libstudy/pacing/frame_order.hpp"
+#include "libstudy/pacing/hold_search.hpp"
+#include "libstudy/pacing/schedule.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr double sd_relative = 0.02;
+constexpr double sd_absolute = 0.25;  // frames/s
+constexpr double approximate_mean = 0.005;
+constexpr double arithmetic_mean_met = 1e-4;
+constexpr double harmonic_mean_met = 1e-9;
+constexpr double whole = 1e-6;  // periods; forgives rounding in refresh * frames / mean
+
+std::string format(const char* pattern, double a, double b = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
+  HoldTarget target;
+  target.rates = exact_rates(setting, rules);
+  std::reverse(target.rates.begin(), target.rates.end());
+  target.refresh_hz = refresh_hz;
+  target.shortest =
+      rules.fps_max ? static_cast<int>(std::max(1.0, std::ceil(refresh_hz / *rules.fps_max - whole))) : 1;
+  const double rounded_up = std::ceil(refresh_hz / target.rates.back() - whole);
+  const double allowed =
+      std::floor(refresh_hz * std::min(1 / rules.fps_min, 1e-3 * rules.max_interval_ms) + whole);
+  target.longest = static_cast<int>(std::min(rounded_up, allowed));
+  target.mean_kind = rules.mean;
+  target.mean = setting.mean;
+  target.mean_tolerance =
+      setting.mean * (rules.mean == FpsMean::Harmonic ? harmonic_mean_met : arithmetic_mean_met);
+  target.sd = setting.sd;
+  target.sd_tolerance = std::max(sd_relative * setting.sd, sd_absolute);
+  return target;
+}
+
+double wished_periods(const HoldTarget& target) {
+  return target.refresh_hz * static_cast<double>(target.rates.size()) / target.mean;
+}
+
+bool is_whole(double periods) { return std::abs(periods - std::round(periods)) <= whole * periods; }
+
+/// A list that meets the mean and the standard deviation; excess > 0 when none was found.
+HoldList exact_list(const HoldTarget& target) {
+  if (target.mean_kind == FpsMean::Arithmetic) return search_holds(target, 0);
+  const double periods = wished_periods(target);
+  if (is_whole(periods)) return search_holds(target, std::llround(periods));
+  HoldList none;
+  none.excess = HUGE_VAL;
+  return none;
+}
+
+double sd_miss(const HoldList& list, const HoldTarget& target) {
+  return std::max(0.0, std::abs(list.sd - target.sd) - target.sd_tolerance);
+}
+
+double mean_miss(const HoldList& list, const HoldTarget& target) { return std::abs(list.mean - target.mean); }
+
+/// Every total within 0.5 % of the wished one. The nearest delta wins; deltas that differ by less than the
+/// tolerance count as equally near unless one meets it, and then the nearest mu wins.
+HoldList approximate_list(HoldTarget target) {
+  const double bound = approximate_mean * target.mean;
+  std::vector<HoldList> found;
+  if (target.mean_kind == FpsMean::Arithmetic) {
+    target.mean_tolerance = bound;
+    found.push_back(search_holds(target, 0));
+  } else {
+    const double periods = wished_periods(target);
+    const auto first = static_cast<std::int64_t>(std::ceil(periods / (1 + approximate_mean)));
+    const auto last = static_cast<std::int64_t>(std::floor(periods / (1 - approximate_mean)));
+    target.mean_tolerance = bound;
+    for (std::int64_t total = first; total <= last; ++total) found.push_back(search_holds(target, total));
+  }
+  std::erase_if(found, [&](const HoldList& list) {
+    return !std::isfinite(list.excess) || mean_miss(list, target) > bound;
+  });
+  double least = HUGE_VAL;
+  for (const auto& list : found) least = std::min(least, sd_miss(list, target));
+  const double equal = least > 0 ? least + target.sd_tolerance : 0;
+  HoldList best;
+  for (auto& list : found) {
+    if (sd_miss(list, target) > equal) continue;
+    if (best.holds.empty() || mean_miss(list, target) < mean_miss(best, target)) best = std::move(list);
+  }
+  return best;
+}
+
+std::string why_not_exact(const HoldTarget& target, const HoldList& tried) {
+  const double periods = wished_periods(target);
+  if (target.mean_kind == FpsMean::Harmonic && !is_whole(periods))
+    return format("%.6g periods for the trial are not a whole number", periods);
+  const auto bounds = sd_bounds(target);
+  if (bounds.low > bounds.high)
+    return format("no holds of %.0f to %.0f periods have this mean", target.shortest, target.longest);
+  if (bounds.low > target.sd + target.sd_tolerance)
+    return format("at this mean the refresh forces an sd of %.4g or more", bounds.low);
+  if (bounds.high < target.sd - target.sd_tolerance)
+    return format("at this mean, holds up to %.0f periods allow an sd of %.4g at most", target.longest,
+                  bounds.high);
+  return format("no whole hold counts found nearer than sd %.4g", tried.sd);
+}
+
+void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rules, double refresh_hz,
+          std::uint64_t seed) {
+  verdict.mean = list.mean;
+  verdict.sd = list.sd;
+  verdict.distance = list.distance;
+  verdict.longest_hold = list.holds.back();
+  std::vector<double> rates;
+  for (const int hold : list.holds) rates.push_back(refresh_hz / hold);
+  for (const double rate : ordered(std::move(rates), rules, seed))
+    verdict.holds.push_back(static_cast<int>(std::lround(refresh_hz / rate)));
+}
+
+}  // namespace
+
+RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rules, double refresh_hz,
+                        std::uint64_t seed) {
+  if (!(refresh_hz > 0 && std::isfinite(refresh_hz)))
+    throw base::Error("refresh " + format("%g", refresh_hz) + " Hz", "is not a refresh rate",
+                      "give the display's refresh in hertz");
+  const auto rules = for_display(wished_rules, refresh_hz);
+  RefreshVerdict verdict;
+  verdict.frames = frame_count(setting);
+  HoldTarget target;
+  try {
+    target = target_for(setting, rules, refresh_hz);
+  } catch (const base::Error& error) {
+    const std::string message = error.what();
+    verdict.reason = message.substr(0, message.find('\n'));
+    return verdict;
+  }
+  if (target.shortest > target.longest) {
+    verdict.reason =
+        format("no hold lies between %g periods and %g periods", target.shortest, target.longest);
+    return verdict;
+  }
+  HoldList list = exact_list(target);
+  verdict.feasibility = Feasibility::Exact;
+  if (list.excess > 0) {
+    verdict.reason = why_not_exact(target, list);
+    verdict.feasibility = Feasibility::Approximate;
+    list = approximate_list(target);
+  }
+  if (list.holds.empty()) {
+    verdict.feasibility = Feasibility::Unreachable;
+    return verdict;
+  }
+  fill(verdict, list, rules, refresh_hz, seed);
+  return verdict;
+}
+
+Schedule schedule_of_holds(const std::vector<int>& holds, double refresh_hz) {
+  Schedule schedule;
+  std::int64_t periods = 0, last_ns = 0;
+  for (const int hold : holds) {
+    periods += hold;
+    const std::int64_t deadline_ns = std::llround(1e9 * static_cast<double>(periods) / refresh_hz);
+    schedule.intervals_s.push_back(hold / refresh_hz);
+    schedule.intervals_ns.push_back(deadline_ns - last_ns);
+    last_ns = deadline_ns;
+  }
+  return schedule;
+}
+
+std::string feasibility_name(Feasibility feasibility) {
+  switch (feasibility) {
+    case Feasibility::Exact:
+      return "exact";
+    case Feasibility::Approximate:
+      return "approximate";
+    case Feasibility::Unreachable:
+      break;
+  }
+  return "unreachable";
+}
+
+}  // namespace study
