@@ -38,7 +38,6 @@ Backend choose_backend(std::string_view name) {
   throw base::Error("--backend cuda", problem, "use --backend cpu or auto, or a machine with an NVIDIA driver");
 }
 
-std::string backend_name(Backend backend) { return backend == Backend::Cpu ? "cpu" : "cuda"; }
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
 #ifdef SIM_HAS_CUDA
