@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -50,6 +52,19 @@ void print_fit(const apps::PilotFit& fit) {
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }
 
+/// Outputs that would overwrite the database or each other are refused before anything is read.
+void check_outputs(const FitCommand& command) {
+  std::map<std::filesystem::path, std::string> taken{
+      {std::filesystem::weakly_canonical(command.database), "the database"}};
+  for (const auto& [option, path] : std::map<std::string, std::string>{
+           {"--out", command.out}, {"--json", command.json}, {"--svg", command.svg}}) {
+    if (path.empty()) continue;
+    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
+    if (!added)
+      throw base::Error(option + " " + path, "is " + other->second, "give each output a file of its own");
+  }
+}
+
 void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
@@ -62,6 +77,7 @@ void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
 }
 
 void fit_ptpe(FitCommand& command) {
+  check_outputs(command);
   command.selection.exclude = command.exclude == "none"       ? apps::ExcludedVerdicts::None
                               : command.exclude == "degraded" ? apps::ExcludedVerdicts::Degraded
                                                               : apps::ExcludedVerdicts::Fail;

@@ -1,0 +1,149 @@
+/// The program vip-stats on real databases.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/stats/pilot_fit.hpp"
+#include "libstudy/observer/ptpe_observer.hpp"
+#include "libstudy/store/ratings.hpp"
+#include "libstudy/store/store.hpp"
+#include "stats/base/file.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace {
+
+using study::test::TemporaryFolder;
+
+struct Outcome {
+  int status = -1;
+  std::string output;  ///< stdout and stderr
+};
+
+Outcome vip_stats(const std::string& arguments) {
+  const std::string line = std::string(VIP_BIN_DIR) + "/vip-stats " + arguments + " 2>&1";
+  FILE* pipe = popen(line.c_str(), "r");
+  Outcome outcome;
+  std::array<char, 4096> buffer{};
+  while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.output.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+using Score = std::function<int(const study::ShownTrial&)>;
+
+/// A finished pilot of six participants, shown exactly at its nominal settings.
+void write_database(const std::filesystem::path& path, const Score& score) {
+  const auto protocol = study::test::pilot();
+  study::Store store(path, study::sqlite::Open::Create);
+  store.add_run(study::test::run_plan(protocol, {"P1", "P2", "P3", "P4", "P5", "P6"}));
+  const auto runs = store.open_runs();
+  for (const auto& session : runs.at(0).sessions) {
+    for (const auto& trial : session.trials) {
+      const auto& setting = protocol.settings[static_cast<std::size_t>(trial.plan.setting)];
+      study::TimingVerdict verdict;
+      verdict.verdict = study::Verdict::Pass;
+      verdict.nominal = setting;
+      verdict.realised = {static_cast<std::size_t>(10 * setting.mean), setting.mean, setting.mean,
+                          setting.sd};
+      const auto shown = store.begin_presentation(session.id, trial.id, 1, 0);
+      store.end_presentation(shown, 0, 1, {}, verdict);
+      const study::ShownTrial seen{session.plan.participant, 7, trial.plan.position, setting,
+                                   verdict.realised};
+      store.answer(session.id, trial.id, shown, protocol.question.id, score(seen), 1, 2);
+    }
+  }
+}
+
+Score simulated(const std::string& specification) {
+  return [observer = study::PtpeObserver(study::parse_ptpe_observer(specification))](
+             const study::ShownTrial& trial) mutable {
+    study::VirtualClock clock;
+    return observer.answer(study::Question{}, trial, clock).score;
+  };
+}
+
+nlohmann::json read_json(const std::filesystem::path& path) {
+  return nlohmann::json::parse(base::read_file(path, 1 << 24));
+}
+
+TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
+  const auto before = study::test::bytes_of(folder / "study.db");
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  const auto outcome = vip_stats("fit-ptpe " + at("study.db") + " --level 4 --out " + at("fitted.toml") +
+                                 " --json " + at("fit.json") + " --svg " + at("heat.svg") + " --seed 3");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const auto fit =
+      apps::fit_pilot(*apps::select_pilot(study::read_ratings(folder / "study.db"), {}), 4, {2000, 3, 0.95});
+  const auto json = read_json(folder / "fit.json");
+  EXPECT_EQ(json.at("status"), "ok");
+  EXPECT_EQ(json.at("n_participants"), 6);
+  EXPECT_EQ(json.at("n_ratings"), 126);
+  EXPECT_EQ(json.at("a").get<double>(), fit.main().fit->a);
+  EXPECT_EQ(json.at("b_ci")[1].get<double>(), fit.main().spread->b_ci[1]);
+  const auto file = sim::read_ptpe_file(folder / "fitted.toml");
+  EXPECT_EQ(file.model.a, fit.main().fit->a);
+  EXPECT_EQ(file.protocol_sha256, study::test::pilot().sha256);
+  EXPECT_TRUE(study::test::bytes_of(folder / "heat.svg").starts_with("<?xml"));
+  EXPECT_EQ(study::test::bytes_of(folder / "study.db"), before);
+}
+
+TEST(VipStatsE2e, SaysPlainlyThatThereIsNoFitAndKeepsOldFiles) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", [](const study::ShownTrial&) { return 4; });
+  base::write_file_atomically(folder / "fitted.toml", "old");
+  const auto outcome = vip_stats("fit-ptpe --db " + (folder / "study.db").string() + " --out " +
+                                 (folder / "fitted.toml").string() + " --json " +
+                                 (folder / "fit.json").string() + " --svg " + (folder / "heat.svg").string());
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.output.find("all ratings are equal"), std::string::npos) << outcome.output;
+  const auto json = read_json(folder / "fit.json");
+  EXPECT_EQ(json.at("status"), "failed");
+  EXPECT_EQ(json.at("converged"), false);
+  EXPECT_TRUE(json.at("a").is_null());
+  EXPECT_EQ(study::test::bytes_of(folder / "fitted.toml"), "old");
+  EXPECT_FALSE(std::filesystem::exists(folder / "heat.svg"));
+}
+
+TEST(VipStatsE2e, RefusesWhatIsNoDatabase) {
+  const TemporaryFolder folder;
+  base::write_file_atomically(folder / "text.db", "participant,rating\n1,4\n");
+  for (const char* name : {"missing.db", "text.db"}) {
+    const auto path = (folder / name).string();
+    const auto outcome = vip_stats("fit-ptpe " + path + " --json " + (folder / "fit.json").string());
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(path), std::string::npos) << outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(folder / "fit.json"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "missing.db"));
+}
+
+TEST(VipStatsE2e, RefusesOutputsThatOverwriteInputOrEachOther) {
+  const TemporaryFolder folder;
+  base::write_file_atomically(folder / "study.db", "precious");
+  const auto path = (folder / "study.db").string();
+  EXPECT_EQ(vip_stats("fit-ptpe " + path + " --json " + path).status, 1);
+  const auto twice = vip_stats("fit-ptpe " + path + " --json x.json --svg ./x.json");
+  EXPECT_EQ(twice.status, 1);
+  EXPECT_NE(twice.output.find("mend"), std::string::npos) << twice.output;
+  EXPECT_EQ(study::test::bytes_of(folder / "study.db"), "precious");
+}
+
+TEST(VipStatsE2e, RefusesAWrongCommandLine) {
+  for (const char* arguments : {"fit-ptpe", "fit-ptpe a.db --db b.db", "fit-ptpe a.db --level nan",
+                                "fit-ptpe a.db --exclude all", "fit-ptpe a.db --resamples 1", "fit"}) {
+    EXPECT_EQ(vip_stats(arguments).status, 2) << arguments;
+  }
+}
+
+}  // namespace
