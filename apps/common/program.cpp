@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -19,6 +20,8 @@ double seconds_now() {
 int run_program(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", base::version());
   app.require_subcommand(0, 1);
+  // A file-size limit is then an error of the write, with the file's name, and not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     app.parse(argc, argv);
     return 0;

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -26,8 +28,9 @@ struct Outcome {
   std::string output;  ///< stdout and stderr
 };
 
-Outcome vip_stats(const std::string& arguments) {
-  const std::string line = std::string(VIP_BIN_DIR) + "/vip-stats " + arguments + " 2>&1";
+/// `before` is what the shell does first, `as` what the program is started with.
+Outcome vip_stats(const std::string& arguments, const std::string& before = "", const std::string& as = "") {
+  const std::string line = before + as + VIP_BIN_DIR "/vip-stats " + arguments + " 2>&1";
   FILE* pipe = popen(line.c_str(), "r");
   Outcome outcome;
   std::array<char, 4096> buffer{};
@@ -137,6 +140,58 @@ TEST(VipStatsE2e, RefusesOutputsThatOverwriteInputOrEachOther) {
   EXPECT_EQ(twice.status, 1);
   EXPECT_NE(twice.output.find("mend"), std::string::npos) << twice.output;
   EXPECT_EQ(study::test::bytes_of(folder / "study.db"), "precious");
+}
+
+std::size_t files_in(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+/// A folder with a finished study that nobody may write to.
+class LockedStudy {
+ public:
+  LockedStudy() {
+    write_database(folder_ / "study.db", simulated("ptpe:a=24,b=0.02"));
+    std::filesystem::permissions(folder_.path(), read_only);
+  }
+  ~LockedStudy() { std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all); }
+  LockedStudy(const LockedStudy&) = delete;
+  LockedStudy& operator=(const LockedStudy&) = delete;
+  std::string database() const { return (folder_ / "study.db").string(); }
+  /// Root writes everywhere: become nobody.
+  static std::string unprivileged() {
+    return geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
+  }
+
+  static constexpr auto read_only = static_cast<std::filesystem::perms>(0555);
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST(VipStatsE2e, LeavesNothingHalfWrittenAtAFileSizeLimit) {
+  const LockedStudy study;
+  const TemporaryFolder out;
+  std::filesystem::permissions(out.path(), std::filesystem::perms::all);
+  const auto json = (out / "fit.json").string();
+  const auto outcome = vip_stats("fit-ptpe " + study.database() + " --resamples 100 --json " + json,
+                                 "ulimit -f 1; ", LockedStudy::unprivileged());
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find(json + ": cannot be written"), std::string::npos) << outcome.output;
+  EXPECT_EQ(files_in(out.path()), 0u);
+}
+
+TEST(VipStatsE2e, ReadsAndFailsCleanlyInFoldersThatItMayNotWrite) {
+  const LockedStudy study;
+  const TemporaryFolder out;
+  std::filesystem::permissions(out.path(), LockedStudy::read_only);
+  const auto file = (out / "fitted.toml").string();
+  const std::string fit = "fit-ptpe " + study.database() + " --resamples 100";
+  EXPECT_EQ(vip_stats(fit, "", LockedStudy::unprivileged()).status, 0);
+  const auto outcome = vip_stats(fit + " --out " + file, "", LockedStudy::unprivileged());
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output;
+  EXPECT_EQ(files_in(out.path()), 0u);
+  std::filesystem::permissions(out.path(), std::filesystem::perms::owner_all);
 }
 
 TEST(VipStatsE2e, RefusesAWrongCommandLine) {
