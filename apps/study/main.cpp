@@ -1,0 +1,8 @@
+#include "apps/common/program.hpp"
+#include "apps/study/commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("Studies of people's perception of real-time fluid", "vip-study");
+  apps::add_check_command(app);
+  return apps::run_program(app, argc, argv);
+}

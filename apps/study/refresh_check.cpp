@@ -1,0 +1,42 @@
+#include "apps/study/refresh_check.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace apps {
+
+RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz) {
+  RefreshCheck check;
+  check.refresh_hz = refresh_hz;
+  for (const auto& setting : protocol.settings) {
+    // The seed orders the holds; nothing that is reported depends on it.
+    check.verdicts.push_back(study::quantise(setting, protocol.pacing, refresh_hz, 0));
+    const auto& verdict = check.verdicts.back();
+    check.exact += verdict.feasibility == study::Feasibility::Exact;
+    check.approximate += verdict.feasibility == study::Feasibility::Approximate;
+    check.unreachable += verdict.feasibility == study::Feasibility::Unreachable;
+    check.distance += verdict.distance;
+  }
+  if (const int reached = check.exact + check.approximate; reached > 0) check.distance /= reached;
+  return check;
+}
+
+const RefreshCheck& best_refresh(const std::vector<RefreshCheck>& checks) {
+  const auto rank = [](const RefreshCheck& check) {
+    return std::make_tuple(-check.exact, check.unreachable, check.distance);
+  };
+  return *std::min_element(checks.begin(), checks.end(),
+                           [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+}
+
+double plan_seconds(const study::Protocol& protocol, double answer_s) {
+  double seconds = 0;
+  for (const auto& setting : protocol.settings) seconds += protocol.gap_s + setting.duration_s + answer_s;
+  return seconds;
+}
+
+double play_speed(const study::Protocol& protocol, const study::FpsSetting& setting) {
+  return protocol.content.real_time ? 1 : setting.mean * protocol.content.content_step_s;
+}
+
+}  // namespace apps
