@@ -1,0 +1,112 @@
+#include <epoxy/gl.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/common/program.hpp"
+#include "apps/view/fluid_picture.hpp"
+#include "apps/view/options.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "stats/base/error.hpp"
+#include "stats/fps_window.hpp"
+
+namespace apps {
+
+namespace {
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw base::Error(folder.string(), "cannot be made a folder: " + error.message(),
+                      "choose another --png folder");
+  }
+}
+
+std::filesystem::path picture_path(const std::string& folder, int frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%04d.png", frame);
+  return std::filesystem::path(folder) / name;
+}
+
+/// Frame intervals without the time that pictures take on their way to the disk.
+struct Timing {
+  stats::FpsWindow window{30};
+  double step_s = 0, draw_s = 0;
+  int steps = 0, draws = 0, pictures = 0;
+};
+
+void print_timing(const Timing& timing) {
+  if (timing.steps) std::printf("step   %8.2f ms a frame\n", 1e3 * timing.step_s / timing.steps);
+  if (timing.draws) std::printf("draw   %8.2f ms a frame\n", 1e3 * timing.draw_s / timing.draws);
+}
+
+void print_tolerance(const sim::PtpeFile& file, const stats::FpsMoments& fps) {
+  const double tau = stats::ptpe_tolerance(file.model, fps.mean, fps.sd);
+  std::printf("ptpe   a = %.4f frames/s, b = %.5f s/frame (level %.1f, %d participants)\n", file.model.a,
+              file.model.b, file.level, file.n_participants);
+  std::printf("       over the last %zu frames: mu = %.3f, delta = %.3f frames/s, tau = %.3f, beta = %.4f\n",
+              fps.frames, fps.mean, fps.sd, tau, stats::activation_floor(file.model, tau));
+}
+
+void print_render_counts(const sim::RenderCounts& c) {
+  if (c.not_finite) std::printf("render %u particles were not finite and were skipped\n", c.not_finite);
+  if (c.thickness_full) std::printf("render thickness saturated in %u cells\n", c.thickness_full);
+  if (c.filter_capped) std::printf("render the depth filter stopped short in %u px\n", c.filter_capped);
+  if (c.front_missing)
+    std::printf("render %u px have no front particle: the driver is faulty\n", c.front_missing);
+}
+
+}  // namespace
+
+void run_headless(const ViewOptions& options) {
+  auto context = sim::GlContext::make_headless();
+  const sim::Offscreen target(options.width_px, options.height_px);
+  if (!options.png_folder.empty()) make_folder(options.png_folder);
+  const PreparedFluid prepared = prepare_fluid(options);
+  std::printf("OpenGL: %s\n", sim::gl_description().c_str());
+  FluidPicture picture(prepared.scene);
+  const sim::View view = sim::make_view(prepared.camera, options.width_px, options.height_px);
+
+  Timing timing;
+  Progress progress("frames", static_cast<std::size_t>(options.frames));
+  for (int frame = 0; frame < options.frames; ++frame) {
+    const double start = seconds_now();
+    if (frame > 0) {
+      prepared.fluid->step_frame();
+      prepared.fluid->synchronize();
+      ++timing.steps;
+    }
+    const double stepped = seconds_now();
+    const bool kept = !options.png_folder.empty() && frame % options.every == 0;
+    // tau speaks of frames that are shown, so --ptpe draws them all.
+    if (kept || prepared.ptpe || options.png_folder.empty()) {
+      picture.draw(*prepared.fluid, view, target.framebuffer());
+      glFinish();
+      ++timing.draws;
+    }
+    const double drawn = seconds_now();
+    if (frame > 0) {
+      timing.window.push(drawn - start);
+      timing.step_s += stepped - start;
+    }
+    timing.draw_s += drawn - stepped;
+    if (kept) {
+      sim::write_png(picture_path(options.png_folder, frame), target.read());
+      ++timing.pictures;
+    }
+    progress.update(static_cast<std::size_t>(frame) + 1);
+  }
+  print_timing(timing);
+  if (timing.draws) print_render_counts(picture.renderer().counts());
+  if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
+  if (timing.pictures) std::printf("%d pictures in %s\n", timing.pictures, options.png_folder.c_str());
+}
+
+}  // namespace apps

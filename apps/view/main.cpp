@@ -1,0 +1,39 @@
+#include <CLI/CLI.hpp>
+
+#include "apps/common/program.hpp"
+#include "apps/view/options.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
+  apps::ViewOptions options;
+  std::string size = "1280x720";
+  app.add_option("scene", options.scene, "Scene file")->required();
+  app.add_flag("--headless", options.headless, "No window: run the frames and write pictures");
+  app.add_option("--method", options.method, "LoRes or HiRes")->capture_default_str();
+  app.add_option("--n-star", options.n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
+  app.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
+  app.add_option("--frames", options.frames, "Frames to run (headless)")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing");
+  app.add_option("--every", options.every, "A picture every so many frames")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  app.add_option("--size", size, "Picture or window, px")->capture_default_str();
+  app.add_option("--camera", options.camera, "view or overview")
+      ->check(CLI::IsMember({"view", "overview"}))
+      ->capture_default_str();
+  app.add_option("--ptpe", options.ptpe,
+                 "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate");
+  app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
+  app.callback([&] {
+    apps::parse_size(size, options);
+    if (options.headless) {
+      apps::run_headless(options);
+    } else {
+      apps::run_window(options);
+    }
+  });
+  return apps::run_program(app, argc, argv);
+}

@@ -1,0 +1,45 @@
+#pragma once
+/// What vip-view was asked for.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/simulation.hpp"
+
+namespace apps {
+
+struct ViewOptions {
+  std::string scene;
+  std::string method = "HiRes";
+  std::string n_star = "16k";
+  std::string backend = "auto";
+  std::string camera = "view";  ///< view | overview
+  std::string ptpe;             ///< fitted.toml; empty = none
+  std::string png_folder;       ///< empty = no pictures
+  int width_px = 1280, height_px = 720;
+  int frames = 100;
+  int every = 1;  ///< a picture every so many frames
+  bool headless = false;
+  bool explain = false;
+};
+
+/// "1280x720"; 16 to 16384 px a side, otherwise a base::Error.
+void parse_size(const std::string& text, ViewOptions& options);
+
+/// Reads the scene, settles it with a progress bar and prints the schedule when asked to.
+struct PreparedFluid {
+  sim::Scene scene;
+  sim::Camera camera;
+  std::optional<sim::PtpeFile> ptpe;
+  std::unique_ptr<sim::Simulation> fluid;
+};
+PreparedFluid prepare_fluid(const ViewOptions& options);
+
+/// Runs the frames and writes the pictures, without a display.
+void run_headless(const ViewOptions& options);
+/// Opens a window until it is closed. base::Error when this build or this machine has none.
+void run_window(const ViewOptions& options);
+
+}  // namespace apps

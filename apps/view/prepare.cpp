@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/common/program.hpp"
+#include "apps/view/options.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+void parse_size(const std::string& text, ViewOptions& options) {
+  int width = 0, height = 0, read = 0;
+  const int values = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &read);
+  if (values != 2 || static_cast<std::size_t>(read) != text.size() || width < 16 || height < 16 ||
+      width > 16384 || height > 16384) {
+    throw base::Error("--size " + text, "not a picture size of 16 to 16384 px a side",
+                      "write it like 1280x720");
+  }
+  options.width_px = width;
+  options.height_px = height;
+}
+
+PreparedFluid prepare_fluid(const ViewOptions& options) {
+  PreparedFluid prepared;
+  prepared.scene = sim::read_scene(base::find_input(options.scene));
+  prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
+  if (!options.ptpe.empty()) prepared.ptpe = sim::read_ptpe_file(options.ptpe);
+  sim::SimulationOptions choice;
+  choice.method = sim::parse_method(options.method);
+  choice.n_star = sim::parse_n_star(options.n_star);
+  choice.backend = sim::choose_backend(options.backend);
+  {
+    Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
+    choice.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
+    prepared.fluid = sim::make_simulation(prepared.scene, choice);
+  }
+  std::printf("%s, %s, n_* %s: %lld particles on %s\n", prepared.scene.name.c_str(),
+              sim::method_name(choice.method).c_str(), options.n_star.c_str(),
+              static_cast<long long>(prepared.fluid->particle_count()),
+              sim::backend_name(choice.backend).c_str());
+  if (options.explain) std::printf("%s\n", prepared.fluid->explain().c_str());
+  return prepared;
+}
+
+}  // namespace apps
