@@ -2,12 +2,13 @@
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
+#include "occlusion.glsl"
 layout(local_size_x = 64) in;
 uniform int thread_limit;
 
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-  if (i >= particle_count || touched[i] == 0u) return;
+  if (i >= particle_count || (touched[i] & was_in_front) == 0u) return;
   const Sphere s = sphere_of(particles[i]);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;

@@ -1,12 +1,28 @@
-// One invocation a particle: counts it, splats it when it is small, lists it when it is not.
+// One invocation a particle: counts it, splats it when it is small, lists it when it is not. Two rounds.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
 #include "counters.glsl"
 #include "wide_list.glsl"
+#include "occlusion.glsl"
+layout(std430, binding = 7) readonly buffer Blocks { uint farthest[]; };
 layout(local_size_x = 64) in;
 uniform int thread_limit;  // px a side that one invocation splats
 uniform int group_limit;   // px a side that one work group splats
+uniform int second_round;
+
+// True when every pixel of the footprint already holds something nearer than the sphere's nearest point.
+bool hidden(Sphere s, ivec4 box) {
+  const uint nearest = floatBitsToUint(max(s.centre.z - s.radius, origin.z) * 0.99999);
+  const int blocks_x = (size.x + block_px - 1) / block_px;
+  const ivec2 low = box.xy / block_px, high = (box.zw - 1) / block_px;
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x <= high.x; ++x) {
+      if (farthest[y * blocks_x + x] >= nearest) return false;
+    }
+  }
+  return true;
+}
 
 bool splat_small(Sphere s, ivec4 box) {
   const bool subpixel = is_subpixel(s, rays);
@@ -28,10 +44,18 @@ void splat_small_thickness(Sphere s) {
   }
 }
 
+// False when this round has nothing to do with particle i.
+bool take_turn(uint i) {
+  const uint last = touched[i];
+  if (second_round == 1) return (last & in_first_round) == 0u;
+  const bool first = goes_first(i, last);
+  touched[i] = first ? in_first_round : 0u;
+  return first;
+}
+
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-  if (i >= particle_count) return;
-  touched[i] = 0u;
+  if (i >= particle_count || !take_turn(i)) return;
   const vec4 particle = particles[i];
   if (!is_usable(particle)) {
     atomicAdd(not_finite, 1u);
@@ -46,13 +70,17 @@ void main() {
   }
   if (crosses_near(s)) atomicAdd(near_crossing, 1u);
   if (is_subpixel(s, rays)) atomicAdd(subpixel_count, 1u);
+  const bool unseen = second_round == 1 && !is_subpixel(s, rays) && hidden(s, box);
   const int longest = max(extent.x, extent.y);
-  if (longest > group_limit) {
-    items[particle_count + atomicAdd(tile_items, 1u)] = i;
-  } else if (longest > thread_limit) {
-    items[atomicAdd(group_items, 1u)] = i;
-  } else {
-    if (splat_small(s, box)) touched[i] = 1u;
-    splat_small_thickness(s);
+  if (longest > thread_limit) {
+    if (unseen) touched[i] = is_hidden;
+    if (longest > group_limit) {
+      items[particle_count + atomicAdd(tile_items, 1u)] = i;
+    } else {
+      items[atomicAdd(group_items, 1u)] = i;
+    }
+    return;
   }
+  if (!unseen && splat_small(s, box)) touched[i] |= was_in_front;
+  splat_small_thickness(s);
 }

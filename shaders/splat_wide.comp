@@ -3,6 +3,7 @@
 #include "sphere.glsl"
 #include "targets.glsl"
 #include "wide_list.glsl"
+#include "occlusion.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform int tiles;  // 0: the group items, 1: the tile items
 
@@ -19,27 +20,27 @@ int block_count(ivec4 box) {
 bool holds(ivec4 box, ivec2 cell) { return all(lessThan(cell, box.zw)); }
 
 void main() {
-  const uint item = gl_WorkGroupID.y * group_row + gl_WorkGroupID.x;
+  const uint item = (tiles == 0 ? group_start : tile_start) + gl_WorkGroupID.y * group_row + gl_WorkGroupID.x;
   if (item >= (tiles == 0 ? group_items : tile_items)) return;
   const uint i = items[(tiles == 0 ? 0u : particle_count) + item];
   const int step = int(gl_NumWorkGroups.z);
   const ivec2 within = ivec2(gl_LocalInvocationID.xy);
   const Sphere s = sphere_of(particles[i]);
 #ifdef FRONT
-  if (touched[i] == 0u) return;
+  if ((touched[i] & was_in_front) == 0u) return;
   const ivec4 box = footprint(s, rays, size.xy);
   for (int block = int(gl_WorkGroupID.z); block < block_count(box); block += step) {
     const ivec2 pixel = block_corner(box, block) + within;
     if (holds(box, pixel)) splat_front(s, pixel, false, i);
   }
 #else
-  const ivec4 box = footprint(s, rays, size.xy);
+  const ivec4 box = (touched[i] & is_hidden) != 0u ? ivec4(0) : footprint(s, rays, size.xy);
   bool in_front = false;
   for (int block = int(gl_WorkGroupID.z); block < block_count(box); block += step) {
     const ivec2 pixel = block_corner(box, block) + within;
     if (holds(box, pixel) && splat_depth(s, pixel, false)) in_front = true;
   }
-  if (in_front) touched[i] = 1u;
+  if (in_front) atomicOr(touched[i], was_in_front);
   const vec4 grid = thickness_rays();
   const ivec4 cells = footprint(s, grid, size.zw);
   const bool subpixel = is_subpixel(s, grid);

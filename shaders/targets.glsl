@@ -1,7 +1,7 @@
 layout(std430, binding = 1) buffer Depth { uint depth_bits[]; };  // of a positive float: ordered like it
 layout(std430, binding = 2) buffer Front { uint front[]; };
 layout(std430, binding = 3) buffer Thickness { uint thickness[]; };
-layout(std430, binding = 6) buffer Touched { uint touched[]; };  // per particle: was it ever in front
+layout(std430, binding = 6) buffer Touched { uint touched[]; };  // per particle: see occlusion.glsl
 
 // True when this depth was in front, or level with the front, at this moment.
 bool splat_depth(Sphere s, ivec2 pixel, bool subpixel) {

@@ -1,16 +1,24 @@
-// Turns the two list lengths into work groups.
+// Turns the list lengths into work groups: of the items since the last round, or of all.
 #include "counters.glsl"
 #include "wide_list.glsl"
 layout(local_size_x = 1) in;
 uniform uint tile_groups;  // work groups that share one very large footprint
+uniform int all_items;
 
 void main() {
-  by_group += group_items;
-  by_tiles += tile_items;
-  group_dispatch[0] = min(group_items, group_row);
-  group_dispatch[1] = (group_items + group_row - 1u) / group_row;
+  group_start = all_items == 1 ? 0u : group_next;
+  tile_start = all_items == 1 ? 0u : tile_next;
+  group_next = group_items;
+  tile_next = tile_items;
+  const uint groups = group_items - group_start, tiles = tile_items - tile_start;
+  if (all_items == 0) {
+    by_group += groups;
+    by_tiles += tiles;
+  }
+  group_dispatch[0] = min(groups, group_row);
+  group_dispatch[1] = (groups + group_row - 1u) / group_row;
   group_dispatch[2] = 1u;
-  tile_dispatch[0] = min(tile_items, group_row);
-  tile_dispatch[1] = (tile_items + group_row - 1u) / group_row;
+  tile_dispatch[0] = min(tiles, group_row);
+  tile_dispatch[1] = (tiles + group_row - 1u) / group_row;
   tile_dispatch[2] = tile_groups;
 }

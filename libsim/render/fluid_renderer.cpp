@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t max_views = 2;
 constexpr std::uint32_t infinity_bits = 0x7f800000u;
-constexpr std::int64_t list_header_words = 8;
+constexpr std::int64_t list_header_words = 12;
+constexpr int block_px = 16;  // of occlusion.glsl
 constexpr GLuint tile_groups = 64;
 
 /// std140 layout of the shaders' ViewBlock.
@@ -96,6 +97,7 @@ struct FluidRenderer::State {
   PassTimer timer;
   GlProgram splat = compute("splat.comp");
   GlProgram wide_dispatch = compute("wide_dispatch.comp");
+  GlProgram block_depth = compute("block_depth.comp");
   GlProgram splat_wide = compute("splat_wide.comp");
   GlProgram front = compute("front.comp");
   GlProgram front_wide = compute("splat_wide.comp", "#define FRONT\n");
@@ -105,7 +107,7 @@ struct FluidRenderer::State {
   GlProgram thickness_first = compute("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute("smooth_thickness.comp");
   GlProgram composite{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "composite.frag"}};
-  GlBuffer counters, wide_list, touched, no_particles;
+  GlBuffer counters, wide_list, no_particles;
   GLuint vertex_array = 0;
   std::array<ViewTargets, max_views> targets;
   std::size_t views_drawn = 0;
@@ -128,7 +130,8 @@ struct FluidRenderer::State {
   void write_block(ViewTargets& t) const;
   void clear(ViewTargets& t, std::int64_t count);
   void splat_particles(ViewTargets& t, unsigned particles, std::int64_t count);
-  void dispatch_wide(const GlProgram& program) const;
+  void splat_round(int second_round, std::int64_t count);
+  void dispatch_wide(const GlProgram& program, std::int64_t count, int all_items) const;
   void find_front(std::int64_t count);
   void smooth_depth(ViewTargets& t, unsigned particles);
   void smooth_thickness(ViewTargets& t, unsigned particles);
@@ -156,7 +159,7 @@ void FluidRenderer::State::write_block(ViewTargets& t) const {
 }
 
 void FluidRenderer::State::clear(ViewTargets& t, std::int64_t count) {
-  touched.reserve(4 * count);
+  t.follow(count);
   wide_list.reserve(4 * (list_header_words + 2 * count));
   wide_list.fill(0, 4 * list_header_words);
   t.depth.fill(infinity_bits);
@@ -165,7 +168,15 @@ void FluidRenderer::State::clear(ViewTargets& t, std::int64_t count) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void FluidRenderer::State::dispatch_wide(const GlProgram& program) const {
+/// Runs a program on the wide footprints of the last round, or of both.
+void FluidRenderer::State::dispatch_wide(const GlProgram& program, std::int64_t count, int all_items) const {
+  wide_dispatch.use();
+  glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
+  glUniform1i(wide_dispatch.uniform("all_items"), all_items);
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  program.use();
+  glUniform1ui(program.uniform("particle_count"), static_cast<GLuint>(count));
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, wide_list.name());
   for (int tiles = 0; tiles < 2; ++tiles) {
     glUniform1i(program.uniform("tiles"), tiles);
@@ -174,23 +185,26 @@ void FluidRenderer::State::dispatch_wide(const GlProgram& program) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void FluidRenderer::State::splat_particles(ViewTargets& t, unsigned particles, std::int64_t count) {
-  bind({particles, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(), wide_list.name(),
-        touched.name()});
+void FluidRenderer::State::splat_round(int second_round, std::int64_t count) {
   splat.use();
   glUniform1ui(splat.uniform("particle_count"), static_cast<GLuint>(count));
   glUniform1i(splat.uniform("thread_limit"), options.thread_px);
   glUniform1i(splat.uniform("group_limit"), options.group_px);
+  glUniform1i(splat.uniform("second_round"), second_round);
   dispatch_particles(count);
-  wide_dispatch.use();
-  glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
-  glDispatchCompute(1, 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   timer.mark("splat small");
-  splat_wide.use();
-  glUniform1ui(splat_wide.uniform("particle_count"), static_cast<GLuint>(count));
-  dispatch_wide(splat_wide);
+  dispatch_wide(splat_wide, count, 0);
   timer.mark("splat wide");
+}
+
+void FluidRenderer::State::splat_particles(ViewTargets& t, unsigned particles, std::int64_t count) {
+  bind({particles, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(), wide_list.name(),
+        t.touched.name(), t.blocks.name()});
+  splat_round(0, count);
+  block_depth.use();
+  dispatch_pixels((t.width + block_px - 1) / block_px, (t.height + block_px - 1) / block_px);
+  timer.mark("occlusion");
+  splat_round(1, count);
 }
 
 void FluidRenderer::State::find_front(std::int64_t count) {
@@ -198,9 +212,7 @@ void FluidRenderer::State::find_front(std::int64_t count) {
   glUniform1ui(front.uniform("particle_count"), static_cast<GLuint>(count));
   glUniform1i(front.uniform("thread_limit"), options.thread_px);
   dispatch_particles(count);
-  front_wide.use();
-  glUniform1ui(front_wide.uniform("particle_count"), static_cast<GLuint>(count));
-  dispatch_wide(front_wide);
+  dispatch_wide(front_wide, count, 1);
   timer.mark("front");
 }
 

@@ -22,10 +22,10 @@ struct RenderOptions {
   /// Splatted radius / particle radius. Touching spheres (1) let the next layer shine through between them.
   float radius_scale = 1.5F;
   float filter_sigma_r = 1.5F;  ///< standard deviation of the depth filter in the world (Truong and Yuksel)
-  /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five layers
-  /// of water and smears droplets over what lies behind them, so the default is two layers.
+  /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
+  /// layers of water and smears droplets over what lies behind them, so the default is two layers.
   float filter_delta_r = 4;
-  float filter_mu_r = 1;        ///< what is far behind counts as this far behind
+  float filter_mu_r = 1;  ///< what is far behind counts as this far behind
   /// The filter reaches 3 sigma, but at most this many px; pixels where it had to stop short are counted.
   int filter_max_px = 256;
   /// Samples a side and direction; a wider filter takes strided samples.

@@ -47,7 +47,15 @@ void ViewTargets::resize(const View& new_view, int thickness_step) {
   block.reserve(512);
   for (GlBuffer* buffer : {&depth, &front, &filter_a, &filter_b}) buffer->reserve(4 * pixels);
   normals.reserve(16 * pixels);
+  blocks.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 15) / 16));
   for (GlBuffer* buffer : {&thickness, &thickness_a, &thickness_b}) buffer->reserve(4 * cells);
+}
+
+void ViewTargets::follow(std::int64_t count) {
+  if (count == followed_) return;
+  touched.reserve(4 * count);
+  touched.fill(0);
+  followed_ = count;
 }
 
 }  // namespace sim

@@ -35,10 +35,17 @@ struct ViewTargets {
   GlBuffer depth, front;        ///< splatted depth (float bits), particle in front
   GlBuffer filter_a, filter_b;  ///< filtered depth ends in filter_a
   GlBuffer normals;
+  GlBuffer touched;                   ///< a word a particle: what occlusion.glsl remembers of it
+  GlBuffer blocks;                    ///< farthest depth of each block of pixels
   GlBuffer thickness;                 ///< fixed point
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
 
   void resize(const View& new_view, int thickness_step);
+  /// Makes room for what is remembered of `count` particles; forgets it when their number changed.
+  void follow(std::int64_t count);
+
+ private:
+  std::int64_t followed_ = -1;
 };
 
 }  // namespace sim

@@ -213,6 +213,45 @@ TEST_F(SplatGl, NoParticlesLeaveTheRoom) {
   EXPECT_EQ(image.rgba, empty.rgba);
 }
 
+/// A dense body with droplets before and behind it, in random order.
+std::vector<RenderParticle> body(unsigned seed, float shift) {
+  std::mt19937 random(seed);
+  auto particles = cloud(60, 0.19F, 0.25F, seed);
+  for (int i = 0; i < 12 * 12 * 12; ++i) {
+    const auto x = static_cast<float>(i % 12), y = static_cast<float>(i / 12 % 12),
+               z = static_cast<float>(i / 144);
+    particles.push_back({0.2F * x - 1.1F + shift, 0.2F * y - 1.1F, -3 - 0.2F * z, 0.13F});
+  }
+  std::shuffle(particles.begin(), particles.end(), random);
+  return particles;
+}
+
+TEST_F(SplatGl, WhatIsRememberedOfTheLastPictureNeverShows) {
+  const auto view = view_along_z(48, 36);
+  for (const int thread_px : {64, 2}) {  // small footprints, wide footprints
+    auto options = exact_options();
+    options.thread_px = thread_px;
+    sim::FluidRenderer renderer(room(), options);
+    sim::ParticleBuffer buffer;
+    const sim::Offscreen target(48, 36);
+    // The third picture has the same number of particles in other places and another order.
+    for (const auto& particles : {body(1, 0), body(1, 0), body(2, 0.9F)}) {
+      buffer.upload(particles);
+      renderer.draw(buffer, {&view, 1}, target.framebuffer());
+      const auto g = renderer.read_gbuffer();
+      const auto picture = target.read();
+      render_test::expect_same_bits(render(particles, view, options), g);
+      EXPECT_EQ(picture.rgba, image.rgba);
+      const auto reference = render_test::splat(particles, view, 1);
+      for (std::size_t p = 0; p < g.depth.size(); ++p) {
+        if (reference.rim[p] || std::isinf(reference.depth[p])) continue;
+        EXPECT_NEAR(g.depth[p], reference.depth[p], 1e-3);
+        EXPECT_EQ(g.front[p], reference.front[p]);
+      }
+    }
+  }
+}
+
 TEST_F(SplatGl, TwoRunsAgreeInEveryBit) {
   const auto particles = cloud(3000, 0.05F, 0.2F, 6);
   const auto first = render(particles, view_along_z(160, 120), {});

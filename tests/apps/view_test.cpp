@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/render/png.hpp"
+#include "stats/base/file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;
+  std::string text;  ///< stdout and stderr
+};
+
+/// vip-view on a small dam: 64 particles, nothing to settle.
+class ViewE2e : public ::testing::Test {
+ protected:
+  ViewE2e() {
+    std::string pattern = (fs::temp_directory_path() / "vip-view-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+    base::write_file_atomically(scene(), R"(format = 1
+name = "SmallDam"
+gravity_m_s2 = 9.81
+[tank]
+size_m = [2.0, 1.0, 1.0]
+[water]
+min_m = [0.0, 0.0, 0.0]
+max_m = [1.0, 0.8, 1.0]
+gate = false
+settle_frames = 0
+[time]
+frames_per_s = 60.0
+v_ref_m_s = 4.0
+min_substeps = 2
+iterations = 2
+[view]
+eye_m = [1.0, 0.6, 2.6]
+target_m = [1.0, 0.4, 0.5]
+vertical_fov_deg = 60.0
+near_m = 0.1
+)");
+  }
+  ~ViewE2e() override { fs::remove_all(folder); }
+
+  std::string scene() const { return (folder / "dam.toml").string(); }
+
+  Outcome view(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
+                                " " VIP_BIN_DIR "/vip-view " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    Outcome outcome{-1, ""};
+    std::array<char, 512> chunk;
+    while (pipe && fgets(chunk.data(), chunk.size(), pipe)) outcome.text += chunk.data();
+    const int status = pipe ? pclose(pipe) : -1;
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+
+  Outcome small_run(const std::string& more) const {
+    return view("--headless " + scene() +
+                " --method LoRes --n-star 64 --backend cpu --size 64x48 --frames 3 " + more);
+  }
+
+  fs::path folder;
+};
+
+TEST_F(ViewE2e, WritesEverySecondPicture) {
+  const auto outcome = small_run("--every 2 --png " + (folder / "new" / "out").string());
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder / "new" / "out"))
+    names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"frame_0000.png", "frame_0002.png"}));
+  const auto first = sim::read_png(folder / "new" / "out" / "frame_0000.png");
+  const auto third = sim::read_png(folder / "new" / "out" / "frame_0002.png");
+  EXPECT_EQ(first.width, 64);
+  EXPECT_EQ(first.height, 48);
+  EXPECT_NE(first.rgba, third.rgba);  // the water moved
+}
+
+TEST_F(ViewE2e, ExplainsItsSchedule) {
+  const auto outcome = small_run("--explain");
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("density constraint"), std::string::npos) << outcome.text;
+}
+
+TEST_F(ViewE2e, LoadsAFittedModel) {
+  sim::PtpeFile file;
+  file.model = {31.5, 0.035};
+  file.a_ci = {30, 33};
+  file.b_ci = {0.03, 0.04};
+  file.n_participants = 16;
+  file.protocol_sha256 = std::string(64, 'a');
+  file.date_utc = base::utc_now();
+  base::write_file_atomically(folder / "fitted.toml", sim::format_ptpe_file(file));
+  const auto outcome = small_run("--ptpe " + (folder / "fitted.toml").string());
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("a = 31.5000"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("tau = "), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("over the last 2 frames"), std::string::npos) << outcome.text;
+}
+
+TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
+  base::write_file_atomically(folder / "a_file", "x");
+  base::write_file_atomically(folder / "bad.toml", "format = 1\na = -3\n");
+  const std::string out = (folder / "out").string();
+  const std::string run =
+      "--headless " + scene() + " --method LoRes --n-star 64 --backend cpu --frames 2 --png ";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {run + out + " --size 64x", "--size 64x"},
+      {run + out + " --size 64x8", "--size 64x8"},
+      {run + out + " --size 64x48x3", "--size 64x48x3"},
+      {run + (folder / "a_file").string(), "a_file"},
+      {run + out + " --ptpe " + (folder / "bad.toml").string(), "bad.toml"},
+      {run + out + " --backend gpu", "gpu"},
+      {"--headless " + (folder / "none.toml").string() + " --png " + out, "none.toml"},
+  };
+  for (const auto& [arguments, named] : cases) {
+    const auto outcome = view(arguments);
+    EXPECT_EQ(outcome.code, 1) << arguments;
+    EXPECT_NE(outcome.text.find("error: "), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find(named), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find("mend: "), std::string::npos) << outcome.text;
+    EXPECT_TRUE(!fs::exists(out) || fs::is_empty(out)) << arguments;
+  }
+  EXPECT_EQ(view(run + out + " --camera nowhere").code, 2);
+}
+
+TEST_F(ViewE2e, NoDisplayNamesHeadless) {
+  const auto outcome = view(scene() + " --method LoRes --n-star 64 --backend cpu");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.text.find("--headless"), std::string::npos) << outcome.text;
+}
+
+TEST_F(ViewE2e, NoDriverIsAClearError) {
+  const auto outcome = view("--headless " + scene(), "__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.text.find("libgl1-mesa-dri"), std::string::npos) << outcome.text;
+}
+
+}  // namespace
