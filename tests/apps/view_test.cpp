@@ -30,6 +30,7 @@ class ViewE2e : public ::testing::Test {
     base::write_file_atomically(scene(), R"(format = 1
 name = "SmallDam"
 gravity_m_s2 = 9.81
+checkpoints = []
 [tank]
 size_m = [2.0, 1.0, 1.0]
 [water]
@@ -114,8 +115,7 @@ TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
   base::write_file_atomically(folder / "a_file", "x");
   base::write_file_atomically(folder / "bad.toml", "format = 1\na = -3\n");
   const std::string out = (folder / "out").string();
-  const std::string run =
-      "--headless " + scene() + " --method LoRes --n-star 64 --backend cpu --frames 2 --png ";
+  const std::string run = "--headless " + scene() + " --method LoRes --n-star 64 --frames 2 --png ";
   const std::vector<std::pair<std::string, std::string>> cases{
       {run + out + " --size 64x", "--size 64x"},
       {run + out + " --size 64x8", "--size 64x8"},
