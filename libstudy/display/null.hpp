@@ -1,0 +1,42 @@
+#pragma once
+/// Nothing to see: for plans, observers and stores that are tried without a fluid or a screen.
+
+#include "libstudy/display/stimulus.hpp"
+#include "libstudy/pacing/clock.hpp"
+
+namespace study {
+
+/// Counts content steps.
+class NullStimulus final : public Stimulus {
+ public:
+  /// content_step_s: simulated time of one step, s.
+  explicit NullStimulus(double content_step_s) : content_step_s_(content_step_s) {}
+  std::string description() const override { return "none"; }
+  std::int64_t length() const override { return 0; }
+  void start(std::int64_t) override {}
+  FrameFacts prepare(std::int64_t step) override {
+    FrameFacts facts;
+    facts.simulation_time_s = static_cast<double>(step) * content_step_s_;
+    return facts;
+  }
+  void draw(unsigned, int, int) override {}
+
+ private:
+  double content_step_s_;
+};
+
+/// Takes frames at the instant they are handed over and draws none of them.
+class NullDisplay final : public Display {
+ public:
+  std::string description() const override { return "none"; }
+  TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
+  double refresh_hz() const override { return 0; }
+  void render(Stimulus&) override {}
+  PresentTimes present(const Clock& clock) override {
+    PresentTimes times;
+    times.submitted_ns = clock.now_ns();
+    return times;
+  }
+};
+
+}  // namespace study
