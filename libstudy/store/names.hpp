@@ -7,19 +7,7 @@
 
 namespace study {
 
-inline std::string verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Pass:
-      return "pass";
-    case Verdict::Degraded:
-      return "degraded";
-    case Verdict::Fail:
-      break;
-  }
-  return "fail";
-}
-
-/// The inverse; what the schema's CHECK keeps out counts as a failed trial.
+/// The inverse of verdict_name(); what the schema's CHECK keeps out counts as a failed trial.
 inline Verdict verdict_of(const std::string& name) {
   if (name == "pass") return Verdict::Pass;
   return name == "degraded" ? Verdict::Degraded : Verdict::Fail;

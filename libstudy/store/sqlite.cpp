@@ -194,6 +194,8 @@ std::string Statement::column_name(int index) const { return sqlite3_column_name
 
 bool Statement::is_null(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_NULL; }
 
+bool Statement::is_real(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_FLOAT; }
+
 std::int64_t Statement::integer(int index) const { return sqlite3_column_int64(handle_, index); }
 
 double Statement::real(int index) const { return sqlite3_column_double(handle_, index); }

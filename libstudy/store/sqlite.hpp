@@ -78,6 +78,7 @@ class Statement {
   int columns() const;
   std::string column_name(int index) const;
   bool is_null(int index) const;
+  bool is_real(int index) const;
   std::int64_t integer(int index) const;
   double real(int index) const;
   std::string text(int index) const;

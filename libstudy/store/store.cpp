@@ -99,13 +99,14 @@ struct Store::Statements {
   Statement frame, event, begin, end, response, answered, ended;
 };
 
-Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) {
+Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
   std::error_code ignored;
   const bool existed = fs::exists(path, ignored);
   if (existed) lock_ = std::make_unique<Lock>(path);
   const SchemaSteps steps = read_schema_steps();
   database_ = open_database(path, how, steps, max_pages);
   if (!existed) lock_ = std::make_unique<Lock>(path);
+  blank_ = !existed;
   statements_ = std::make_unique<Statements>(*database_);
 }
 
@@ -113,6 +114,8 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) {
 Store::~Store() {
   statements_.reset();
   database_.reset();
+  std::error_code ignored;
+  if (blank_) fs::remove(path_, ignored);
 }
 
 std::int64_t Store::add_run(const RunPlan& run) {
@@ -126,6 +129,7 @@ std::int64_t Store::add_run(const RunPlan& run) {
           .run();
   for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
   transaction.commit();
+  blank_ = false;
   return run_id;
 }
 

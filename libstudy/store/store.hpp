@@ -67,7 +67,8 @@ struct OpenRun {
 /// The only writer of a database: a second Store on the same file is an error while the first lives.
 class Store {
  public:
-  /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages.
+  /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
+  /// is removed again when nothing comes to stand in it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0);
   ~Store();
   Store(const Store&) = delete;
@@ -111,6 +112,8 @@ class Store {
   void insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,
                     const std::string& kind, const std::string& detail, std::optional<std::int64_t> clock_ns);
 
+  std::filesystem::path path_;
+  bool blank_ = false;  // made here and without a run so far
   std::unique_ptr<Lock> lock_;
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;

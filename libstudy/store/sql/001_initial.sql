@@ -100,7 +100,7 @@ CREATE TABLE frame (
   predicted_display_ns INTEGER, -- predicted onset after the planned one, ns
   actual_display_ns INTEGER, -- reported onset after the planned one, ns
   late INTEGER NOT NULL CHECK (late IN (0, 1)), -- 1: later than the protocol's bound
-  particles TEXT, -- particles by level, coarsest first, separated by spaces
+  particles TEXT, -- particles by level as the stimulus lists its levels, separated by spaces
   active_fraction REAL NOT NULL, -- share of particles solved
   tolerance_fps REAL NOT NULL, -- tau of the solver, frames/s
   PRIMARY KEY (presentation_id, frame_index)

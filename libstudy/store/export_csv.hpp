@@ -1,0 +1,34 @@
+#pragma once
+/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace study {
+
+struct ExportedFile {
+  std::string name;
+  std::int64_t rows = 0;
+};
+
+/// Writes one file for each table (protocols, questions, runs, sessions, trials, presentations, responses,
+/// frames, events), dictionary.csv with what each column means, and the text of each protocol as
+/// protocol_<hash>.toml.
+///
+/// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
+/// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
+/// changed, when it holds anything else.
+std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
+                                     const std::filesystem::path& folder);
+
+/// A column of the schema with the comment that stands beside it.
+struct ColumnMeaning {
+  std::string table, column, type, meaning;
+};
+
+/// The columns of a CREATE TABLE text in their order; lines without a comment have an empty meaning.
+std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql);
+
+}  // namespace study

@@ -1,0 +1,61 @@
+#pragma once
+/// What a database holds, in counts. Read-only; errors as read_ratings().
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/schedule.hpp"
+
+namespace study {
+
+/// A dataset: all data under one protocol hash.
+struct ProtocolRow {
+  std::int64_t id = 0;
+  std::string name, version, sha256;
+  std::string text;  ///< the protocol file
+  std::optional<double> trial_seconds;
+  bool test_data = false;
+  std::int64_t sessions = 0, trials = 0, answered = 0;
+};
+
+struct SessionRow {
+  std::int64_t protocol_id = 0;
+  std::string participant;
+  int visit = 1;
+  std::string observer;  ///< empty = a person
+  std::string clock;     ///< "real" or "virtual"
+  bool test_data = false;
+  std::int64_t trials = 0, answered = 0;
+  std::int64_t interrupted = 0;  ///< presentations cut short
+  bool ended = false;
+};
+
+struct StudyStatus {
+  std::vector<ProtocolRow> protocols;
+  std::vector<SessionRow> sessions;  ///< by protocol, then in the order of planning
+  std::int64_t frames = 0;
+};
+StudyStatus read_status(const std::filesystem::path& database);
+
+/// Timing of all answered presentations of one setting: a line of the certificate.
+struct CertificateRow {
+  FpsSetting nominal;
+  std::int64_t trials = 0;
+  double mean = 0;        ///< mean over the trials of the realised mean, frames/s
+  double mean_worst = 0;  ///< largest distance from nominal, frames/s
+  double sd = 0;          ///< mean over the trials of the realised sd, frames/s
+  double sd_worst = 0;
+  std::int64_t frames = 0, late = 0;
+  double worst_late_ms = 0;
+  std::int64_t pass = 0, degraded = 0, fail = 0;
+  std::string grades;  ///< the evidence's grades that occur, best first
+};
+
+/// Of the sessions that run `run_id` planned; `mean` is the one that the protocol's settings mean.
+std::vector<CertificateRow> read_certificate(const std::filesystem::path& database, std::int64_t run_id,
+                                             FpsMean mean);
+
+}  // namespace study
