@@ -4,5 +4,9 @@
 int main(int argc, char** argv) {
   CLI::App app("Studies of people's perception of real-time fluid", "vip-study");
   apps::add_check_command(app);
+  apps::add_run_command(app);
+  apps::add_resume_command(app);
+  apps::add_status_command(app);
+  apps::add_export_command(app);
   return apps::run_program(app, argc, argv);
 }

@@ -1,0 +1,65 @@
+/// vip-study resume: finish what a database says is left to do.
+#include <cstdio>
+#include <memory>
+
+#include "apps/study/commands.hpp"
+#include "apps/study/session_player.hpp"
+#include "libstudy/session/machine.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+/// The protocol from its text in the database; an error when it reads otherwise than it did.
+study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& place) {
+  study::Protocol protocol =
+      study::parse_protocol(run.protocol_text, place + ": protocol " + run.protocol_name);
+  if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
+  if (protocol.sha256 != run.protocol_sha256) {
+    throw base::Error(place, "protocol '" + run.protocol_name + "' does not have the hash stored with it",
+                      "restore a backup of it, or use the version of vip-study that wrote it");
+  }
+  return protocol;
+}
+
+/// What is shown must be what was shown; a changed station is only noted.
+void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
+                     const std::string& place) {
+  for (const study::OpenSession& session : run.sessions) {
+    if (session.plan.stimulus != setup.stimulus->description()) {
+      throw base::Error(place,
+                        "participant " + session.plan.participant + " was shown '" + session.plan.stimulus +
+                            "', which is now '" + setup.stimulus->description() + "'",
+                        "put the same bake or scene back in its place");
+    }
+    store.log(session.id, "resumed", study::describe_machine() + "; display " + setup.display->description(),
+              setup.clock->now_ns());
+  }
+}
+
+void resume(const PlayOptions& options) {
+  const StopSignals signals;
+  const std::string place = options.database.string();
+  study::Store store(options.database, study::sqlite::Open::Write, options.max_pages);
+  const auto runs = store.open_runs();
+  if (runs.empty()) std::printf("%s: every planned trial is answered\n", place.c_str());
+  for (const study::OpenRun& run : runs) {
+    const study::Protocol protocol = rebuild_protocol(run, place);
+    SessionSetup setup = make_session_setup(parse_run_options(run.options, place), protocol);
+    check_unchanged(store, run, setup, place);
+    play_run(store, run, protocol, setup, options);
+    print_certificate(options.database, run, protocol);
+  }
+}
+
+}  // namespace
+
+void add_resume_command(CLI::App& app) {
+  auto options = std::make_shared<PlayOptions>();
+  CLI::App& sub = *app.add_subcommand("resume", "Finish what was planned and not answered");
+  add_play_options(sub, *options);
+  sub.callback([options] { resume(*options); });
+}
+
+}  // namespace apps

@@ -1,0 +1,142 @@
+/// vip-study run: plan sessions, write the plan, play them.
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "apps/study/commands.hpp"
+#include "apps/study/session_player.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "libstudy/session/machine.hpp"
+#include "libstudy/session/session.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct RunCommand {
+  std::string protocol;
+  PlayOptions play;
+  RunOptions run;
+  int participants = 0;
+  std::vector<std::string> codes;
+  int visit = 1;
+  std::int64_t seed = 0;
+  std::optional<double> trial_seconds;
+  std::string bake, size = "640x360", ptpe;
+};
+
+/// P01, P02, ... or the codes given.
+std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
+  if (!command.codes.empty()) return command.codes;
+  const int count = command.participants > 0 ? command.participants : protocol.participants;
+  std::vector<std::string> codes;
+  for (int i = 1; i <= count; ++i) codes.push_back((i < 10 ? "P0" : "P") + std::to_string(i));
+  return codes;
+}
+
+void read_size(const std::string& text, RunOptions& run) {
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &run.width_px, &run.height_px, &rest) != 2) {
+    throw base::Error("--size " + text, "is not a size", "write width x height in pixels, such as 640x360");
+  }
+}
+
+study::Protocol read_checked_protocol(const RunCommand& command) {
+  study::Protocol protocol = study::read_protocol(base::find_input(command.protocol));
+  if (command.trial_seconds) study::override_trial_seconds(protocol, *command.trial_seconds);
+  return protocol;
+}
+
+std::optional<std::string> read_ptpe(const std::string& path) {
+  if (path.empty()) return {};
+  sim::read_ptpe_file(path);
+  return base::read_file(path, 1 << 20);
+}
+
+study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
+                             const SessionSetup& setup) {
+  study::RunPlan run{protocol, format_run_options(command.run), {}};
+  study::SessionPlan session;
+  session.visit = command.visit;
+  session.seed = static_cast<std::uint64_t>(command.seed);
+  session.test_data = protocol.test_data;
+  session.observer = setup.responder->simulated();
+  session.virtual_clock = setup.virtual_clock;
+  session.display = setup.display->description();
+  session.stimulus = setup.stimulus->description();
+  session.machine = study::describe_machine();
+  session.time_zone = study::local_time_zone();
+  session.ptpe = read_ptpe(command.ptpe);
+  for (const std::string& code : participant_codes(command, protocol)) {
+    study::check_participant_code(code);
+    session.participant = code;
+    session.trials = study::make_plan(protocol, code, session.seed);
+    run.sessions.push_back(session);
+  }
+  return run;
+}
+
+void run(RunCommand& command) {
+  const study::Protocol protocol = read_checked_protocol(command);
+  read_size(command.size, command.run);
+  if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
+  SessionSetup setup = make_session_setup(command.run, protocol);
+  study::check_settings(protocol, *setup.display);
+  // Complete with today's defaults, which another version may change.
+  command.run.observer = setup.responder->simulated().value_or("");
+  const study::RunPlan plan = make_run_plan(command, protocol, setup);
+
+  const StopSignals signals;
+  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages);
+  const std::int64_t run_id = store.add_run(plan);
+  for (const study::OpenRun& open : store.open_runs()) {
+    if (open.id != run_id) continue;
+    play_run(store, open, protocol, setup, command.play);
+    print_certificate(command.play.database, open, protocol);
+  }
+}
+
+}  // namespace
+
+void add_play_options(CLI::App& command, PlayOptions& options) {
+  command.add_option("--db", options.database, "Database of the study")->required();
+  command.add_option("--max-pages", options.max_pages, "Let the database grow to this many pages of 4 KiB")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--events", options.events,
+                   "Print a line for each answer once it is safe, without the answer");
+}
+
+void add_run_command(CLI::App& app) {
+  auto command = std::make_shared<RunCommand>();
+  CLI::App& sub = *app.add_subcommand("run", "Run a protocol and keep everything in a database");
+  sub.add_option("protocol", command->protocol, "Protocol file")->required();
+  add_play_options(sub, command->play);
+  auto* count = sub.add_option("--participants", command->participants,
+                               "Run P01, P02, ... (default: as many as the protocol plans)");
+  count->check(CLI::Range(1, 9999));
+  sub.add_option("--participant", command->codes, "Code of a participant; may be repeated")->excludes(count);
+  sub.add_option("--visit", command->visit, "Visit of these participants under this protocol")
+      ->check(CLI::Range(1, 1000));
+  sub.add_option("--observer", command->run.observer, "Simulated observer, such as ptpe:a=31,b=0.035")
+      ->required();
+  sub.add_option("--clock", command->run.clock, "real or virtual")->check(CLI::IsMember({"real", "virtual"}));
+  sub.add_option("--display", command->run.display, "none or headless")
+      ->check(CLI::IsMember({"none", "headless"}));
+  sub.add_option("--size", command->size, "Pixels of a headless display, such as 640x360");
+  sub.add_option("--seed", command->seed, "Seed of orders, schedules and observers")
+      ->check(CLI::NonNegativeNumber);
+  sub.add_option("--trial-seconds", command->trial_seconds,
+                 "Length of every trial; changes the protocol's hash and marks the data as test");
+  sub.add_option("--stimulus", command->bake,
+                 "Bake to play (vip-study bake); without: live fluid, or nothing");
+  sub.add_option("--backend", command->run.backend, "cpu, cuda or auto, for live fluid")
+      ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+  sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
+  sub.callback([command] { run(*command); });
+}
+
+}  // namespace apps

@@ -1,0 +1,26 @@
+#pragma once
+/// What `vip-study run` was asked for, beyond the protocol: kept in the database as text, so that `resume`
+/// needs nothing but the database.
+
+#include <cstdint>
+#include <string>
+
+namespace apps {
+
+struct RunOptions {
+  std::string observer;           ///< specification of a simulated observer
+  std::string clock = "virtual";  ///< "real" or "virtual"
+  std::string display = "none";   ///< "none" or "headless"
+  int width_px = 640, height_px = 360;
+  std::string bake;  ///< absolute path of the bake played; empty = none
+  std::string backend = "auto";
+
+  bool operator==(const RunOptions&) const = default;
+};
+
+/// JSON.
+std::string format_run_options(const RunOptions& options);
+/// base::Error naming `place` for anything that format_run_options() does not write.
+RunOptions parse_run_options(const std::string& text, const std::string& place);
+
+}  // namespace apps

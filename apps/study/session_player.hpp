@@ -1,0 +1,37 @@
+#pragma once
+/// Plays what a database says is left to do; shared by run and resume.
+
+#include <filesystem>
+
+#include "apps/study/session_setup.hpp"
+#include "libstudy/store/store.hpp"
+
+namespace apps {
+
+/// While it lives, SIGINT and SIGTERM ask the session to stop at the next frame.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+  static bool stop_wished();
+};
+
+/// Options of run and resume that say how they talk and how far the file may grow.
+struct PlayOptions {
+  std::filesystem::path database;
+  std::int64_t max_pages = 0;  ///< 0 = no limit
+  bool events = false;         ///< a line on stdout for each committed answer, without the answer
+};
+
+/// Plays all sessions of an open run with a progress bar, then prints its timing certificate. base::Error
+/// that names resume when it was stopped.
+void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+              SessionSetup& setup, const PlayOptions& options);
+
+/// One line a setting: nominal, realised mu and delta, late frames, verdicts, grade.
+void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
+                       const study::Protocol& protocol);
+
+}  // namespace apps

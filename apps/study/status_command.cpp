@@ -1,0 +1,46 @@
+/// vip-study status: what a database holds.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "apps/study/commands.hpp"
+#include "libstudy/store/status.hpp"
+
+namespace apps {
+
+namespace {
+
+void print_session(const study::SessionRow& session) {
+  const char* state = session.ended ? "complete" : session.answered > 0 ? "under way" : "planned";
+  std::printf("  %-12s visit %d  %3lld of %lld answered, %lld cut short  %-9s  %s clock, %s%s\n",
+              session.participant.c_str(), session.visit, static_cast<long long>(session.answered),
+              static_cast<long long>(session.trials), static_cast<long long>(session.interrupted), state,
+              session.clock.c_str(),
+              session.observer.empty() ? "person" : ("simulated " + session.observer).c_str(),
+              session.test_data ? ", test data" : "");
+}
+
+void status(const std::string& database) {
+  const study::StudyStatus found = study::read_status(database);
+  for (const study::ProtocolRow& protocol : found.protocols) {
+    std::printf("protocol %s version %s, hash %s%s\n", protocol.name.c_str(), protocol.version.c_str(),
+                protocol.sha256.substr(0, 12).c_str(), protocol.test_data ? " (test data)" : "");
+    std::printf("  %lld sessions, %lld of %lld trials answered\n", static_cast<long long>(protocol.sessions),
+                static_cast<long long>(protocol.answered), static_cast<long long>(protocol.trials));
+    for (const study::SessionRow& session : found.sessions) {
+      if (session.protocol_id == protocol.id) print_session(session);
+    }
+  }
+  std::printf("%lld frames recorded\n", static_cast<long long>(found.frames));
+}
+
+}  // namespace
+
+void add_status_command(CLI::App& app) {
+  auto database = std::make_shared<std::string>();
+  CLI::App& sub = *app.add_subcommand("status", "Say what a database holds and what is left to do");
+  sub.add_option("--db", *database, "Database of the study")->required();
+  sub.callback([database] { status(*database); });
+}
+
+}  // namespace apps
