@@ -23,8 +23,11 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 
 std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   if (options.display == "none") return std::make_unique<study::NullDisplay>();
-  if (options.display == "headless")
-    return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px);
+  if (options.display == "headless") {
+    StimulusChoice choice;
+    choice.bake = options.bake;
+    return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
+  }
   unknown("--display", options.display, "none or headless");
 }
 
