@@ -1,0 +1,149 @@
+/// vip-study bake as a user runs it, on a small scene that settles in few frames.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "libsim/bake/bake_file.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/libsim/bake/make_bake.hpp"
+
+namespace {
+
+using apps::test::Ended;
+using apps::test::Process;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class BakeE2e : public ::testing::Test {
+ protected:
+  BakeE2e() {
+    std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
+    const std::string key = "settle_frames = 120";
+    text.replace(text.find(key), key.size(), "settle_frames = 2");
+    std::ofstream(scene_) << text;
+  }
+  std::vector<std::string> command(std::vector<std::string> more, const std::string& n_star = "64") const {
+    std::vector<std::string> out{std::string(VIP_BIN_DIR) + "/vip-study",
+                                 "bake",
+                                 scene_.string(),
+                                 "--n-star",
+                                 n_star,
+                                 "--backend",
+                                 "cpu",
+                                 "--out",
+                                 target_.string()};
+    out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }
+  /// The scene file is the only one in the folder.
+  bool left_nothing() const {
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path())) ++files;
+    return files == 1;
+  }
+
+  bake_test::Folder folder_;
+  std::filesystem::path scene_ = folder_ / "dam.toml";
+  std::filesystem::path target_ = folder_ / "dam.bake";
+};
+
+TEST_F(BakeE2e, BakesBothMethodsAndVerifies) {
+  for (const std::string method : {"HiRes", "LoRes"}) {
+    const Ended baked = apps::test::run_program(command({"--frames", "5", "--method", method, "--force"}));
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    const std::string count = method == "HiRes" ? "512" : "64";
+    EXPECT_THAT(baked.out, HasSubstr("5 frames of " + count + " particles"));
+    const Ended checked = apps::test::run_program(
+        {std::string(VIP_BIN_DIR) + "/vip-study", "bake", "--verify", target_.string()});
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
+    EXPECT_THAT(checked.out, HasSubstr("all 5 frames are whole"));
+    sim::BakeFrame frame;
+    const sim::BakeReader bake(target_);
+    bake.read_frame(4, frame);
+    EXPECT_EQ(frame.particles.size(), static_cast<std::size_t>(std::stoi(count)));
+    EXPECT_NEAR(frame.facts.time_s, 4.0 / 60, 1e-12);
+  }
+}
+
+TEST_F(BakeE2e, EqualCommandsGiveEqualFilesWithPictures) {
+  ASSERT_EQ(apps::test::run_program(command({"--frames", "3", "--pictures", "64x36"})).exit_code, 0);
+  const sim::Bytes first = bake_test::read_all(target_);
+  ASSERT_EQ(apps::test::run_program(command({"--frames", "3", "--pictures", "64x36", "--force"})).exit_code,
+            0);
+  EXPECT_EQ(bake_test::read_all(target_), first);
+  EXPECT_EQ(sim::BakeReader(target_).header().camera, "view");
+}
+
+TEST_F(BakeE2e, WrongInputIsOneErrorAndLeavesNothing) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--pictures", "640"}, "is not a size"},
+      {{"--pictures", "640x360x3"}, "is not a size"},
+      {{"--pictures", "9000x360"}, "is not a size"},
+      {{"--method", "MidRes"}, "use LoRes or HiRes"}};
+  for (const auto& [more, message] : cases) {
+    const Ended ended = apps::test::run_program(command(more));
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_THAT(ended.err, AllOf(HasSubstr(message), HasSubstr("mend:")));
+  }
+  EXPECT_EQ(apps::test::run_program(command({"--frames", "0"})).exit_code, 2);
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(BakeE2e, ExistingFileStays) {
+  std::ofstream(target_) << "precious";
+  const Ended ended = apps::test::run_program(command({"--frames", "2"}));
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("exists already"), HasSubstr("--force")));
+  EXPECT_EQ(base::read_file(target_, 100), "precious");
+}
+
+TEST_F(BakeE2e, FullDiskLeavesNothing) {
+  const auto limited = [] {
+    const rlimit limit{20'000, 20'000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  };
+  const Ended ended = apps::test::run_program(command({"--frames", "60"}), limited);
+  EXPECT_EQ(ended.exit_code, 1) << ended.signal;
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("dam.bake: cannot be written"), HasSubstr("free space")));
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(BakeE2e, FolderThatMayNotBeWrittenToIsNamedBeforeAnyWork) {
+  const auto unprivileged = [] {
+    if (getuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(125);
+  };
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms(0555));
+  const Ended ended = apps::test::run_program(command({"--frames", "2"}, "4096k"), unprivileged);
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
+  if (ended.exit_code == 126) GTEST_SKIP() << "the program lies where another user may not run it";
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("dam.bake: cannot be created"), HasSubstr("mend:")));
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(BakeE2e, InterruptLeavesNothing) {
+  Process process(command({"--frames", "100000"}));
+  // The temporary file shows that frames are being written.
+  while (left_nothing()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  process.send(SIGINT);
+  const Ended ended = process.wait();
+  EXPECT_EQ(ended.exit_code, 1) << ended.signal;
+  EXPECT_THAT(ended.err, HasSubstr("stopped on request; no file was written"));
+  EXPECT_TRUE(left_nothing());
+}
+
+TEST_F(BakeE2e, TruncatedFileIsRefusedByName) {
+  ASSERT_EQ(apps::test::run_program(command({"--frames", "3"})).exit_code, 0);
+  std::filesystem::resize_file(target_, std::filesystem::file_size(target_) - 1);
+  const Ended ended = apps::test::run_program(
+      {std::string(VIP_BIN_DIR) + "/vip-study", "bake", "--verify", target_.string()});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("dam.bake"), HasSubstr("truncated")));
+}
+
+}  // namespace
