@@ -1,0 +1,173 @@
+/// vip-study run, resume, status and export from the outside: results, and errors that change nothing.
+#include <gmock/gmock.h>
+#include <grp.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Names and bytes of all files of a folder.
+std::map<std::string, std::string> snapshot(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files[entry.path().string()] = base::read_file(entry.path(), 1u << 30);
+  }
+  return files;
+}
+
+class StudyCommandsE2e : public ::testing::Test {
+ protected:
+  StudyCommandsE2e() { base::write_file_atomically(folder_ / "short.toml", short_protocol("10")); }
+  Ended run(const std::vector<std::string>& more = {"--participants", "2"},
+            const std::function<void()>& prepare = {}) {
+    return run_program(run_arguments(folder_ / "short.toml", database_, more), prepare);
+  }
+  /// One error with its place and mend, and every file as before.
+  void expect_error(const std::vector<std::string>& arguments, const std::string& problem,
+                    const std::function<void()>& prepare = {}) {
+    const auto before = snapshot(folder_.path());
+    const Ended ended = run_program(arguments, prepare);
+    EXPECT_EQ(ended.exit_code, 1) << ended.err;
+    EXPECT_THAT(ended.err, AllOf(HasSubstr(problem), HasSubstr("mend: ")));
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 2) << ended.err;
+    EXPECT_TRUE(snapshot(folder_.path()) == before) << "files changed";
+  }
+
+  TemporaryFolder folder_;
+  std::string database_ = folder_ / "study.db";
+};
+
+TEST_F(StudyCommandsE2e, RunPrintsTheCertificateAndStatusTheCounts) {
+  const Ended ended = run();
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("Timing certificate"), HasSubstr("12 of 12 trials pass")));
+  const Ended status = run_program({vip_study, "status", "--db", database_});
+  EXPECT_EQ(status.exit_code, 0);
+  EXPECT_THAT(status.out, AllOf(HasSubstr("12 of 12 trials answered"), HasSubstr("simulated ptpe:a=31"),
+                                HasSubstr("4200 frames recorded")));
+  const Ended written = run_program({vip_study, "export", "--db", database_, "--csv", folder_ / "out"});
+  EXPECT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_THAT(written.out, HasSubstr("frames.csv: 4200 rows"));
+}
+
+TEST_F(StudyCommandsE2e, ShortenedTrialsAreTestData) {
+  ASSERT_EQ(run({"--participants", "1", "--trial-seconds", "2"}).exit_code, 0);
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM session WHERE test_data = 1"), 1);
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM frame"), 3 * 40 + 3 * 100);
+}
+
+TEST_F(StudyCommandsE2e, TheSameParticipantsAreSentToResume) {
+  ASSERT_EQ(run().exit_code, 0);
+  expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "P02"}),
+               "vip-study resume --db " + database_);
+  EXPECT_EQ(run({"--participant", "P03"}).exit_code, 0);
+}
+
+TEST_F(StudyCommandsE2e, WrongInputMakesNoDatabase) {
+  const auto arguments = [&](const std::vector<std::string>& more) {
+    return run_arguments(folder_ / "short.toml", database_, more);
+  };
+  expect_error(arguments({"--participant", "Anna Berg"}), "participant 'Anna Berg'");
+  expect_error(arguments({"--participant", "P1", "--participant", "P1"}), "participant P1");
+  expect_error(arguments({"--stimulus", folder_ / "none.bake"}), "none.bake");
+  expect_error(arguments({"--trial-seconds", "0"}), "trial");
+  expect_error(arguments({"--ptpe", folder_ / "none.toml"}), "none.toml");
+  expect_error({vip_study, "run", folder_ / "short.toml", "--db", database_, "--observer", "ptpe:a=31,x=1"},
+               "character 11: unknown key 'x'");
+  base::write_file_atomically(folder_ / "short.toml", short_protocol("10") + "\n[extra]\nkey = 1\n");
+  expect_error(arguments({}), "short.toml:");
+}
+
+TEST_F(StudyCommandsE2e, ForeignNewerAndTruncatedDatabasesAreLeftAlone) {
+  ASSERT_EQ(run().exit_code, 0);
+  const std::string whole = base::read_file(database_, 1u << 30);
+  std::string newer = whole;
+  newer[63] = 99;  // user_version in the header of an SQLite file
+  const std::map<std::string, std::string> bad{{"newer program", newer},
+                                               {"damaged or cut short", whole.substr(0, whole.size() / 2)},
+                                               {"is not a database of vip-study", std::string(9000, 'x')}};
+  for (const auto& [problem, bytes] : bad) {
+    SCOPED_TRACE(problem);
+    base::write_file_atomically(database_, bytes);
+    expect_error({vip_study, "resume", "--db", database_}, problem);
+    expect_error({vip_study, "status", "--db", database_}, problem);
+    expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "out"}, problem);
+    expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "P09"}), problem);
+  }
+  fs::remove(database_);
+  expect_error({vip_study, "resume", "--db", database_}, "there is no such database");
+}
+
+TEST_F(StudyCommandsE2e, FullAtThePlanLeavesNoFile) {
+  expect_error(run_arguments(folder_ / "short.toml", database_, {"--max-pages", "5"}), "no room left");
+  expect_error(
+      run_arguments(folder_ / "short.toml", database_, {"--participants", "999", "--max-pages", "40"}),
+      "no room left");
+}
+
+TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
+  const Ended full = run({"--participants", "4", "--max-pages", "60"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_THAT(full.err, AllOf(HasSubstr("no room left"), HasSubstr("vip-study resume")));
+  const auto said = acknowledged(full.out);
+  const Answers before = answers_in(database_);
+  EXPECT_GT(said.size(), 0u);
+  EXPECT_EQ(before.size(), said.size());
+  EXPECT_EQ(run_program({vip_study, "resume", "--db", database_}).exit_code, 0);
+  const Answers after = answers_in(database_);
+  EXPECT_EQ(after.size(), 24u);
+  for (const auto& [key, answer] : before) EXPECT_EQ(after.at(key), answer);
+}
+
+TEST_F(StudyCommandsE2e, AFileSizeLimitKeepsEveryAnswer) {
+  const auto limit = [] {
+    const rlimit bytes{200'000, 200'000};
+    ::setrlimit(RLIMIT_FSIZE, &bytes);
+  };
+  const Ended full = run({"--participants", "4"}, limit);
+  EXPECT_EQ(full.exit_code, 1) << full.signal;
+  EXPECT_THAT(full.err, AllOf(HasSubstr(database_), HasSubstr("mend: ")));
+  const auto said = acknowledged(full.out);
+  EXPECT_GT(said.size(), 0u);
+  EXPECT_EQ(run_program({vip_study, "resume", "--db", database_}).exit_code, 0);
+  const Answers after = answers_in(database_);
+  EXPECT_EQ(after.size(), 24u);
+  for (const auto& key : said) EXPECT_TRUE(after.count(key));
+}
+
+TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillReadable) {
+  ASSERT_EQ(run().exit_code, 0);
+  const auto become_nobody = [] {
+    constexpr unsigned nobody = 65534;
+    if (::geteuid() == 0 &&
+        (::setgroups(0, nullptr) != 0 || ::setgid(nobody) != 0 || ::setuid(nobody) != 0)) {
+      ::_exit(125);
+    }
+  };
+  fs::permissions(folder_.path(), fs::perms(0555));
+  expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
+  if (::geteuid() != 0) fs::permissions(database_, fs::perms(0444));
+  expect_error({vip_study, "resume", "--db", database_}, "study.db", become_nobody);
+  expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "out"}, "out", become_nobody);
+  const auto before = snapshot(folder_.path());
+  EXPECT_EQ(run_program({vip_study, "status", "--db", database_}, become_nobody).exit_code, 0);
+  EXPECT_TRUE(snapshot(folder_.path()) == before);
+}
+
+TEST_F(StudyCommandsE2e, ExportDoesNotOverwriteForeignFiles) {
+  ASSERT_EQ(run().exit_code, 0);
+  fs::create_directory(folder_ / "mine");
+  base::write_file_atomically(folder_ / "mine/notes.txt", "keep");
+  expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "mine"},
+               "is not an earlier export");
+}
+
+}  // namespace
+}  // namespace apps::test

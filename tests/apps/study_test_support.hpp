@@ -1,0 +1,102 @@
+#pragma once
+/// What the end-to-end tests of vip-study share: a folder, a short protocol, a look into a database.
+
+#include <stdlib.h>
+
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "libstudy/store/sqlite.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+
+namespace apps::test {
+
+namespace fs = std::filesystem;
+
+inline const std::string vip_study = VIP_BIN_DIR "/vip-study";
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "vip-test-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::permissions(path_, fs::perms::owner_all, ignored);
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::runtime_error("the pilot's protocol no longer holds: " + from);
+  return text.replace(at, from.size(), to);
+}
+
+/// The pilot with six settings, no gap and trials of `duration_s`.
+inline std::string short_protocol(const std::string& duration_s) {
+  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
+  text = replaced(text, "name = \"ptpe_pilot\"", "name = \"short\"");
+  text = replaced(text, "mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [20, 50]");
+  text = replaced(text, "sd_fps = [0, 5, 10, 15, 20]", "sd_fps = [0, 5, 10]");
+  text = replaced(text, "duration_s = 10 ", "duration_s = " + duration_s + " ");
+  return replaced(text, "gap_s = 3 ", "gap_s = 0 ");
+}
+
+inline std::vector<std::string> run_arguments(const std::string& protocol, const std::string& database,
+                                              const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{
+      vip_study,           "run",     protocol, "--db", database, "--seed", "7", "--observer",
+      "ptpe:a=31,b=0.035", "--events"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+/// (participant, position) -> (response row, score, time of the answer).
+using Answers = std::map<std::pair<std::string, int>, std::tuple<std::int64_t, int, std::string>>;
+
+inline Answers answers_in(const std::string& database) {
+  study::sqlite::Connection connection(database, study::sqlite::Open::Read);
+  study::sqlite::Statement row(
+      connection,
+      "SELECT s.participant, t.position, r.response_id, r.score, r.answered_utc "
+      "FROM response r JOIN trial t USING (trial_id) JOIN session s USING (session_id)");
+  Answers answers;
+  while (row.step()) {
+    answers[{row.text(0), static_cast<int>(row.integer(1))}] = {
+        row.integer(2), static_cast<int>(row.integer(3)), row.text(4)};
+  }
+  return answers;
+}
+
+inline std::int64_t count_in(const std::string& database, const std::string& sql) {
+  return study::sqlite::Connection(database, study::sqlite::Open::Read).integer(sql);
+}
+
+/// What the program said it had committed: the lines "answered P01 3 attempt 1".
+inline std::vector<std::pair<std::string, int>> acknowledged(const std::string& out) {
+  std::vector<std::pair<std::string, int>> all;
+  std::size_t at = 0;
+  while (at < out.size()) {
+    const std::size_t end = std::min(out.find('\n', at), out.size());
+    char participant[40];
+    int position = 0;
+    if (std::sscanf(out.substr(at, end - at).c_str(), "answered %39s %d", participant, &position) == 2) {
+      all.emplace_back(participant, position);
+    }
+    at = end + 1;
+  }
+  return all;
+}
+
+}  // namespace apps::test
