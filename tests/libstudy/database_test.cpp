@@ -158,5 +158,23 @@ TEST(Database, ReadingLeavesNothingBehind) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
+TEST(Database, EveryReleasedSchemaIsStillOpened) {
+  const test::TemporaryFolder folder;
+  for (const auto& entry : fs::directory_iterator(fs::path(VIP_TEST_DIR) / "libstudy" / "fixtures")) {
+    if (entry.path().extension() != ".db") continue;
+    SCOPED_TRACE(entry.path());
+    const fs::path copy = folder / entry.path().filename().string();
+    fs::copy_file(entry.path(), copy);
+    EXPECT_TRUE(Store(copy, Open::Write).open_runs().empty());
+    const auto rows = read_ratings(copy);
+    ASSERT_EQ(rows.size(), 4u);
+    for (const RatingRow& row : rows) {
+      ASSERT_TRUE(row.rating && row.timing);
+      EXPECT_NEAR(row.timing->realised.mean, row.nominal.mean, 1e-6);
+      EXPECT_EQ(row.observer, "ptpe:a=31,b=0.035,slope=0.14,noise=1,participant_sd=0.5");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace study
