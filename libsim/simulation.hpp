@@ -50,6 +50,9 @@ struct SimulationOptions {
   double relaxation = -1;
   double tensile = -1;
   double viscosity = -1;
+  double warm_start = -1;
+  double over_relaxation = -1;
+  double longest_step = -1;
 };
 
 /// What the guards met since the simulation was made. Nothing is hidden: each count says how often a rule
@@ -90,8 +93,9 @@ class Simulation {
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
   /// Everything about every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
-  /// Copies positions and radii into a GL buffer of this thread's context without a way through the host. False when this back
-  /// end cannot (the CPU, or a context on another device): read_particles and upload instead.
+  /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.
+  /// False when this back end cannot (the CPU, or a context on another device): read_particles and upload
+  /// instead.
   virtual bool copy_to_gl(unsigned buffer) = 0;
   /// Waits for all launched work.
   virtual void synchronize() = 0;

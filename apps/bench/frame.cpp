@@ -32,10 +32,14 @@ struct FrameOptions {
   double relaxation = -1;
   double tensile = -1;
   double viscosity = -1;
+  double warm_start = -1;
+  double over_relaxation = -1;
+  double longest_step = -1;
 };
 
 double milliseconds_now() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 /// Nearest-rank quantile of sorted values.
@@ -55,12 +59,16 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   out.relaxation = options.relaxation;
   out.tensile = options.tensile;
   out.viscosity = options.viscosity;
+  out.warm_start = options.warm_start;
+  out.over_relaxation = options.over_relaxation;
+  out.longest_step = options.longest_step;
   Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
   out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
   return sim::make_simulation(scene, out);
 }
 
-/// Density error averaged over ten states spread over the run, so that one calm or wild moment does not decide.
+/// Density error averaged over ten states spread over the run, so that one calm or wild moment does not
+/// decide.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;
@@ -93,7 +101,8 @@ nlohmann::json run_frames(const FrameOptions& options) {
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   const auto report = fluid->report();
-  const double mean = std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
+  const double mean =
+      std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
   std::sort(solve_ms.begin(), solve_ms.end());
   return {{"program", "vip-bench frame"},
           {"version", base::version()},
@@ -126,9 +135,11 @@ nlohmann::json run_frames(const FrameOptions& options) {
 void print_table(const nlohmann::json& result) {
   std::printf("%s %s n_* %s on %s: %lld particles, %d frames\n", result["scene"].get<std::string>().c_str(),
               result["method"].get<std::string>().c_str(), result["n_star"].get<std::string>().c_str(),
-              result["backend"].get<std::string>().c_str(), result["particles"].get<long long>(), result["frames"].get<int>());
-  std::printf("  solve        %8.3f ms a frame (median), %.3f mean, %.3f p95\n", result["solve_ms_median"].get<double>(),
-              result["solve_ms_mean"].get<double>(), result["solve_ms_p95"].get<double>());
+              result["backend"].get<std::string>().c_str(), result["particles"].get<long long>(),
+              result["frames"].get<int>());
+  std::printf("  solve        %8.3f ms a frame (median), %.3f mean, %.3f p95\n",
+              result["solve_ms_median"].get<double>(), result["solve_ms_mean"].get<double>(),
+              result["solve_ms_p95"].get<double>());
   std::printf("  h/d          %8.3f\n  neighbours   %8.2f mean within h\n", result["h_over_d"].get<double>(),
               result["neighbours_mean"].get<double>());
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
@@ -143,16 +154,29 @@ void add_frame_command(CLI::App& app) {
   auto* command = app.add_subcommand("frame", "Milliseconds a frame of one scene and method");
   command->add_option("scene", options->scene, "Scene file")->capture_default_str();
   command->add_option("--method", options->method, "LoRes or HiRes")->capture_default_str();
-  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")->capture_default_str();
+  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
   command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();
-  command->add_option("--frames", options->frames, "Timed frames")->check(CLI::Range(1, 100000))->capture_default_str();
-  command->add_option("--warm-up", options->warm_up, "Untimed frames before")->check(CLI::Range(0, 10000))->capture_default_str();
-  command->add_option("--substeps", options->substeps, "Substeps a frame; 0 = the scene's rule")->check(CLI::Range(0, 64));
-  command->add_option("--iterations", options->iterations, "Projections a substep; 0 = the scene's")->check(CLI::Range(0, 64));
+  command->add_option("--frames", options->frames, "Timed frames")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--warm-up", options->warm_up, "Untimed frames before")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->add_option("--substeps", options->substeps, "Substeps a frame; 0 = the scene's rule")
+      ->check(CLI::Range(0, 64));
+  command->add_option("--iterations", options->iterations, "Projections a substep; 0 = the scene's")
+      ->check(CLI::Range(0, 64));
   command->add_option("--dt", options->dt_s, "Frame step in s; 0 = the scene's")->check(CLI::Range(0.0, 1.0));
   command->add_option("--relaxation", options->relaxation, "Constraint relaxation; negative = default");
   command->add_option("--tensile", options->tensile, "s_corr strength; negative = default");
   command->add_option("--viscosity", options->viscosity, "XSPH c; negative = default");
+  command->add_option("--warm-start", options->warm_start,
+                      "Share of the last multipliers kept; negative = default");
+  command->add_option("--over-relaxation", options->over_relaxation,
+                      "Factor on multiplier changes; negative = default");
+  command->add_option("--longest-step", options->longest_step,
+                      "Speed limit in h a substep; negative = default");
   command->add_option("--json", options->json, "Also write the figures to this file");
   command->callback([options] {
     const auto result = run_frames(*options);

@@ -22,6 +22,9 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   choose(out.relaxation, options.relaxation);
   choose(out.tensile, options.tensile);
   choose(out.viscosity, options.viscosity);
+  choose(out.warm_start, options.warm_start);
+  choose(out.over_relaxation, options.over_relaxation);
+  choose(out.longest_step, options.longest_step);
   return out;
 }
 
@@ -101,7 +104,8 @@ class FluidSimulation final : public Simulation {
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
     out.speed_max_m_s = measured.speed_max_m_s;
-    out.guards = {met.speed_limited, met.coincident_pairs, met.not_finite, met.neighbours_dropped, met.wall_projected};
+    out.guards = {met.speed_limited, met.coincident_pairs, met.not_finite, met.neighbours_dropped,
+                  met.wall_projected};
     return out;
   }
 
@@ -124,7 +128,8 @@ class FluidSimulation final : public Simulation {
     const auto level = state_.particles.level.to_host();
     std::vector<ParticleState> out(position.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = {id[i], level[i], position[i].x, position[i].y, position[i].z, velocity[i].x, velocity[i].y, velocity[i].z};
+      out[i] = {id[i],         level[i],      position[i].x, position[i].y,
+                position[i].z, velocity[i].x, velocity[i].y, velocity[i].z};
     }
     std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
     return out;
@@ -143,8 +148,8 @@ class FluidSimulation final : public Simulation {
     const auto& k = state_.parameters;
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
-           std::to_string(particle_count()) + " particles of level " + std::to_string(resolution_.level) + ", " +
-           std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
+           std::to_string(particle_count()) + " particles of level " + std::to_string(resolution_.level) +
+           ", " + std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
   }
 
  private:

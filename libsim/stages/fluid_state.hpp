@@ -8,19 +8,24 @@ namespace sim::SIM_BACKEND {
 
 /// Numbers of the solver. Defaults are measured ones; libsim/README.md says how.
 struct SolverParameters {
-  float rest_density = 1000;   ///< rho_0, kg/m3
-  float gravity = 9.81f;       ///< along -y, m/s2
-  float dt = 1.0f / 180;       ///< substep, s
-  int substeps = 3;            ///< a frame
-  int iterations = 4;          ///< constraint projections a substep
+  float rest_density = 1000;  ///< rho_0, kg/m3
+  float gravity = 9.81f;      ///< along -y, m/s2
+  float dt = 1.0f / 180;      ///< substep, s
+  int substeps = 3;           ///< a frame
+  int iterations = 4;         ///< constraint projections a substep
   /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
   float relaxation = 0.01f;
   /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.
   float tensile = 0;
+  /// Factor on each change of a multiplier; above 1 converges faster until it oscillates.
+  float over_relaxation = 1;
+  /// Share of the last substep's multipliers that a substep starts from; 0 leaves the pass and its column
+  /// out.
+  float warm_start = 0;
   /// XSPH c; 0 leaves the pass out.
   float viscosity = 0.1f;
   /// Longest way of a particle in a substep, as a share of h.
-  float longest_step = 0.5f;
+  float longest_step = 2.0f;
   /// Nearest distance to a wall, as a share of d.
   float wall_gap = 0.1f;
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// The stages of the solver, one source file each. A stage is data: what it is called, which columns it reads and writes, when a
-/// schedule needs it, and the function that launches it.
+/// The stages of the solver, one source file each. A stage is data: what it is called, which columns it reads
+/// and writes, when a schedule needs it, and the function that launches it.
 
 #include <string>
 #include <vector>
@@ -31,6 +31,8 @@ struct Stage {
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
+/// Start from the last substep's pressure.
+Stage warm_start_stage();
 /// Density, unilateral constraint and its multiplier lambda.
 Stage density_stage();
 /// Position correction, momentum-exact, and wall projection.

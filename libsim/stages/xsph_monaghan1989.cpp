@@ -56,16 +56,20 @@ void launch(FluidState& state) {
 }  // namespace
 
 Stage xsph_stage() {
-  return {"xsph", "Monaghan 1989; Macklin and Mueller 2013, Eq. 17", Phase::SubstepEnd,
+  return {"xsph",
+          "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
+          Phase::SubstepEnd,
           columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
           columns(Column::VelocityNext, Column::Velocity),
-          [](const Demand& demand) -> std::string { return demand.parameters.viscosity > 0 ? "viscosity c > 0" : ""; },
+          [](const Demand& demand) -> std::string {
+            return demand.parameters.viscosity > 0 ? "viscosity c > 0" : "";
+          },
           [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
 }
 
 std::vector<Stage> all_stages() {
-  return {predict_stage(),  neighbours_stage(), density_stage(), displacement_stage(),
-          velocity_stage(), xsph_stage(),       settling_stage()};
+  return {predict_stage(),      neighbours_stage(), warm_start_stage(), density_stage(),
+          displacement_stage(), velocity_stage(),   xsph_stage(),       settling_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND
