@@ -51,6 +51,7 @@ struct SimulationOptions {
   double tensile = -1;
   double viscosity = -1;
   double warm_start = -1;
+  double momentum = -1;
   double over_relaxation = -1;
   double longest_step = -1;
 };

@@ -33,6 +33,7 @@ struct FrameOptions {
   double tensile = -1;
   double viscosity = -1;
   double warm_start = -1;
+  double momentum = -1;
   double over_relaxation = -1;
   double longest_step = -1;
 };
@@ -60,6 +61,7 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   out.tensile = options.tensile;
   out.viscosity = options.viscosity;
   out.warm_start = options.warm_start;
+  out.momentum = options.momentum;
   out.over_relaxation = options.over_relaxation;
   out.longest_step = options.longest_step;
   Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
@@ -177,6 +179,8 @@ void add_frame_command(CLI::App& app) {
                       "Factor on multiplier changes; negative = default");
   command->add_option("--longest-step", options->longest_step,
                       "Speed limit in h a substep; negative = default");
+  command->add_option("--momentum", options->momentum,
+                      "Share of the last projection taken again; negative = default");
   command->add_option("--json", options->json, "Also write the figures to this file");
   command->callback([options] {
     const auto result = run_frames(*options);

@@ -23,6 +23,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   choose(out.tensile, options.tensile);
   choose(out.viscosity, options.viscosity);
   choose(out.warm_start, options.warm_start);
+  choose(out.momentum, options.momentum);
   choose(out.over_relaxation, options.over_relaxation);
   choose(out.longest_step, options.longest_step);
   return out;

@@ -8,20 +8,28 @@ namespace {
 
 std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
   switch (phase) {
-    case Phase::Substep: return schedule.substep;
-    case Phase::Iteration: return schedule.iteration;
-    case Phase::SubstepEnd: return schedule.substep_end;
-    case Phase::FrameEnd: break;
+    case Phase::Substep:
+      return schedule.substep;
+    case Phase::Iteration:
+      return schedule.iteration;
+    case Phase::SubstepEnd:
+      return schedule.substep_end;
+    case Phase::FrameEnd:
+      break;
   }
   return schedule.frame_end;
 }
 
 const char* phase_name(Phase phase) {
   switch (phase) {
-    case Phase::Substep: return "substep";
-    case Phase::Iteration: return "iteration";
-    case Phase::SubstepEnd: return "substep end";
-    case Phase::FrameEnd: break;
+    case Phase::Substep:
+      return "substep";
+    case Phase::Iteration:
+      return "iteration";
+    case Phase::SubstepEnd:
+      return "substep end";
+    case Phase::FrameEnd:
+      break;
   }
   return "frame end";
 }
@@ -37,7 +45,8 @@ void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
     for (std::size_t c = 0; c < missing.size(); ++c) {
       if (!missing.test(c)) continue;
       throw base::Error("schedule, pass '" + std::string(pass.name) + "'",
-                        std::string("reads the column ") + column_name(static_cast<Column>(c)) + ", which nothing has written",
+                        std::string("reads the column ") + column_name(static_cast<Column>(c)) +
+                            ", which nothing has written",
                         "add the stage that writes it");
     }
     written |= pass.writes;
@@ -63,9 +72,11 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
     }
     phase_of(out, stage.phase).push_back(stage);
     out.columns |= stage.reads | stage.writes;
-    out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) + padded(reason, 40) + stage.source + "\n";
+    out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) +
+                       padded(reason, 40) + stage.source + "\n";
   }
-  for (const auto* passes : {&out.substep, &out.iteration, &out.substep_end, &out.frame_end}) check_reads(*passes, written);
+  for (const auto* passes : {&out.substep, &out.iteration, &out.substep_end, &out.frame_end})
+    check_reads(*passes, written);
   out.explanation += absent + "  columns:";
   for (std::size_t c = 0; c < out.columns.size(); ++c) {
     if (out.columns.test(c)) out.explanation += std::string(" ") + column_name(static_cast<Column>(c));
@@ -77,7 +88,10 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 void run_frame(const Schedule& schedule, FluidState& state) {
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
     run_all(schedule.substep, state);
-    for (int iteration = 0; iteration < state.parameters.iterations; ++iteration) run_all(schedule.iteration, state);
+    for (int iteration = 0; iteration < state.parameters.iterations; ++iteration) {
+      state.iteration = iteration;
+      run_all(schedule.iteration, state);
+    }
     run_all(schedule.substep_end, state);
   }
   run_all(schedule.frame_end, state);

@@ -16,7 +16,7 @@ struct Displace {
   Walls walls;
   Vec4* next;
   Guards* guards;
-  float rest_density, tensile, wall_gap;
+  float rest_density, tensile, wall_gap, momentum;
 
   SIM_FN void operator()(int i) const {
     const Vec4 self = predicted[i];
@@ -51,6 +51,8 @@ struct Displace {
     const float mass = mass_of(self.w, rest_density);
     Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
     if (zero) x += parted(i, self, own);
+    // `next` still holds the positions before the last projection.
+    if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
     if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     next[i] = with_w(x, self.w);
   }
@@ -90,10 +92,11 @@ template <bool OneLevel, bool Tensile>
 void launch(FluidState& state) {
   auto& p = state.particles;
   const auto& k = state.parameters;
-  for_each("displacement", p.size(),
-           Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(),
-                                       state.neighbours.view(), state.walls, p.predicted_next.data(),
-                                       state.guard(), k.rest_density, k.tensile, k.wall_gap});
+  for_each(
+      "displacement", p.size(),
+      Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(),
+                                  state.walls, p.predicted_next.data(), state.guard(), k.rest_density,
+                                  k.tensile, k.wall_gap, state.iteration > 0 ? k.momentum : 0.0f});
   p.predicted.swap(p.predicted_next);
 }
 
