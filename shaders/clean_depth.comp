@@ -33,5 +33,11 @@ void main() {
     const int jump = away.y * size.x + away.x;
     add_pair(range, source[at - jump], source[at + jump], exp2(falloff * float(away.x * away.x + away.y * away.y)));
   }
-  target[at] = range.sum / range.weight;
+  float depth = range.sum / range.weight;
+  if (tank.w > 0.0) {
+    // Smoothing must not lead out of the tank either.
+    const vec2 within = tank_range(slope_at(vec2(pixel) + 0.5));
+    if (within.x < within.y) depth = clamp(depth, max(within.x, origin.z), within.y);
+  }
+  target[at] = depth;
 }

@@ -58,7 +58,8 @@ void main() {
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
     light = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
-    if (distance_m < frame_at) cover = 0.0;
+    // Water that touches the near wall lies behind its frame.
+    if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
   colour = vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0);
 }

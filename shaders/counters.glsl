@@ -2,6 +2,7 @@
 layout(std430, binding = 4) buffer Counters {
   uint not_finite;
   uint outside;
+  uint beyond;
   uint near_crossing;
   uint subpixel_count;
   uint by_thread;

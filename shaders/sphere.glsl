@@ -5,6 +5,7 @@ uniform uint particle_count;
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
   float radius;
+  bool cut;  // reaches through a wall or the floor
 };
 
 bool is_usable(vec4 particle) {
@@ -16,16 +17,28 @@ Sphere sphere_of(vec4 particle) {
   precise vec3 eye = world_to_eye[0].xyz * particle.x + world_to_eye[1].xyz * particle.y +
                      world_to_eye[2].xyz * particle.z + world_to_eye[3].xyz;
   precise float radius = particle.w * origin.w;
-  return Sphere(vec3(eye.xy, -eye.z), radius);
+  const vec3 at = particle.xyz;
+  const bool cut = tank.w > 0.0 && (any(lessThan(at, vec3(radius))) || at.x > tank.x - radius || at.z > tank.z - radius);
+  return Sphere(vec3(eye.xy, -eye.z), radius, cut);
+}
+
+bool beyond_walls(vec4 particle) {
+  const vec3 at = particle.xyz;
+  const float radius = particle.w * origin.w;
+  return tank.w > 0.0 && (any(lessThan(at, vec3(-radius))) || at.x > tank.x + radius || at.z > tank.z + radius);
 }
 
 bool crosses_near(Sphere s) { return s.centre.z - s.radius < origin.z; }
 
 // Radius in cells of a grid, at the centre's depth. Below sqrt(1/2) a disc may miss every cell centre.
-float radius_in_cells(Sphere s, vec4 grid) { return s.radius / (s.centre.z * max(grid.x, grid.z)); }
+float radius_in_cells(Sphere s, vec4 grid) {
+  precise float cells = s.radius / (s.centre.z * max(grid.x, grid.z));
+  return cells;
+}
 bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
 
-// Depths of a ray's way in and out; a sphere below pixel size is met as if the ray went through its centre.
+// Depths of a ray's way in and out, between the walls; a sphere below pixel size is met as if the ray went
+// through its centre.
 bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave) {
   precise float inverse = 1.0 / (slope.x * slope.x + slope.y * slope.y + 1.0);
   precise float middle = (s.centre.x * slope.x + s.centre.y * slope.y + s.centre.z) * inverse;
@@ -35,9 +48,15 @@ bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave
   precise float square = s.radius * s.radius - (off_x * off_x + off_y * off_y + off_z * off_z);
   if (subpixel) square = s.radius * s.radius;
   precise float reach = sqrt(max(square, 0.0) * inverse);
-  entry = max(middle - reach, origin.z);
+  precise float first = middle - reach;
+  entry = max(first, origin.z);
   leave = middle + reach;
-  return square > 0.0 && leave > origin.z;
+  if (square <= 0.0 || leave <= origin.z) return false;
+  if (!s.cut || subpixel) return true;
+  const vec2 within = tank_range(slope);
+  entry = max(entry, within.x);
+  leave = min(leave, within.y);
+  return leave > entry;
 }
 
 vec2 tangent_slopes(float x, float z, float radius) {
@@ -73,7 +92,10 @@ ivec4 footprint(Sphere s, vec4 grid, ivec2 cells) {
 
 vec4 thickness_rays() { return vec4(rays.x * thickness_rule.z, rays.y, rays.z * thickness_rule.z, rays.w); }
 
-vec2 cell_slope(ivec2 cell, vec4 grid) { return (vec2(cell) + 0.5) * grid.xz + grid.yw; }
+vec2 cell_slope(ivec2 cell, vec4 grid) {
+  precise vec2 slope = (vec2(cell) + 0.5) * grid.xz + grid.yw;
+  return slope;
+}
 
 // Length of the ray inside the sphere in thickness units; below cell size the sphere's volume over the cell.
 uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid) {

@@ -61,6 +61,10 @@ void main() {
     atomicAdd(not_finite, 1u);
     return;
   }
+  if (beyond_walls(particle)) {
+    atomicAdd(beyond, 1u);
+    return;
+  }
   const Sphere s = sphere_of(particle);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;

@@ -8,10 +8,21 @@ layout(std140, binding = 0) uniform ViewBlock {
   vec4 narrow_range;    // sigma, delta, mu in particle radii; largest reach in px
   vec4 thickness_rule;  // units per m; m per unit, through water; pixels per grid cell; largest number of taps
   vec4 absorption;      // per m
-  vec4 tank;            // size from (0, 0, 0)
+  vec4 tank;            // size from (0, 0, 0), open above; 1: its walls and floor cut the spheres
 };
 
 vec2 slope_at(vec2 xy) { return xy * rays.xz + rays.yw; }
 
 const float no_depth = uintBitsToFloat(0x7f800000u);
 bool is_fluid(float depth) { return floatBitsToUint(depth) < 0x7f800000u; }
+
+// Eye depths between which the ray is inside the walls and above the floor. `precise`: passes must agree.
+vec2 tank_range(vec2 slope) {
+  precise vec3 ray = slope.x * eye_to_world[0].xyz + slope.y * eye_to_world[1].xyz - eye_to_world[2].xyz;
+  const vec3 safe = mix(ray, vec3(1e-9), lessThan(abs(ray), vec3(1e-9)));
+  const vec3 eye = eye_to_world[3].xyz;
+  precise vec3 a = -eye / safe;
+  precise vec3 b = (vec3(tank.x, 1e6, tank.z) - eye) / safe;
+  const vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
+}

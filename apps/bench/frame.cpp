@@ -1,14 +1,15 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "apps/bench/commands.hpp"
+#include "apps/bench/render_timer.hpp"
+#include "apps/bench/timing.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
@@ -36,18 +37,10 @@ struct FrameOptions {
   double momentum = -1;
   double over_relaxation = -1;
   double longest_step = -1;
+  bool no_render = false;
+  std::string size = "1280x720";
+  int views = 1;
 };
-
-double milliseconds_now() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-/// Nearest-rank quantile of sorted values.
-double quantile(const std::vector<double>& sorted, double q) {
-  const auto last = static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(std::lround(q * last))];
-}
 
 std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
   sim::SimulationOptions out;
@@ -84,13 +77,33 @@ struct Accuracy {
   }
 };
 
+/// The pictures beside the solver, or why there are none.
+struct Pictures {
+  std::unique_ptr<RenderTimer> timer;
+  std::string left_out;
+};
+
+Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
+  const PictureSize size = parse_picture_size(options.size);
+  if (options.no_render) return {nullptr, "--no-render"};
+  std::optional<sim::GlContext> context;
+  try {
+    context.emplace(sim::GlContext::make_headless());
+  } catch (const base::Error& error) {
+    return {nullptr, error.what()};
+  }
+  return {std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
+}
+
 nlohmann::json run_frames(const FrameOptions& options) {
   const sim::Scene scene = sim::read_scene(options.scene);
+  const Pictures pictures = make_pictures(scene, options);
   const auto fluid = make_fluid(scene, options);
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
   fluid->synchronize();
+  if (pictures.timer) pictures.timer->warm_up(*fluid);
 
-  std::vector<double> solve_ms;
+  std::vector<double> solve_ms, frame_ms;
   Accuracy accuracy;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
   const int stride = std::max(1, options.frames / 10);
@@ -99,39 +112,50 @@ nlohmann::json run_frames(const FrameOptions& options) {
     fluid->step_frame();
     fluid->synchronize();
     solve_ms.push_back(milliseconds_now() - start);
+    if (pictures.timer) {
+      const auto times = pictures.timer->draw(*fluid);
+      frame_ms.push_back(solve_ms.back() + times.transfer + times.render);
+    }
     if (frame % stride == stride - 1) accuracy.add(fluid->report());
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   const auto report = fluid->report();
   const double mean =
       std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
-  std::sort(solve_ms.begin(), solve_ms.end());
-  return {{"program", "vip-bench frame"},
-          {"version", base::version()},
-          {"scene", scene.name},
-          {"scene_sha256", scene.sha256},
-          {"method", options.method},
-          {"n_star", options.n_star},
-          {"backend", sim::backend_name(sim::choose_backend(options.backend))},
-          {"threads", omp_get_max_threads()},
-          {"frames", options.frames},
-          {"particles", fluid->particle_count()},
-          {"solve_ms_mean", mean},
-          {"solve_ms_median", quantile(solve_ms, 0.5)},
-          {"solve_ms_p95", quantile(solve_ms, 0.95)},
-          {"h_over_d", 2.0},
-          {"neighbours_mean", accuracy.neighbours_mean},
-          {"density_error_mean", accuracy.error_mean},
-          {"density_max", accuracy.density_max},
-          {"speed_max_m_s", report.speed_max_m_s},
-          {"particle_bytes", fluid->particle_bytes()},
-          {"guards",
-           {{"speed_limited", report.guards.speed_limited},
-            {"coincident_pairs", report.guards.coincident_pairs},
-            {"not_finite", report.guards.not_finite},
-            {"neighbours_dropped", report.guards.neighbours_dropped},
-            {"wall_projected", report.guards.wall_projected}}},
-          {"schedule", fluid->explain()}};
+  nlohmann::json result{{"program", "vip-bench frame"},
+                        {"version", base::version()},
+                        {"scene", scene.name},
+                        {"scene_sha256", scene.sha256},
+                        {"method", options.method},
+                        {"n_star", options.n_star},
+                        {"backend", sim::backend_name(sim::choose_backend(options.backend))},
+                        {"threads", omp_get_max_threads()},
+                        {"frames", options.frames},
+                        {"particles", fluid->particle_count()},
+                        {"solve_ms_mean", mean},
+                        {"solve_ms_median", quantile(solve_ms, 0.5)},
+                        {"solve_ms_p95", quantile(solve_ms, 0.95)},
+                        {"h_over_d", 2.0},
+                        {"neighbours_mean", accuracy.neighbours_mean},
+                        {"density_error_mean", accuracy.error_mean},
+                        {"density_max", accuracy.density_max},
+                        {"speed_max_m_s", report.speed_max_m_s},
+                        {"particle_bytes", fluid->particle_bytes()},
+                        {"guards",
+                         {{"speed_limited", report.guards.speed_limited},
+                          {"coincident_pairs", report.guards.coincident_pairs},
+                          {"not_finite", report.guards.not_finite},
+                          {"neighbours_dropped", report.guards.neighbours_dropped},
+                          {"wall_projected", report.guards.wall_projected}}},
+                        {"schedule", fluid->explain()}};
+  if (pictures.timer) {
+    result.update(pictures.timer->figures());
+    result["frame_ms_median"] = quantile(frame_ms, 0.5);
+    result["frame_ms_p95"] = quantile(frame_ms, 0.95);
+  } else {
+    result["render_left_out"] = pictures.left_out;
+  }
+  return result;
 }
 
 void print_table(const nlohmann::json& result) {
@@ -142,6 +166,13 @@ void print_table(const nlohmann::json& result) {
   std::printf("  solve        %8.3f ms a frame (median), %.3f mean, %.3f p95\n",
               result["solve_ms_median"].get<double>(), result["solve_ms_mean"].get<double>(),
               result["solve_ms_p95"].get<double>());
+  if (result.contains("render_left_out")) {
+    std::printf("  render       left out: %s\n", result["render_left_out"].get<std::string>().c_str());
+  } else {
+    print_render_figures(result);
+    std::printf("  frame        %8.3f ms (median), %.3f p95: solve, transfer and render one after another\n",
+                result["frame_ms_median"].get<double>(), result["frame_ms_p95"].get<double>());
+  }
   std::printf("  h/d          %8.3f\n  neighbours   %8.2f mean within h\n", result["h_over_d"].get<double>(),
               result["neighbours_mean"].get<double>());
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
@@ -181,6 +212,11 @@ void add_frame_command(CLI::App& app) {
                       "Speed limit in h a substep; negative = default");
   command->add_option("--momentum", options->momentum,
                       "Share of the last projection taken again; negative = default");
+  command->add_flag("--no-render", options->no_render, "Time the solver alone");
+  command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
+  command->add_option("--views", options->views, "1, or 2 eyes side by side")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
   command->add_option("--json", options->json, "Also write the figures to this file");
   command->callback([options] {
     const auto result = run_frames(*options);

@@ -116,7 +116,7 @@ struct FluidRenderer::State {
   State(const Scene& scene, const RenderOptions& chosen)
       : options(chosen),
         tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
-             static_cast<float>(scene.tank_size_m[2]), 0},
+             static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
         timer(chosen.time_passes) {
     // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
     if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
@@ -159,13 +159,14 @@ void FluidRenderer::State::write_block(ViewTargets& t) const {
 }
 
 void FluidRenderer::State::clear(ViewTargets& t, std::int64_t count) {
+  // The passes of the last view wrote these buffers; a clear is no shader access.
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   t.follow(count);
   wide_list.reserve(4 * (list_header_words + 2 * count));
   wide_list.fill(0, 4 * list_header_words);
   t.depth.fill(infinity_bits);
   t.front.fill(GBuffer::no_particle);
   t.thickness.fill(0);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Runs a program on the wide footprints of the last round, or of both.
@@ -293,6 +294,7 @@ void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> 
   for (const View& view : views) check_view(view);
   State& s = *state_;
   s.timer.start();
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   s.counters.fill(0);
   for (std::size_t i = 0; i < views.size(); ++i) {
     s.targets[i].resize(views[i], s.options.thickness_step);
@@ -306,10 +308,10 @@ void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> 
 RenderCounts FluidRenderer::counts() const {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   RenderCounts counts;
-  static_assert(sizeof(RenderCounts) == 40, "counters.glsl lists the same words");
+  static_assert(sizeof(RenderCounts) == 44, "counters.glsl lists the same words");
   state_->counters.read(&counts, sizeof counts);
   counts.by_thread = static_cast<std::uint32_t>(state_->particles_drawn) - counts.not_finite -
-                     counts.outside - counts.by_group - counts.by_tiles;
+                     counts.outside - counts.beyond_walls - counts.by_group - counts.by_tiles;
   return counts;
 }
 

@@ -21,6 +21,9 @@ namespace sim {
 struct RenderOptions {
   /// Splatted radius / particle radius. Touching spheres (1) let the next layer shine through between them.
   float radius_scale = 1.5F;
+  /// Walls and floor cut the spheres, so that no water is seen outside the glass. Off: particles that leaked
+  /// are drawn where they are.
+  bool clip_to_tank = true;
   float filter_sigma_r = 1.5F;  ///< standard deviation of the depth filter in the world (Truong and Yuksel)
   /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
   /// layers of water and smears droplets over what lies behind them, so the default is two layers.
@@ -50,6 +53,7 @@ struct RenderOptions {
 struct RenderCounts {
   std::uint32_t not_finite = 0;      ///< particles skipped: NaN, infinity, or a radius that is not positive
   std::uint32_t outside = 0;         ///< particles that touch no pixel
+  std::uint32_t beyond_walls = 0;    ///< particles outside the tank as a whole, not drawn (clip_to_tank)
   std::uint32_t near_crossing = 0;   ///< particles cut by the near plane
   std::uint32_t subpixel = 0;        ///< particles too small to be sure of a pixel centre; drawn as one pixel
   std::uint32_t by_thread = 0;       ///< footprints splatted by one invocation

@@ -3,7 +3,7 @@
 
 namespace {
 
-using render_test::exact_options;
+using render_test::open_options;
 using render_test::view_along_z;
 using sim::RenderParticle;
 
@@ -26,7 +26,7 @@ double angle_deg(const float* n, double x, double y, double z) {
 }
 
 TEST_F(PictureGl, FlatSheetHasFlatDepthAndNormals) {
-  const auto g = render(sheet(4, 0.05F, 0, 1.6F), view_along_z(160, 120), {});
+  const auto g = render(sheet(4, 0.05F, 0, 1.6F), view_along_z(160, 120), open_options());
   float lowest = 1e9F, highest = 0;
   for (int y = 35; y < 85; ++y) {
     for (int x = 55; x < 105; ++x) {
@@ -43,7 +43,7 @@ TEST_F(PictureGl, FlatSheetHasFlatDepthAndNormals) {
 
 TEST_F(PictureGl, TurnedSheetHasItsNormal) {
   const float turned = 0.5F;
-  const auto g = render(sheet(4, 0.05F, turned, 1.6F), view_along_z(160, 120), {});
+  const auto g = render(sheet(4, 0.05F, turned, 1.6F), view_along_z(160, 120), open_options());
   double sum = 0;
   for (int y = 40; y < 80; ++y) {
     for (int x = 60; x < 100; ++x) {
@@ -57,7 +57,7 @@ TEST_F(PictureGl, TurnedSheetHasItsNormal) {
 TEST_F(PictureGl, FilterKeepsAStepThatIsWiderThanItsRange) {
   auto particles = sheet(6, 0.05F, 0, 3);
   for (const auto& p : sheet(4, 0.05F, 0, 0.8F)) particles.push_back(p);
-  const auto g = render(particles, view_along_z(160, 120), {});
+  const auto g = render(particles, view_along_z(160, 120), open_options());
   for (std::size_t p = 0; p < g.depth.size(); ++p) {
     if (!std::isfinite(g.depth[p])) continue;
     // Never between the two sheets.
@@ -67,7 +67,7 @@ TEST_F(PictureGl, FilterKeepsAStepThatIsWiderThanItsRange) {
 }
 
 TEST_F(PictureGl, FilterLeavesTheFluidsOutlineAlone) {
-  const auto g = render(sheet(4, 0.05F, 0.3F, 0.5F), view_along_z(160, 120), {});
+  const auto g = render(sheet(4, 0.05F, 0.3F, 0.5F), view_along_z(160, 120), open_options());
   for (std::size_t p = 0; p < g.depth.size(); ++p) {
     EXPECT_EQ(std::isfinite(g.depth[p]), std::isfinite(g.filtered_depth[p]));
     const float* n = &g.normal[3 * p];
@@ -76,11 +76,11 @@ TEST_F(PictureGl, FilterLeavesTheFluidsOutlineAlone) {
 }
 
 TEST_F(PictureGl, CappedFilterIsCounted) {
-  auto options = sim::RenderOptions{};
+  auto options = open_options();
   options.filter_max_px = 4;
   render(sheet(4, 0.2F, 0, 1), view_along_z(160, 120), options);
   EXPECT_GT(counts.filter_capped, 100u);
-  render(sheet(4, 0.2F, 0, 1), view_along_z(160, 120), {});
+  render(sheet(4, 0.2F, 0, 1), view_along_z(160, 120), open_options());
   EXPECT_EQ(counts.filter_capped, 0u);
 }
 
@@ -112,14 +112,14 @@ TEST_F(PictureGl, TwoViewsAreThoseOfEachEyeAlone) {
   auto left = view_along_z(90, 70), right = view_along_z(90, 70);
   right.view[12] -= 0.064F;
   right.projection[8] = 0.1F;  // off-centre, as a headset's
-  const auto left_alone = render(particles, left, {});
+  const auto left_alone = render(particles, left, open_options());
   const auto left_image = image;
-  const auto right_alone = render(particles, right, {});
+  const auto right_alone = render(particles, right, open_options());
   const auto right_image = image;
 
   right.viewport.x = 100;
   right.viewport.y = 5;
-  sim::FluidRenderer renderer(room(), {});
+  sim::FluidRenderer renderer(room(), open_options());
   sim::ParticleBuffer buffer;
   buffer.upload(particles);
   const sim::Offscreen target(200, 80);
@@ -141,10 +141,10 @@ TEST_F(PictureGl, TwoViewsAreThoseOfEachEyeAlone) {
 }
 
 TEST_F(PictureGl, BadRequestsAreErrors) {
-  sim::RenderOptions options;
+  sim::RenderOptions options = open_options();
   options.thickness_step = 3;
   EXPECT_THROW(sim::FluidRenderer(room(), options), base::Error);
-  options = {};
+  options = open_options();
   options.radius_scale = 0;
   EXPECT_THROW(sim::FluidRenderer(room(), options), base::Error);
   sim::FluidRenderer renderer(room());
@@ -156,7 +156,7 @@ TEST_F(PictureGl, BadRequestsAreErrors) {
 }
 
 TEST_F(PictureGl, PassTimesAreKeptOnDemand) {
-  sim::RenderOptions options;
+  sim::RenderOptions options = open_options();
   const auto view = view_along_z(32, 32);
   sim::ParticleBuffer buffer;
   buffer.upload(sheet(4, 0.1F, 0, 1));

@@ -1,4 +1,5 @@
 #include <random>
+#include <sstream>
 
 #include "stats/base/error.hpp"
 #include "tests/libsim/render/scene_fixture.hpp"
@@ -14,25 +15,43 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 class SplatGl : public render_test::RenderGl {
  protected:
-  void expect_matches_brute_force(const std::vector<RenderParticle>& particles, const sim::View& view) {
-    const auto g = render(particles, view);
+  void expect_matches_brute_force(const std::vector<RenderParticle>& particles, const sim::View& view,
+                                  const sim::RenderOptions& options = exact_options()) {
+    const auto g = render(particles, view, options);
     const auto reference = render_test::splat(particles, view, 1);
     ASSERT_EQ(g.depth.size(), reference.depth.size());
-    std::size_t compared = 0;
+    std::size_t compared = 0, wrong = 0;
     for (std::size_t p = 0; p < g.depth.size(); ++p) {
       if (reference.rim[p]) continue;
       ++compared;
-      if (std::isinf(reference.depth[p])) {
-        EXPECT_EQ(g.depth[p], inf) << "pixel " << p;
-      } else {
-        EXPECT_NEAR(g.depth[p], reference.depth[p], 1e-3) << "pixel " << p;
-      }
-      EXPECT_NEAR(g.thickness[p], reference.thickness[p], 1e-3 + 1e-3 * reference.thickness[p])
-          << "pixel " << p;
-      EXPECT_EQ(g.front[p], reference.front[p]) << "pixel " << p;
+      if (!agrees(g, reference, p, particles) && ++wrong <= 8) ADD_FAILURE() << describe(g, reference, p);
     }
-    EXPECT_GE(compared, g.depth.size() / 2);
+    EXPECT_EQ(wrong, 0u) << "of " << compared << " pixels, on " << sim::gl_description();
+    EXPECT_GE(compared, g.depth.size() * 9 / 10);
     EXPECT_EQ(counts.front_missing, 0u);
+  }
+
+ private:
+  static bool agrees(const sim::GBuffer& g, const render_test::Reference& reference, std::size_t p,
+                     const std::vector<RenderParticle>& particles) {
+    if (std::abs(g.thickness[p] - reference.thickness[p]) > 1e-3 + 1e-3 * reference.thickness[p])
+      return false;
+    const double depth = reference.depth[p], tolerance = 1e-4 * depth;
+    if (std::isinf(depth)) return g.depth[p] == inf && g.front[p] == sim::GBuffer::no_particle;
+    if (!(std::abs(g.depth[p] - depth) <= tolerance) || g.front[p] >= particles.size()) return false;
+    // Where two fronts cross within the tolerance, rounding decides which of them is named.
+    const auto named = render_test::chord_at(particles[g.front[p]], g.view, p);
+    return named && named->entry - depth <= tolerance;
+  }
+
+  static std::string describe(const sim::GBuffer& g, const render_test::Reference& reference, std::size_t p) {
+    std::ostringstream text;
+    text.precision(9);
+    const auto width = static_cast<std::size_t>(g.width);
+    text << "pixel (" << p % width << ", " << p / width << "): depth " << g.depth[p] << ", expected "
+         << reference.depth[p] << "; thickness " << g.thickness[p] << ", expected " << reference.thickness[p]
+         << "; front " << g.front[p] << ", expected " << reference.front[p];
+    return text.str();
   }
 };
 
@@ -113,7 +132,20 @@ TEST_F(SplatGl, CloudMatchesBruteForce) {
 
 TEST_F(SplatGl, LargeFootprintsMatchBruteForce) {
   expect_matches_brute_force(cloud(25, 0.4F, 1.2F, 2), view_along_z(200, 150));
-  EXPECT_GT(counts.by_thread, 0u);
+}
+
+TEST_F(SplatGl, LargeFootprintsMatchBruteForceHoweverTheyAreSplit) {
+  // The driver's kind chooses the split unless it is given.
+  auto options = exact_options();
+  const auto particles = cloud(25, 0.4F, 1.2F, 2);
+  for (const int thread_px : {1, 16, 64, 400}) {
+    SCOPED_TRACE(thread_px);
+    options.thread_px = thread_px;
+    options.group_px = std::max(128, thread_px);
+    expect_matches_brute_force(particles, view_along_z(200, 150), options);
+    EXPECT_EQ(counts.by_thread > 0, thread_px >= 64);
+    EXPECT_EQ(counts.by_group > 0, thread_px < 400);
+  }
 }
 
 TEST_F(SplatGl, OddAndTinyPicturesMatchBruteForce) {
@@ -254,9 +286,9 @@ TEST_F(SplatGl, WhatIsRememberedOfTheLastPictureNeverShows) {
 
 TEST_F(SplatGl, TwoRunsAgreeInEveryBit) {
   const auto particles = cloud(3000, 0.05F, 0.2F, 6);
-  const auto first = render(particles, view_along_z(160, 120), {});
+  const auto first = render(particles, view_along_z(160, 120), render_test::open_options());
   const auto picture = image;
-  const auto second = render(particles, view_along_z(160, 120), {});
+  const auto second = render(particles, view_along_z(160, 120), render_test::open_options());
   render_test::expect_same_bits(first, second);
   EXPECT_EQ(picture.rgba, image.rgba);
 }

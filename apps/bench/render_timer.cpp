@@ -1,0 +1,155 @@
+#include "apps/bench/render_timer.hpp"
+
+#include <epoxy/gl.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/bench/timing.hpp"
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr float eye_distance_m = 0.064F;
+
+std::vector<sim::View> make_views(const sim::Scene& scene, const PictureSize& size, int count) {
+  std::vector<sim::View> views(static_cast<std::size_t>(count),
+                               sim::make_view(scene.view, size.width, size.height));
+  for (int i = 0; i < count; ++i) {
+    auto& view = views[static_cast<std::size_t>(i)];
+    view.viewport.x = i * size.width;
+    view.view[12] -= (static_cast<float>(i) - 0.5F * static_cast<float>(count - 1)) * eye_distance_m;
+  }
+  return views;
+}
+
+sim::RenderOptions timed_passes() {
+  sim::RenderOptions options;
+  options.time_passes = true;
+  return options;
+}
+
+/// A pass and its time in every picture.
+struct Pass {
+  std::string name;
+  std::vector<double> ms;
+};
+
+void add(std::vector<Pass>& passes, const sim::PassTime& time) {
+  const auto known =
+      std::find_if(passes.begin(), passes.end(), [&](const Pass& pass) { return pass.name == time.pass; });
+  Pass& pass = known == passes.end() ? passes.emplace_back(Pass{time.pass, {}}) : *known;
+  pass.ms.push_back(time.ms);
+}
+
+}  // namespace
+
+PictureSize parse_picture_size(const std::string& text) {
+  PictureSize size;
+  int read = 0;
+  const int values = std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &read);
+  if (values != 2 || static_cast<std::size_t>(read) != text.size() || size.width < 16 || size.height < 16 ||
+      size.width > 8192 || size.height > 8192) {
+    throw base::Error("--size " + text, "not a picture size of 16 to 8192 px a side",
+                      "write it like 1280x720");
+  }
+  return size;
+}
+
+struct RenderTimer::State {
+  PictureSize size;
+  sim::GlContext context;
+  std::vector<sim::View> views;
+  sim::Offscreen target;
+  sim::FluidRenderer renderer;
+  sim::ParticleBuffer buffer;
+  std::vector<sim::RenderParticle> particles;
+  bool uploaded = false;
+  std::vector<double> transfer_ms, render_ms;
+  std::vector<Pass> passes;
+
+  State(sim::GlContext current, const sim::Scene& scene, const PictureSize& chosen, int count)
+      : size(chosen),
+        context(std::move(current)),
+        views(make_views(scene, chosen, count)),
+        target(count * chosen.width, chosen.height),
+        renderer(scene, timed_passes()) {}
+
+  void transfer(sim::Simulation& fluid) {
+    buffer.reserve(fluid.particle_count());
+    uploaded = !fluid.copy_to_gl(buffer.gl_name());
+    if (uploaded) {
+      fluid.read_particles(particles);
+      buffer.upload(particles);
+    } else {
+      buffer.set_count(fluid.particle_count());
+      fluid.synchronize();
+    }
+    glFinish();
+  }
+};
+
+RenderTimer::RenderTimer(sim::GlContext context, const sim::Scene& scene, const PictureSize& size, int views)
+    : state_(std::make_unique<State>(std::move(context), scene, size, views)) {}
+
+RenderTimer::~RenderTimer() = default;
+
+void RenderTimer::warm_up(sim::Simulation& fluid) {
+  for (int i = 0; i < 2; ++i) draw(fluid);
+  state_->transfer_ms.clear();
+  state_->render_ms.clear();
+  state_->passes.clear();
+}
+
+RenderTimer::Times RenderTimer::draw(sim::Simulation& fluid) {
+  State& s = *state_;
+  const double start = milliseconds_now();
+  s.transfer(fluid);
+  const double moved = milliseconds_now();
+  s.renderer.draw(s.buffer, s.views, s.target.framebuffer());
+  glFinish();
+  const Times times{moved - start, milliseconds_now() - moved};
+  s.transfer_ms.push_back(times.transfer);
+  s.render_ms.push_back(times.render);
+  for (const auto& time : s.renderer.times()) add(s.passes, time);
+  return times;
+}
+
+nlohmann::json RenderTimer::figures() const {
+  const State& s = *state_;
+  if (s.render_ms.empty()) return nullptr;
+  nlohmann::json passes = nlohmann::json::object();
+  for (const Pass& pass : s.passes) passes[pass.name] = quantile(pass.ms, 0.5);
+  const auto counts = s.renderer.counts();
+  return {{"render_ms_median", quantile(s.render_ms, 0.5)},
+          {"render_ms_p95", quantile(s.render_ms, 0.95)},
+          {"transfer_ms_median", quantile(s.transfer_ms, 0.5)},
+          {"transfer_ms_p95", quantile(s.transfer_ms, 0.95)},
+          {"transfer", s.uploaded ? "uploaded" : "shared with CUDA"},
+          {"render_width_px", s.size.width},
+          {"render_height_px", s.size.height},
+          {"render_views", s.views.size()},
+          {"opengl", sim::gl_description()},
+          {"render_front_missing", counts.front_missing},
+          {"render_beyond_walls", counts.beyond_walls},
+          {"passes", passes}};
+}
+
+void print_render_figures(const nlohmann::json& figures) {
+  std::printf("  transfer     %8.3f ms a frame (median), %.3f p95; %s\n",
+              figures["transfer_ms_median"].get<double>(), figures["transfer_ms_p95"].get<double>(),
+              figures["transfer"].get<std::string>().c_str());
+  std::printf("  render       %8.3f ms a frame (median), %.3f p95; %d x %dx%d px on %s\n",
+              figures["render_ms_median"].get<double>(), figures["render_ms_p95"].get<double>(),
+              figures["render_views"].get<int>(), figures["render_width_px"].get<int>(),
+              figures["render_height_px"].get<int>(), figures["opengl"].get<std::string>().c_str());
+  for (const auto& [pass, ms] : figures["passes"].items())
+    std::printf("    %-12s %6.3f ms\n", pass.c_str(), ms.get<double>());
+}
+
+}  // namespace apps

@@ -1,0 +1,51 @@
+#pragma once
+/// Renders the fluid of a bench beside its solver, and keeps both clocks apart.
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "libsim/render/gl_context.hpp"
+#include "libsim/scene/scene.hpp"
+#include "libsim/simulation.hpp"
+
+namespace apps {
+
+/// Of one view, px.
+struct PictureSize {
+  int width = 0, height = 0;
+};
+
+/// "1280x720"; 16 to 8192 px a side, otherwise a base::Error.
+PictureSize parse_picture_size(const std::string& text);
+
+/// An off-screen picture of a scene, drawn and timed. The context stays current on this thread.
+class RenderTimer {
+ public:
+  /// `views`: 1, or 2 side by side, 64 mm apart. Errors (base::Error): a size that the driver refuses.
+  RenderTimer(sim::GlContext context, const sim::Scene& scene, const PictureSize& size, int views);
+  ~RenderTimer();
+
+  /// Milliseconds of one picture; each part ends with the device idle.
+  struct Times {
+    double transfer = 0;  ///< particles from the solver to the GL buffer
+    double render = 0;    ///< draw call to the finished picture
+  };
+  /// Untimed pictures first: the driver compiles at the first draw.
+  void warm_up(sim::Simulation& fluid);
+  /// Call with the solver idle.
+  Times draw(sim::Simulation& fluid);
+
+  /// Keys render_ms_median, render_ms_p95, transfer_ms_median, passes, ... of all pictures since warm_up;
+  /// null before the first.
+  nlohmann::json figures() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The lines of the table for RenderTimer::figures().
+void print_render_figures(const nlohmann::json& figures);
+
+}  // namespace apps
