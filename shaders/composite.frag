@@ -35,6 +35,19 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m,
   return mix(body, reflection, fresnel);
 }
 
+// Softens the outline's steps by the share of the 3 x 3 px around a fluid pixel that is fluid. A lone pixel, a
+// distant droplet, keeps a part.
+float outline_cover(ivec2 pixel) {
+  int fluid = 0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const ivec2 near = clamp(pixel + ivec2(x, y), ivec2(0), size.xy - 1);
+      fluid += int(is_fluid(depth[near.y * size.x + near.x]));
+    }
+  }
+  return mix(0.4, 1.0, float(fluid - 1) / 8.0);
+}
+
 vec3 encode_srgb(vec3 c) {
   const vec3 x = clamp(c, 0.0, 1.0);
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
@@ -57,7 +70,8 @@ void main() {
     const float distance_m = z * per_depth;
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
-    light = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+    const vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+    light = mix(light, shaded, outline_cover(pixel));
     // Water that touches the near wall lies behind its frame.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
