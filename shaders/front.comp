@@ -13,8 +13,10 @@ void main() {
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;
   if (max(extent.x, extent.y) > thread_limit) return;
-  const bool subpixel = is_subpixel(s, rays);
+  const vec4 grid = rays;
+  const int row = size.x;
+  const bool subpixel = is_subpixel(s, grid);
   for (int y = box.y; y < box.w; ++y) {
-    for (int x = box.x; x < box.z; ++x) splat_front(s, ivec2(x, y), subpixel, i);
+    for (int x = box.x; x < box.z; ++x) splat_front(s, ivec2(x, y), subpixel, grid, row, i);
   }
 }

@@ -2,10 +2,15 @@
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 uniform uint particle_count;
 
+// With what its samples need of the view: a loop over pixels does not load that again and again.
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
   float radius;
-  bool cut;  // reaches through a wall or the floor
+  bool cut;   // reaches through a wall or the floor:
+  vec3 wall;  // where on each axis, from the eye (far away: nowhere)
+  vec3 inward;
+  mat3 to_world;
+  float near;
 };
 
 bool is_usable(vec4 particle) {
@@ -17,9 +22,12 @@ Sphere sphere_of(vec4 particle) {
   precise vec3 eye = world_to_eye[0].xyz * particle.x + world_to_eye[1].xyz * particle.y +
                      world_to_eye[2].xyz * particle.z + world_to_eye[3].xyz;
   precise float radius = particle.w * origin.w;
-  const vec3 at = particle.xyz;
-  const bool cut = tank.w > 0.0 && (any(lessThan(at, vec3(radius))) || at.x > tank.x - radius || at.z > tank.z - radius);
-  return Sphere(vec3(eye.xy, -eye.z), radius, cut);
+  const bvec3 low = lessThan(particle.xyz, vec3(radius));
+  const bvec3 high = greaterThan(particle.xyz, vec3(tank.x, 1e6, tank.z) - radius);
+  const vec3 wall = mix(mix(vec3(-1e6), tank.xyz, high), vec3(0), low);
+  const bool cut = tank.w > 0.0 && any(greaterThanEqual(wall, vec3(0)));
+  const vec3 inward = mix(vec3(1), vec3(-1), greaterThan(wall, vec3(0)));
+  return Sphere(vec3(eye.xy, -eye.z), radius, cut, wall - eye_to_world[3].xyz, inward, mat3(eye_to_world), origin.z);
 }
 
 bool beyond_walls(vec4 particle) {
@@ -49,13 +57,16 @@ bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave
   if (subpixel) square = s.radius * s.radius;
   precise float reach = sqrt(max(square, 0.0) * inverse);
   precise float first = middle - reach;
-  entry = max(first, origin.z);
+  entry = max(first, s.near);
   leave = middle + reach;
-  if (square <= 0.0 || leave <= origin.z) return false;
+  if (square <= 0.0 || leave <= s.near) return false;
   if (!s.cut || subpixel) return true;
-  const vec2 within = tank_range(slope);
-  entry = max(entry, within.x);
-  leave = min(leave, within.y);
+  precise vec3 ray = world_ray(slope, s.to_world);
+  precise vec3 at = s.wall / ray;
+  const bvec3 enters = greaterThan(ray * s.inward, vec3(0));
+  const vec3 in_at = mix(vec3(-1e9), at, enters), out_at = mix(at, vec3(1e9), enters);
+  entry = max(entry, max(in_at.x, max(in_at.y, in_at.z)));
+  leave = min(leave, min(out_at.x, min(out_at.y, out_at.z)));
   return leave > entry;
 }
 
@@ -97,14 +108,16 @@ vec2 cell_slope(ivec2 cell, vec4 grid) {
   return slope;
 }
 
-// Length of the ray inside the sphere in thickness units; below cell size the sphere's volume over the cell.
-uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid) {
+// Length of the ray inside the sphere, uncut, in thickness units; below cell size the sphere's volume over the cell.
+uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per_m) {
   float entry, leave;
-  if (!meets(s, slope, subpixel, entry, leave)) return 0u;
+  Sphere whole = s;
+  whole.cut = false;  // the depth decides where there is water
+  if (!meets(whole, slope, subpixel, entry, leave)) return 0u;
   float chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
   if (subpixel) {
     const vec2 cell = s.centre.z * grid.xz;
     chord = 4.18879 * s.radius * s.radius * s.radius / (cell.x * cell.y);
   }
-  return uint(min(chord * thickness_rule.x + 0.5, 4294967040.0));
+  return uint(min(chord * units_per_m + 0.5, 4294967040.0));
 }

@@ -25,11 +25,13 @@ bool hidden(Sphere s, ivec4 box) {
 }
 
 bool splat_small(Sphere s, ivec4 box) {
-  const bool subpixel = is_subpixel(s, rays);
+  const vec4 grid = rays;
+  const int row = size.x;
+  const bool subpixel = is_subpixel(s, grid);
   bool in_front = false;
   for (int y = box.y; y < box.w; ++y) {
     for (int x = box.x; x < box.z; ++x) {
-      if (splat_depth(s, ivec2(x, y), subpixel)) in_front = true;
+      if (splat_depth(s, ivec2(x, y), subpixel, grid, row)) in_front = true;
     }
   }
   return in_front;
@@ -38,9 +40,11 @@ bool splat_small(Sphere s, ivec4 box) {
 void splat_small_thickness(Sphere s) {
   const vec4 grid = thickness_rays();
   const ivec4 box = footprint(s, grid, size.zw);
+  const int row = size.z;
+  const float units_per_m = thickness_rule.x;
   const bool subpixel = is_subpixel(s, grid);
   for (int y = box.y; y < box.w; ++y) {
-    for (int x = box.x; x < box.z; ++x) splat_thickness(s, ivec2(x, y), subpixel, grid);
+    for (int x = box.x; x < box.z; ++x) splat_thickness(s, ivec2(x, y), subpixel, grid, row, units_per_m);
   }
 }
 

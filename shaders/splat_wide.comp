@@ -31,14 +31,14 @@ void main() {
   const ivec4 box = footprint(s, rays, size.xy);
   for (int block = int(gl_WorkGroupID.z); block < block_count(box); block += step) {
     const ivec2 pixel = block_corner(box, block) + within;
-    if (holds(box, pixel)) splat_front(s, pixel, false, i);
+    if (holds(box, pixel)) splat_front(s, pixel, false, rays, size.x, i);
   }
 #else
   const ivec4 box = (touched[i] & is_hidden) != 0u ? ivec4(0) : footprint(s, rays, size.xy);
   bool in_front = false;
   for (int block = int(gl_WorkGroupID.z); block < block_count(box); block += step) {
     const ivec2 pixel = block_corner(box, block) + within;
-    if (holds(box, pixel) && splat_depth(s, pixel, false)) in_front = true;
+    if (holds(box, pixel) && splat_depth(s, pixel, false, rays, size.x)) in_front = true;
   }
   if (in_front) atomicOr(touched[i], was_in_front);
   const vec4 grid = thickness_rays();
@@ -46,7 +46,7 @@ void main() {
   const bool subpixel = is_subpixel(s, grid);
   for (int block = int(gl_WorkGroupID.z); block < block_count(cells); block += step) {
     const ivec2 cell = block_corner(cells, block) + within;
-    if (holds(cells, cell)) splat_thickness(s, cell, subpixel, grid);
+    if (holds(cells, cell)) splat_thickness(s, cell, subpixel, grid, size.z, thickness_rule.x);
   }
 #endif
 }

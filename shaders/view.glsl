@@ -16,13 +16,18 @@ vec2 slope_at(vec2 xy) { return xy * rays.xz + rays.yw; }
 const float no_depth = uintBitsToFloat(0x7f800000u);
 bool is_fluid(float depth) { return floatBitsToUint(depth) < 0x7f800000u; }
 
-// Eye depths between which the ray is inside the walls and above the floor. `precise`: passes must agree.
+// Direction in the world for one unit of eye depth, never along a wall. `precise`: passes must agree.
+vec3 world_ray(vec2 slope, mat3 to_world) {
+  precise vec3 ray = slope.x * to_world[0] + slope.y * to_world[1] - to_world[2];
+  return mix(ray, vec3(1e-9), lessThan(abs(ray), vec3(1e-9)));
+}
+
+// Eye depths between which the ray is inside the walls and above the floor.
 vec2 tank_range(vec2 slope) {
-  precise vec3 ray = slope.x * eye_to_world[0].xyz + slope.y * eye_to_world[1].xyz - eye_to_world[2].xyz;
-  const vec3 safe = mix(ray, vec3(1e-9), lessThan(abs(ray), vec3(1e-9)));
+  const vec3 ray = world_ray(slope, mat3(eye_to_world));
   const vec3 eye = eye_to_world[3].xyz;
-  precise vec3 a = -eye / safe;
-  precise vec3 b = (vec3(tank.x, 1e6, tank.z) - eye) / safe;
+  const vec3 a = -eye / ray;
+  const vec3 b = (vec3(tank.x, 1e6, tank.z) - eye) / ray;
   const vec3 near = min(a, b), far = max(a, b);
   return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
 }
