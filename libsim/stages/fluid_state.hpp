@@ -18,7 +18,7 @@ struct SolverParameters {
   /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.
   float tensile = 0;
   /// Share of the last projection's step that is taken again (momentum); 0 in a substep's first projection.
-  float momentum = 0;
+  float momentum = 0.4f;
   /// Factor on each change of a multiplier; above 1 converges faster until it oscillates.
   float over_relaxation = 1;
   /// Share of the last substep's multipliers that a substep starts from; 0 leaves the pass and its column
