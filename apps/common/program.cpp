@@ -5,7 +5,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 
 #include "stats/base/file.hpp"
 
@@ -15,16 +17,32 @@ namespace {
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+/// OpenMP threads that spin while they wait starve the other threads of a small machine, and with them the
+/// pacing. The runtime reads its settings once, before main(), so the program starts over with them set. A
+/// choice of the user's stays.
+void wait_passively(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  if (program.empty() || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
+  execv(program.c_str(), argv);  // returns only when it failed; the program then runs as it is
+}
+
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv) {
+  wait_passively(argv);
   app.set_version_flag("--version", base::version());
   app.require_subcommand(0, 1);
   // A file-size limit is then an error of the write, with the file's name, and not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     app.parse(argc, argv);
-    return 0;
+    const bool asks_for_command = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
+    if (!asks_for_command || !app.get_subcommands().empty()) return 0;
+    std::fprintf(stderr, "%s", app.help().c_str());
+    return 2;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::bad_alloc&) {
