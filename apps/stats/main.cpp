@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "apps/common/program.hpp"
 #include "apps/stats/heat_map.hpp"
 #include "apps/stats/pilot_data.hpp"
 #include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/truth.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -19,7 +21,7 @@
 namespace {
 
 struct FitCommand {
-  std::string database, out, json, svg, exclude = "fail";
+  std::string database, out, json, svg, truth, exclude = "fail";
   double level = 4;
   apps::PilotSelection selection;
   stats::BootstrapOptions bootstrap;
@@ -76,8 +78,22 @@ void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
       "no figure were written");
 }
 
+/// fit.json, and the same for people; with a truth also whether it was recovered.
+void report(const FitCommand& command, const apps::PilotFit& fit,
+            const std::optional<stats::PtpeModel>& truth) {
+  auto json = apps::fit_json(fit);
+  std::optional<apps::Recovery> recovery;
+  if (truth && fit.ok()) recovery = apps::check_recovery(fit, *truth);
+  if (recovery) json["truth"] = apps::recovery_json(*recovery);
+  write_json(command, json);
+  print_fit(fit);
+  if (recovery) std::printf("%s", apps::format_recovery(fit, *recovery).c_str());
+}
+
 void fit_ptpe(FitCommand& command) {
   check_outputs(command);
+  std::optional<stats::PtpeModel> truth;
+  if (!command.truth.empty()) truth = apps::parse_truth(command.truth);
   command.selection.exclude = command.exclude == "none"       ? apps::ExcludedVerdicts::None
                               : command.exclude == "degraded" ? apps::ExcludedVerdicts::Degraded
                                                               : apps::ExcludedVerdicts::Fail;
@@ -87,8 +103,7 @@ void fit_ptpe(FitCommand& command) {
     no_fit(command, data.reason());
   }
   const auto fit = apps::fit_pilot(*data, command.level, command.bootstrap);
-  write_json(command, apps::fit_json(fit));
-  print_fit(fit);
+  report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fit.reason);
   if (!command.svg.empty()) base::write_file_atomically(command.svg, apps::heat_map_svg(fit));
   if (!command.out.empty()) {
@@ -101,10 +116,14 @@ void add_fit_ptpe(CLI::App& app, FitCommand& command) {
   auto* positional = fit->add_option("database", command.database, "The study's database");
   fit->add_option("--db", command.database, "The same as an option")->excludes(positional);
   fit->add_option("--level", command.level, "Score of the contour")->capture_default_str();
-  fit->add_option("--out", command.out, "Solver's configuration to write (ptpe.toml), on success only");
+  fit->add_option("--out", command.out, "File for the solver (TOML), written on success only");
   fit->add_option("--json", command.json,
-                  "Every number of the fit, written whenever the database can be read");
-  fit->add_option("--svg", command.svg, "Heat map with contours and curve, on success only");
+                  "File for every number of the fit, written whenever the database can be read");
+  fit->add_option("--svg", command.svg,
+                  "File for the heat map with contours and curve, written on success only");
+  fit->add_option(
+      "--truth", command.truth,
+      "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
   fit->add_option("--protocol", command.selection.protocol, "First digits of the protocol's SHA-256");
   fit->add_option("--exclude", command.exclude, "Trials left out by timing verdict")
       ->check(CLI::IsMember({"none", "fail", "degraded"}))
@@ -124,9 +143,6 @@ void add_fit_ptpe(CLI::App& app, FitCommand& command) {
 
 int main(int argc, char** argv) {
   CLI::App app("Statistics of ViP-Lab studies", "vip-stats");
-  app.callback([&app] {
-    if (app.get_subcommands().empty()) throw CLI::CallForHelp();
-  });
   FitCommand command;
   add_fit_ptpe(app, command);
   return apps::run_program(app, argc, argv);

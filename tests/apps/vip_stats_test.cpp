@@ -101,6 +101,26 @@ TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
   EXPECT_EQ(study::test::bytes_of(folder / "study.db"), before);
 }
 
+TEST(VipStatsE2e, SaysWhetherTheIntervalsHoldTheObserversTruth) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02,noise=0.2,participant_sd=0.1"));
+  const auto json_path = (folder / "fit.json").string();
+  const auto fit = [&](const std::string& truth) {
+    return vip_stats("fit-ptpe " + (folder / "study.db").string() + " --json " + json_path + " --truth " +
+                     truth);
+  };
+  const auto far = fit("ptpe:a=40,b=0.2");
+  ASSERT_EQ(far.status, 0) << far.output;
+  EXPECT_NE(far.output.find("does NOT hold the true 40"), std::string::npos) << far.output;
+  EXPECT_EQ(read_json(json_path).at("truth").at("b_ci_holds_it"), false);
+  const auto json = read_json(json_path);
+  const double a = json.at("a"), b = json.at("b");
+  const auto near = fit("ptpe:a=" + std::to_string(a) + ",b=" + std::to_string(b));
+  EXPECT_EQ(near.output.find("NOT"), std::string::npos) << near.output;
+  EXPECT_EQ(read_json(json_path).at("truth").at("a_ci_holds_it"), true);
+  EXPECT_EQ(fit("a=24,b=0.02").status, 1);
+}
+
 TEST(VipStatsE2e, SaysPlainlyThatThereIsNoFitAndKeepsOldFiles) {
   const TemporaryFolder folder;
   write_database(folder / "study.db", [](const study::ShownTrial&) { return 4; });

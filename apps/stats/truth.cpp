@@ -1,0 +1,51 @@
+#include "apps/stats/truth.hpp"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "libstudy/observer/ptpe_observer.hpp"
+
+namespace apps {
+
+namespace {
+
+bool holds(const std::array<double, 2>& interval, double value) {
+  return interval[0] <= value && value <= interval[1];
+}
+
+std::string line(const char* name, const std::array<double, 2>& interval, bool held, double truth) {
+  char text[120];
+  std::snprintf(text, sizeof text, "  %s: the interval [%.4g, %.4g] %s the true %g\n", name, interval[0],
+                interval[1], held ? "holds" : "does NOT hold", truth);
+  return text;
+}
+
+}  // namespace
+
+stats::PtpeModel parse_truth(const std::string& observer) {
+  const auto parameters = study::parse_ptpe_observer(observer);
+  return {parameters.a, parameters.b};
+}
+
+Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth) {
+  const auto& spread = *fit.main().spread;
+  return {truth, holds(spread.a_ci, truth.a), holds(spread.b_ci, truth.b)};
+}
+
+std::string format_recovery(const PilotFit& fit, const Recovery& recovery) {
+  const auto& spread = *fit.main().spread;
+  char head[80];
+  std::snprintf(head, sizeof head, "against the observer's truth (level %.3g, harmonic mean):\n", fit.level);
+  return head + line("a", spread.a_ci, recovery.a_held, recovery.truth.a) +
+         line("b", spread.b_ci, recovery.b_held, recovery.truth.b);
+}
+
+nlohmann::ordered_json recovery_json(const Recovery& recovery) {
+  return {{"a", recovery.truth.a},
+          {"b", recovery.truth.b},
+          {"a_ci_holds_it", recovery.a_held},
+          {"b_ci_holds_it", recovery.b_held}};
+}
+
+}  // namespace apps
