@@ -96,7 +96,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
 }
 
 nlohmann::json run_frames(const FrameOptions& options) {
-  const sim::Scene scene = sim::read_scene(options.scene);
+  const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   const Pictures pictures = make_pictures(scene, options);
   const auto fluid = make_fluid(scene, options);
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();

@@ -98,8 +98,9 @@ fs::path resource(const std::string& relative) {
   if (const char* share = std::getenv("VIP_SHARE_DIR")) return fs::path(share) / relative;
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = program.parent_path().parent_path() / "share" / "vip-lab" / relative;
-  if (!program.empty() && fs::exists(installed, ignored)) return installed;
+  const fs::path installed = program.parent_path().parent_path() / "share" / "vip-lab";
+  // An installed program never mixes its files with those of a source tree that happens to be there.
+  if (!program.empty() && fs::is_directory(installed, ignored)) return installed / relative;
   return fs::path(VIP_SOURCE_DIR) / relative;
 }
 

@@ -16,7 +16,8 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// A file or folder that ships with the project, e.g. "shaders/splat.comp" or "data/scenes/single_dam.toml".
-/// Looked for in $VIP_SHARE_DIR, then <program>/../share/vip-lab, then the source tree.
+/// In $VIP_SHARE_DIR when that is set, else in <program>/../share/vip-lab when that folder is there (an
+/// installed program), else in the source tree. Whether the file exists is not asked.
 std::filesystem::path resource(const std::string& relative);
 
 /// A user's path as given when it exists, otherwise resource(path) when that exists, otherwise an error that

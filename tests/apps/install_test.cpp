@@ -1,0 +1,76 @@
+/// The programs as cmake --install leaves them: what they need at run time comes with them. An installed
+/// program looks nowhere else (base::resource), so a file that the install rules forget is an error here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+
+namespace {
+
+using ::testing::HasSubstr;
+
+class InstallE2e : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    const std::string log = *folder_ / "install.log";
+    const std::string command =
+        "cmake --install '" VIP_BIN_DIR "/..' --prefix '" + *folder_ / "prefix" + "' >'" + log + "' 2>&1";
+    installed_ = std::system(command.c_str()) == 0;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void SetUp() override { ASSERT_TRUE(installed_) << base::read_file(*folder_ / "install.log", 1 << 20); }
+
+  /// From the root folder, where no relative path leads into a source tree.
+  static Ended run(std::vector<std::string> arguments) {
+    arguments[0] = *folder_ / ("prefix/bin/" + arguments[0]);
+    return run_program(arguments, [] {
+      if (::chdir("/") != 0 || ::unsetenv("VIP_SHARE_DIR") != 0) ::_exit(125);
+    });
+  }
+  static std::string at(const std::string& name) { return *folder_ / name; }
+
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  static inline bool installed_ = false;
+};
+
+TEST_F(InstallE2e, StudyFindsProtocolAndSchema) {
+  const Ended checked = run({"vip-study", "check", "protocols/ptpe_pilot.toml", "--refresh", "90"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  const Ended played = run({"vip-study", "run", "protocols/ptpe_pilot.toml", "--db", at("study.db"),
+                            "--participants", "1", "--observer", "ptpe:a=24,b=0.02"});
+  EXPECT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_EQ(answers_in(at("study.db")).size(), 21u);
+}
+
+TEST_F(InstallE2e, ViewFindsSceneAndShaders) {
+  const Ended ended = run({"vip-view", "--headless", "data/scenes/single_dam.toml", "--n-star", "64",
+                           "--backend", "cpu", "--frames", "1", "--size", "64x36", "--png", at("pictures")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_TRUE(fs::exists(at("pictures/frame_0000.png")));
+}
+
+TEST_F(InstallE2e, BenchAndStatsStart) {
+  const Ended bench = run({"vip-bench", "frame", "data/scenes/martin_moyce.toml", "--n-star", "64",
+                           "--backend", "cpu", "--frames", "1", "--warm-up", "0"});
+  EXPECT_EQ(bench.exit_code, 0) << bench.err;
+  EXPECT_EQ(run({"vip-stats", "--version"}).exit_code, 0);
+}
+
+TEST_F(InstallE2e, AMissingFileIsNamedAndNotTakenFromASourceTree) {
+  const fs::path shader = at("prefix/share/vip-lab/shaders/splat.comp");
+  fs::rename(shader, at("splat.comp"));
+  const Ended ended = run({"vip-view", "--headless", "data/scenes/single_dam.toml", "--n-star", "64",
+                           "--backend", "cpu", "--frames", "1", "--png", at("none")});
+  fs::rename(at("splat.comp"), shader);
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, HasSubstr(shader.string()));
+}
+
+}  // namespace
+
+}  // namespace apps::test
