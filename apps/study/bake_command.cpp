@@ -128,7 +128,7 @@ Work prepare(const BakeCommand& command) {
   std::unique_ptr<Progress> progress;
   options.settling = [&](int done, int total) {
     stop_if_wished(command.out);
-    if (!progress) progress = std::make_unique<Progress>("settle", static_cast<std::size_t>(total));
+    if (!progress) progress = std::make_unique<Progress>("settling", static_cast<std::size_t>(total));
     progress->update(static_cast<std::size_t>(done));
   };
   work.simulation = sim::make_simulation(work.scene, options);
@@ -207,17 +207,22 @@ void add_bake_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand("bake", "Compute the frames of a scene into a file, or check one");
   auto* scene = sub.add_option("scene", command->scene, "Scene file");
   auto* out = sub.add_option("--out", command->out, "Bake file to write");
-  sub.add_option("--method", command->method, "LoRes or HiRes");
-  sub.add_option("--n-star", command->n_star, "n_*, the paper's particle count, such as 2k");
-  sub.add_option("--frames", command->frames, "Content steps to compute")->check(CLI::Range(1, 1 << 20));
+  sub.add_option("--method", command->method, "LoRes or HiRes")->capture_default_str();
+  sub.add_option("--n-star", command->n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
+  sub.add_option("--frames", command->frames, "Content steps to compute")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
   sub.add_option("--content-step", command->content_step_s,
                  "Fluid time between frames, s; default: the scene's")
       ->check(CLI::Range(1e-6, 1.0));
   sub.add_option("--pictures", command->pictures, "Keep pictures of this size too, such as 640x360");
   sub.add_option("--camera", command->camera, "Camera of the pictures")
-      ->check(CLI::IsMember({"view", "overview"}));
+      ->check(CLI::IsMember({"view", "overview"}))
+      ->capture_default_str();
   sub.add_option("--backend", command->backend, "Computes the fluid")
-      ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+      ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
+      ->capture_default_str();
   sub.add_flag("--force", command->force, "Replace the output when it exists");
   auto* check = sub.add_option("--verify", command->verify, "Read this bake and check every frame");
   check->excludes(scene)->excludes(out);

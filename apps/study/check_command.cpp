@@ -163,7 +163,7 @@ void add_check_command(CLI::App& app) {
   command->add_option("--refresh", options->refresh_hz, "The display's refresh in Hz")
       ->required()
       ->check(CLI::Range(10.0, 1000.0));
-  command->add_option("--json", options->json, "Every number of the report");
+  command->add_option("--json", options->json, "File for every number of the report");
   command->callback([options] { check_protocol(*options); });
 }
 

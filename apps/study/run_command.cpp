@@ -120,21 +120,27 @@ void add_run_command(CLI::App& app) {
   count->check(CLI::Range(1, 9999));
   sub.add_option("--participant", command->codes, "Code of a participant; may be repeated")->excludes(count);
   sub.add_option("--visit", command->visit, "Visit of these participants under this protocol")
-      ->check(CLI::Range(1, 1000));
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   sub.add_option("--observer", command->run.observer, "Simulated observer, such as ptpe:a=31,b=0.035")
       ->required();
-  sub.add_option("--clock", command->run.clock, "real or virtual")->check(CLI::IsMember({"real", "virtual"}));
-  sub.add_option("--display", command->run.display, "none or headless")
-      ->check(CLI::IsMember({"none", "headless"}));
-  sub.add_option("--size", command->size, "Pixels of a headless display, such as 640x360");
+  sub.add_option("--clock", command->run.clock, "Play in real time, or without waiting")
+      ->check(CLI::IsMember({"real", "virtual"}))
+      ->capture_default_str();
+  sub.add_option("--display", command->run.display, "Where frames go: nowhere, or drawn without a window")
+      ->check(CLI::IsMember({"none", "headless"}))
+      ->capture_default_str();
+  sub.add_option("--size", command->size, "Pixels of a headless display")->capture_default_str();
   sub.add_option("--seed", command->seed, "Seed of orders, schedules and observers")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   sub.add_option("--trial-seconds", command->trial_seconds,
                  "Length of every trial; changes the protocol's hash and marks the data as test");
   sub.add_option("--stimulus", command->bake,
                  "Bake to play (vip-study bake); without: live fluid, or nothing");
-  sub.add_option("--backend", command->run.backend, "cpu, cuda or auto, for live fluid")
-      ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+  sub.add_option("--backend", command->run.backend, "Computes live fluid")
+      ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
+      ->capture_default_str();
   sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
   sub.callback([command] { run(*command); });
 }

@@ -48,9 +48,13 @@ void print_timing(const Timing& timing) {
 }
 
 void print_tolerance(const sim::PtpeFile& file, const stats::FpsMoments& fps) {
-  const double tau = stats::ptpe_tolerance(file.model, fps.mean, fps.sd);
   std::printf("ptpe   a = %.4f frames/s, b = %.5f s/frame (level %.1f, %d participants)\n", file.model.a,
               file.model.b, file.level, file.n_participants);
+  if (fps.frames == 0) {
+    std::printf("       no frame rate was measured: tau needs --frames 2 or more\n");
+    return;
+  }
+  const double tau = stats::ptpe_tolerance(file.model, fps.mean, fps.sd);
   std::printf("       over the last %zu frames: mu = %.3f, delta = %.3f frames/s, tau = %.3f, beta = %.4f\n",
               fps.frames, fps.mean, fps.sd, tau, stats::activation_floor(file.model, tau));
 }
@@ -106,7 +110,10 @@ void run_headless(const ViewOptions& options) {
   print_timing(timing);
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
-  if (timing.pictures) std::printf("%d pictures in %s\n", timing.pictures, options.png_folder.c_str());
+  if (timing.pictures) {
+    std::printf("%d picture%s in %s\n", timing.pictures, timing.pictures == 1 ? "" : "s",
+                options.png_folder.c_str());
+  }
 }
 
 }  // namespace apps
