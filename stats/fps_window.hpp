@@ -24,7 +24,7 @@ FpsMoments fps_moments(std::span<const double> intervals_s);
 /// The last frames of a running program, at most `capacity` of them.
 class FpsWindow {
  public:
-  /// capacity >= 1 frames; method.md recommends 30.
+  /// capacity >= 1 frames.
   explicit FpsWindow(std::size_t capacity = 30);
   /// interval_s > 0; others throw std::invalid_argument.
   void push(double interval_s);

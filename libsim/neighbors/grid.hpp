@@ -1,7 +1,6 @@
 #pragma once
 /// A sorted, compact grid: particles ordered by (64-bit cell key, id), a list of the occupied cells, no array
-/// over the domain. Each mass level has its own cell size, its key's top bits, and so its own run of the list
-/// (method.md "Fixed now").
+/// over the domain. Each mass level has its own cell size, its key's top bits, and so its own run of the list.
 
 #include <cstdint>
 

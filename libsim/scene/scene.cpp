@@ -32,7 +32,7 @@ Camera camera(const base::TomlTable& table) {
   return out;
 }
 
-/// The same view from three times as far (scenes.md "View").
+/// The same view from three times as far.
 Camera overview_of(const Camera& view) {
   Camera out = view;
   for (std::size_t k = 0; k < 3; ++k)

@@ -37,7 +37,7 @@ struct Scene {
   Vec3d fill_max_m{};
   double gravity_m_s2 = 9.81;
   double frame_dt_s = 1.0 / 60;
-  /// Reference speed for the number of substeps (scenes.md "Step").
+  /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
   double v_ref_m_s = 0;
   /// True: walls close round the block until it has settled.
   bool gate = false;

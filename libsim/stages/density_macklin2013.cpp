@@ -5,8 +5,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
-/// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m
-/// (method.md section 2). Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but
+/// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
+/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but
 /// for one factor. Accumulate: with a warm start the sum over projections is what must stay compressive,
 /// Lambda = min(Lambda + delta, 0), so that a start that pushed too hard is taken back (projected Jacobi).
 template <bool OneLevel, bool Accumulate>

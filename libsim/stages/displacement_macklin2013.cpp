@@ -5,8 +5,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
-/// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls (method.md section
-/// 2).
+/// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls.
 template <bool OneLevel, bool Tensile>
 struct Displace {
   const Vec4* predicted;

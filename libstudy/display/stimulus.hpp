@@ -39,7 +39,7 @@ struct PresentTimes {
   std::int64_t actual_display_ns = -1;
 };
 
-/// How good the evidence for onset times is (study.md section 1).
+/// How good the evidence for onset times is.
 enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Compositor = 'C', CpuSubmit = 'D' };
 
 class Clock;

@@ -1,5 +1,5 @@
 #pragma once
-/// The parametric simulated observer: an ordinal judge of the realised frame rate (study.md section 6).
+/// The parametric simulated observer: an ordinal judge of the realised frame rate.
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,5 @@
 #pragma once
-/// FPS schedules with exact moments, and their certificate on a display with a fixed refresh (study.md
-/// section 1).
+/// FPS schedules with exact moments, and their certificate on a display with a fixed refresh.
 
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-/// Cases that break fluids (method.md section 3), on the CPU and, with suites that end in Gpu, on CUDA.
+/// Cases that break fluids, on the CPU and, with suites that end in Gpu, on CUDA.
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,4 +1,4 @@
-/// The fluid against closed forms and experiments (method.md sections 3 and 4).
+/// The fluid against closed forms and experiments.
 
 #include <gtest/gtest.h>
 
