@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# The main job on this machine: sets up, builds, and goes once round the loop from a scene to the solver's file.
+# usage: scripts/demo.sh        everything goes to out/demo/; run it again to replace that
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=out/demo
+bin=build/release/bin
+observer=ptpe:a=24,b=0.02
+# The programs see to this by themselves; here it also holds for the software OpenGL's neighbours.
+export OMP_WAIT_POLICY=passive
+
+phases=()
+phase() {  # phase TEXT: ends the last phase and starts the next
+  local now=$SECONDS
+  [ ${#phases[@]} -eq 0 ] || phases[-1]+=$'\t'$((now - phase_start))
+  phase_start=$now
+  [ -z "${1:-}" ] && return
+  phases+=("$1")
+  printf '\n== %s\n' "$1"
+}
+run() {  # run COMMAND...: prints it, then runs it
+  printf '\n$ %s\n' "$*"
+  "$@" </dev/null
+}
+
+phase "Set up"
+run ./scripts/setup.sh
+phase "Build"
+run cmake --preset release
+run cmake --build --preset release --target vip-study vip-stats vip-bench vip-view
+built=$SECONDS
+
+mkdir -p "$out"
+for made in dam.bake check.json pacing.db study.db csv fit.json fitted.toml heat.svg pictures; do
+  [ ! -e "$out/$made" ] || echo "demo: replaces $out/$made"
+  rm -rf "${out:?}/$made" "$out/$made"-{wal,shm,journal}
+done
+
+phase "What a headset with 90 Hz makes of the 21 settings"
+run $bin/vip-study check protocols/ptpe_pilot.toml --refresh 90 --json $out/check.json
+
+phase "Bake SingleDam: particles and pictures"
+run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 180 \
+  --pictures 640x360 --out $out/dam.bake
+
+phase "Play the 21 settings in real time, 3 s each, every frame rendered"
+run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/pacing.db --participants 1 --observer $observer \
+  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 3
+
+phase "Run 16 simulated participants through the whole pilot on the virtual clock"
+run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/study.db --participants 16 --observer $observer \
+  --clock virtual --display none --seed 7
+run $bin/vip-study status --db $out/study.db
+run $bin/vip-study export --db $out/study.db --csv $out/csv
+
+phase "Fit mu = a exp(b delta)"
+run $bin/vip-stats fit-ptpe $out/study.db --level 4 --truth $observer --out $out/fitted.toml \
+  --json $out/fit.json --svg $out/heat.svg
+
+phase "Hand the fit to the solver and render"
+run $bin/vip-view --headless data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 91 --every 90 \
+  --size 960x540 --png $out/pictures --ptpe $out/fitted.toml
+
+phase ""
+printf '\n== Done: %d s, of which %d s after the build\n' $SECONDS $((SECONDS - built))
+for line in "${phases[@]}"; do printf '%6d s  %s\n' "${line##*$'\t'}" "${line%$'\t'*}"; done
+printf '\nfiles in %s:\n' $out
+describe() { printf '  %-28s %s\n' "$1" "$2"; }
+describe check.json "what 90 Hz makes of the protocol"
+describe dam.bake "frames and pictures of SingleDam"
+describe pacing.db "the real-time run: every frame's times and every trial's verdict"
+describe study.db "16 simulated participants"
+describe csv/ "study.db as tables with a data dictionary"
+describe fit.json "every number of the fit"
+describe heat.svg "mean scores with the contours at 4 and 5"
+describe fitted.toml "a and b for the solver"
+describe pictures/frame_0090.png "SingleDam after 1.5 s"
