@@ -8,8 +8,8 @@
 namespace apps {
 
 /// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr; 2 = the
-/// command line was wrong (a missing command shows the help). Call it first in main(): unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, it
-/// starts the program over, once, with OMP_WAIT_POLICY=passive.
+/// command line was wrong (a missing command shows the help). Call it first in main(): unless OMP_WAIT_POLICY
+/// or GOMP_SPINCOUNT is set, it starts the program over, once, with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
 /// A line on stderr that shows how far a long step is. Drawn at most ten times a second; a plain line a tenth
