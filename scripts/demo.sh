@@ -58,8 +58,8 @@ run $bin/vip-stats fit-ptpe $out/study.db --level 4 --truth $observer --out $out
   --json $out/fit.json --svg $out/heat.svg
 
 phase "Hand the fit to the solver and render"
-run $bin/vip-view --headless data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 91 --every 90 \
-  --size 960x540 --png $out/pictures --ptpe $out/fitted.toml
+run $bin/vip-view --headless data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 61 --every 60 \
+  --size 640x360 --png $out/pictures --ptpe $out/fitted.toml
 
 phase ""
 printf '\n== Done: %d s, of which %d s after the build\n' $SECONDS $((SECONDS - built))
@@ -74,4 +74,4 @@ describe csv/ "study.db as tables with a data dictionary"
 describe fit.json "every number of the fit"
 describe heat.svg "mean scores with the contours at 4 and 5"
 describe fitted.toml "a and b for the solver"
-describe pictures/frame_0090.png "SingleDam after 1.5 s"
+describe pictures/frame_0060.png "SingleDam after 1 s"
