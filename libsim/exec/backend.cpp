@@ -25,6 +25,12 @@ std::string cuda_problem() {
   return "this program was built without CUDA";
 #endif
 }
+
+#ifdef SIM_HAS_CUDA
+constexpr const char* cuda_mend = "use --backend cpu or auto, or a machine with an NVIDIA driver";
+#else
+constexpr const char* cuda_mend = "use --backend cpu or auto, or build with nvcc 12.0 or newer";
+#endif
 }  // namespace
 
 Backend choose_backend(std::string_view name) {
@@ -35,7 +41,7 @@ Backend choose_backend(std::string_view name) {
   const std::string problem = cuda_problem();
   if (problem.empty()) return Backend::Cuda;
   if (name == "auto") return Backend::Cpu;
-  throw base::Error("--backend cuda", problem, "use --backend cpu or auto, or a machine with an NVIDIA driver");
+  throw base::Error("--backend cuda", problem, cuda_mend);
 }
 
 
