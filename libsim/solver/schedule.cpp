@@ -87,6 +87,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 
 void run_frame(const Schedule& schedule, FluidState& state) {
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
+    state.iteration = 0;
     run_all(schedule.substep, state);
     for (int iteration = 0; iteration < state.parameters.iterations; ++iteration) {
       state.iteration = iteration;
