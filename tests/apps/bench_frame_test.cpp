@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "stats/base/file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// vip-bench frame on 1,024 particles.
+class BenchFrameE2e : public ::testing::Test {
+ protected:
+  BenchFrameE2e() {
+    std::string pattern = (fs::temp_directory_path() / "vip-bench-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+  }
+  ~BenchFrameE2e() override { fs::remove_all(folder); }
+
+  int bench(const std::string& more, const std::string& environment = "") {
+    const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
+                                " " VIP_BIN_DIR
+                                "/vip-bench frame data/scenes/peers_dam.toml --n-star 128 --backend cpu "
+                                "--frames 2 --warm-up 0 --json " +
+                                json().string() + " " + more + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 512> chunk;
+    text.clear();
+    while (pipe && fgets(chunk.data(), chunk.size(), pipe)) text += chunk.data();
+    const int status = pipe ? pclose(pipe) : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  fs::path json() const { return folder / "frame.json"; }
+  nlohmann::json figures() const { return nlohmann::json::parse(base::read_file(json(), 1 << 20)); }
+
+  fs::path folder;
+  std::string text;  ///< stdout and stderr
+};
+
+TEST_F(BenchFrameE2e, TimesSolverAndPicturesApart) {
+  ASSERT_EQ(bench("--size 64x48 --views 2"), 0) << text;
+  const auto result = figures();
+  for (const char* key : {"solve_ms_median", "transfer_ms_median", "render_ms_median", "render_ms_p95"})
+    EXPECT_GT(result[key].get<double>(), 0) << key;
+  // A frame is its three parts: never shorter than the shortest of each.
+  EXPECT_GT(result["frame_ms_median"].get<double>(), result["render_ms_median"].get<double>());
+  EXPECT_EQ(result["transfer"], "uploaded");
+  EXPECT_EQ(result["render_views"], 2);
+  EXPECT_EQ(result["render_width_px"], 64);
+  for (const char* pass : {"splat small", "front", "filter", "shade"})
+    EXPECT_TRUE(result["passes"].contains(pass)) << pass;
+  EXPECT_NE(text.find("uploaded"), std::string::npos);
+}
+
+TEST_F(BenchFrameE2e, TimesTheSolverWithoutPictures) {
+  ASSERT_EQ(bench("", "__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json"), 0) << text;
+  EXPECT_GT(figures()["solve_ms_median"].get<double>(), 0);
+  EXPECT_FALSE(figures().contains("render_ms_median"));
+  EXPECT_NE(figures()["render_left_out"].get<std::string>().find("OpenGL"), std::string::npos);
+  EXPECT_NE(text.find("left out"), std::string::npos);
+  ASSERT_EQ(bench("--no-render"), 0) << text;
+  EXPECT_EQ(figures()["render_left_out"], "--no-render");
+}
+
+TEST_F(BenchFrameE2e, RefusesBadPictures) {
+  EXPECT_EQ(bench("--size 3x3"), 1);
+  EXPECT_NE(text.find("--size 3x3"), std::string::npos) << text;
+  EXPECT_NE(bench("--views 3"), 0);
+  EXPECT_FALSE(fs::exists(json()));
+}
+
+}  // namespace
