@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "apps/common/program.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/status.hpp"
@@ -24,6 +25,13 @@ std::size_t trials_left(const study::OpenRun& run) {
   std::size_t count = 0;
   for (const auto& session : run.sessions) count += session.trials.size();
   return count;
+}
+
+std::optional<stats::PtpeModel> ptpe_of(const study::OpenSession& session,
+                                        const std::filesystem::path& database) {
+  if (!session.plan.ptpe) return {};
+  const std::string place = database.string() + ": PTPE file of " + session.plan.participant;
+  return sim::parse_ptpe_file(*session.plan.ptpe, place).model;
 }
 
 }  // namespace
@@ -54,11 +62,12 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   };
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) real_time.emplace();
-  const study::SessionParts parts{*setup.clock,     *setup.display, *setup.stimulus,
-                                  *setup.responder, store,          setup.virtual_clock};
+  study::SessionParts parts{*setup.clock,     *setup.display, *setup.stimulus,
+                            *setup.responder, store,          setup.virtual_clock};
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
+      parts.ptpe = ptpe_of(session, options.database);
       study::run_session(protocol, session, parts, hooks);
     }
   } catch (const study::Stopped&) {

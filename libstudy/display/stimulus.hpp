@@ -12,7 +12,7 @@ struct FrameFacts {
   double simulation_time_s = 0;
   std::vector<std::int64_t> particles_by_level;
   double active_fraction = 1;
-  double tolerance = 0;  ///< tau in frames/s that the solver used; 0 when it used none
+  double tolerance = 0;  ///< tau in frames/s when a PTPE model is in force; 0 without one
 };
 
 /// A process that elapses in content steps. Not thread-safe.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libstudy/pacing/running_tolerance.hpp"
 #include "libstudy/session/frame_journal.hpp"
 #include "stats/base/error.hpp"
 
@@ -61,7 +62,10 @@ class Runner {
   TimingVerdict show(std::int64_t presentation, std::int64_t start_ns, const FpsSetting& setting,
                      const std::vector<std::int64_t>& intervals) {
     FrameJournal journal(parts_.store, presentation, start_ns, !parts_.virtual_clock);
-    const auto each = [&](const FrameRecord& frame) {
+    std::optional<RunningTolerance> tolerance;
+    if (parts_.ptpe) tolerance.emplace(*parts_.ptpe);
+    const auto each = [&](FrameRecord frame) {
+      if (tolerance) frame.facts.tolerance = tolerance->next(frame.times.submitted_ns);
       journal.add(frame);
       if (stop_wished()) throw Stopped();
     };

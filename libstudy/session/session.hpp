@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/store.hpp"
+#include "stats/ptpe.hpp"
 
 namespace study {
 
@@ -24,6 +26,8 @@ struct SessionParts {
   Responder& responder;
   Store& store;
   bool virtual_clock = false;
+  /// The PTPE model in force: each frame's record then holds tau (RunningTolerance).
+  std::optional<stats::PtpeModel> ptpe = {};
 };
 
 /// What happened to a trial, told once its answer is committed. The answer itself stays in the store.

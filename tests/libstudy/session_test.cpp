@@ -104,6 +104,32 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
             0);
 }
 
+TEST(Session, EachFrameHoldsTauWhenAModelIsInForce) {
+  const test::TemporaryFolder folder;
+  const Protocol protocol = test::pilot();
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(protocol, {"P01", "P02"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  VirtualClock clock;
+  NullDisplay display;
+  NullStimulus stimulus(protocol.content.content_step_s);
+  PtpeObserver observer(parse_ptpe_observer("ptpe:a=31,b=0.035"));
+  SessionParts parts{clock, display, stimulus, observer, store, true};
+  run_session(protocol, sessions.at(0), parts, {});
+  parts.ptpe = stats::PtpeModel{24, 0.02};
+  run_session(protocol, sessions.at(1), parts, {});
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  const std::string frames =
+      "SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+      "JOIN session s USING (session_id) WHERE ";
+  EXPECT_EQ(look.integer(frames + "participant = 'P01' AND tolerance_fps <> 0"), 0);
+  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND (tolerance_fps = 0) <> (frame_index < 2)"), 0);
+  // Without fluctuation tau is mu - a from the first interval on.
+  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND nominal_sd_fps = 0 AND frame_index >= 2 "
+                                  "AND abs(tolerance_fps - (nominal_mean_fps - 24)) > 1e-5"),
+            0);
+}
+
 /// Answers off the scale.
 class Broken final : public Responder {
  public:

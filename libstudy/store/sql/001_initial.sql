@@ -102,7 +102,7 @@ CREATE TABLE frame (
   late INTEGER NOT NULL CHECK (late IN (0, 1)), -- 1: later than the protocol's bound
   particles TEXT, -- particles by level as the stimulus lists its levels, separated by spaces
   active_fraction REAL NOT NULL, -- share of particles solved
-  tolerance_fps REAL NOT NULL, -- tau of the solver, frames/s
+  tolerance_fps REAL NOT NULL, -- tau under the PTPE file in force, of the 30 intervals before; 0: none, frames/s
   PRIMARY KEY (presentation_id, frame_index)
 ) STRICT, WITHOUT ROWID;
 
