@@ -1,4 +1,5 @@
 /// vip-study run: plan sessions, write the plan, play them.
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -63,7 +64,7 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data;
+  session.test_data = protocol.test_data || !setup.departure.empty();
   session.observer = setup.responder->simulated();
   session.virtual_clock = setup.virtual_clock;
   session.display = setup.display->description();
@@ -89,6 +90,11 @@ void run(RunCommand& command) {
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.responder->simulated().value_or("");
   const study::RunPlan plan = make_run_plan(command, protocol, setup);
+
+  if (!setup.departure.empty()) {
+    std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
+                 setup.departure.c_str());
+  }
 
   const StopSignals signals;
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages);

@@ -48,6 +48,27 @@ std::unique_ptr<study::Stimulus> make_shown_stimulus(const RunOptions& options,
   return make_stimulus(choice);
 }
 
+std::string instead(const std::string& what, const std::string& shown, const std::string& wanted) {
+  return shown == wanted ? "" : what + " " + shown + " instead of " + wanted;
+}
+
+std::string departure_of(const RunOptions& options, const study::Protocol& protocol) {
+  if (options.bake.empty()) return {};
+  const sim::BakeReader bake(options.bake);
+  const sim::BakeHeader& header = bake.header();
+  const sim::Scene scene = sim::read_scene(base::find_input(protocol.stimulus.scene));
+  std::string all;
+  for (const std::string& one :
+       {instead("scene", header.scene_name + " " + header.scene_sha256.substr(0, 12),
+                scene.name + " " + scene.sha256.substr(0, 12)),
+        instead("method", header.method, sim::method_name(sim::parse_method(protocol.stimulus.method))),
+        instead("n_*", std::to_string(header.n_star),
+                std::to_string(sim::parse_n_star(protocol.stimulus.n_star)))}) {
+    if (!one.empty()) all += (all.empty() ? "" : ", ") + one;
+  }
+  return all;
+}
+
 }  // namespace
 
 SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol) {
@@ -57,6 +78,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   setup.clock = make_clock(options.clock);
   setup.display = make_display(options);
   setup.stimulus = make_shown_stimulus(options, protocol);
+  setup.departure = departure_of(options, protocol);
   return setup;
 }
 

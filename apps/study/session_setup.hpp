@@ -14,6 +14,9 @@ namespace apps {
 /// Owns the parts. The stimulus is destroyed before the display whose GL context it draws in.
 struct SessionSetup {
   bool virtual_clock = false;
+  /// In what the bake differs from the protocol's stimulus, such as "n_* 2048 instead of 32768"; empty: in
+  /// nothing. Such data are test data.
+  std::string departure;
   std::unique_ptr<study::Clock> clock;
   std::unique_ptr<study::Display> display;
   std::unique_ptr<study::Stimulus> stimulus;
