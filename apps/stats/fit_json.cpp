@@ -100,6 +100,7 @@ Json data_json(const PilotData& data) {
             {"practice", data.practice},
             {"unanswered", data.unanswered},
             {"test_data_beside_real", data.test_left_out},
+            {"simulated_beside_people", data.simulated_left_out},
             {"without_timing", data.without_timing}}}};
 }
 

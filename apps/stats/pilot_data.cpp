@@ -10,18 +10,6 @@ namespace {
 using study::RatingRow;
 using study::Verdict;
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Pass:
-      return "pass";
-    case Verdict::Degraded:
-      return "degraded";
-    case Verdict::Fail:
-      break;
-  }
-  return "fail";
-}
-
 bool excludes(ExcludedVerdicts rule, Verdict verdict) {
   if (rule == ExcludedVerdicts::None || verdict == Verdict::Pass) return false;
   return verdict == Verdict::Fail || rule == ExcludedVerdicts::Degraded;
@@ -43,26 +31,29 @@ stats::Result<std::string> chosen_protocol(const std::vector<RatingRow>& rows, c
 }
 
 void add_rating(PilotData& data, const RatingRow& row, int participant) {
-  ++data.used_by_verdict[name_of(row.timing->verdict)];
+  ++data.used_by_verdict[study::verdict_name(row.timing->verdict)];
   ++data.used_by_grade[std::string(1, static_cast<char>(row.timing->grade))];
   const auto& shown = row.timing->realised;
   data.ratings.push_back({participant, row.nominal.mean, row.nominal.sd, shown.mean, shown.mean_arithmetic,
                           shown.sd, static_cast<double>(*row.rating)});
 }
 
-/// Counts a trial that is left out for what it is; false when it is to be analysed.
-bool left_out(PilotData& data, const RatingRow& row, ExcludedVerdicts rule) {
+/// Counts a trial that is left out for what it is; false when it is to be analysed. people: some trials that
+/// may be analysed were answered by people, which observer models are never pooled with.
+bool left_out(PilotData& data, const RatingRow& row, ExcludedVerdicts rule, bool people) {
   int* reason = nullptr;
   if (row.practice) {
     reason = &data.practice;
   } else if (row.test_data && !data.test_data) {
     reason = &data.test_left_out;
+  } else if (!row.observer.empty() && people) {
+    reason = &data.simulated_left_out;
   } else if (!row.rating) {
     reason = &data.unanswered;
   } else if (!row.timing || row.timing->realised.frames == 0) {
     reason = &data.without_timing;
   } else if (excludes(rule, row.timing->verdict)) {
-    reason = &data.excluded_by_verdict[name_of(row.timing->verdict)];
+    reason = &data.excluded_by_verdict[study::verdict_name(row.timing->verdict)];
   }
   if (reason) ++*reason;
   return reason != nullptr;
@@ -85,10 +76,13 @@ stats::Result<PilotData> select_pilot(const std::vector<RatingRow>& rows, const 
       std::all_of(of_protocol.begin(), of_protocol.end(),
                   [](const RatingRow& row) { return row.test_data || !row.rating; }) &&
       std::any_of(of_protocol.begin(), of_protocol.end(), [](const RatingRow& row) { return row.test_data; });
+  const bool people = std::any_of(of_protocol.begin(), of_protocol.end(), [&](const RatingRow& row) {
+    return row.rating && row.observer.empty() && (data.test_data || !row.test_data);
+  });
   std::map<std::string, int> participants;
   std::set<std::string> simulated;
   for (const auto& row : of_protocol) {
-    if (left_out(data, row, selection.exclude)) continue;
+    if (left_out(data, row, selection.exclude, people)) continue;
     const auto index =
         participants.emplace(row.participant, static_cast<int>(participants.size())).first->second;
     if (!row.observer.empty()) simulated.insert(row.participant);

@@ -28,7 +28,8 @@ struct PilotData {
   int simulated_participants = 0;  ///< answered by an observer model
   int practice = 0;
   int unanswered = 0;
-  int test_left_out = 0;  ///< test data beside real ones
+  int test_left_out = 0;       ///< test data beside real ones
+  int simulated_left_out = 0;  ///< answered by an observer model beside those of people
   int without_timing = 0;
   std::map<std::string, int> excluded_by_verdict;  ///< "degraded", "fail"
   std::map<std::string, int> used_by_verdict;      ///< "pass", "degraded", "fail"

@@ -51,6 +51,13 @@ void flag_data(std::vector<FitFlag>& flags, const PilotData& data, const stats::
   if (data.simulated_participants > 0) {
     flags.push_back({"simulated", counted(data.simulated_participants, "participant") + " simulated"});
   }
+  if (data.test_left_out > 0) {
+    flags.push_back({"test_data_left_out", counted(data.test_left_out, "trial") + " of test data left out"});
+  }
+  if (data.simulated_left_out > 0) {
+    flags.push_back({"simulated_left_out",
+                     counted(data.simulated_left_out, "trial") + " of simulated observers left out"});
+  }
   if (table.incomplete_participants() > 0) {
     flags.push_back(
         {"incomplete_participants", counted(table.incomplete_participants(), "participant") +
@@ -134,6 +141,8 @@ sim::PtpeFile ptpe_file(const PilotFit& fit) {
   file.a_ci = fit.main().spread->a_ci;
   file.b_ci = fit.main().spread->b_ci;
   file.n_participants = fit.participants;
+  file.n_simulated = fit.data.simulated_participants;
+  file.test_data = fit.data.test_data;
   file.fps_mean = "harmonic";
   file.protocol_sha256 = fit.data.protocol_sha256;
   file.date_utc = base::utc_now();

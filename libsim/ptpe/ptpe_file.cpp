@@ -52,6 +52,11 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   file.a_ci = interval(table, "a_ci95_fps");
   file.b_ci = interval(table, "b_ci95_s");
   file.n_participants = static_cast<int>(table.integer("n_participants", {1, 1e6}));
+  file.n_simulated = static_cast<int>(table.integer_or("n_simulated", 0, {0, 1e6}));
+  if (file.n_simulated > file.n_participants) {
+    table.fail("n_simulated", "is more than n_participants", "count each participant once");
+  }
+  file.test_data = table.boolean_or("test_data", false);
   file.fps_mean = table.choice("fps_mean", {"harmonic", "arithmetic"});
   file.protocol_sha256 = table.string("protocol_sha256");
   const bool hash = file.protocol_sha256.size() == 64 &&
@@ -79,6 +84,7 @@ std::string format_ptpe_file(const PtpeFile& file) {
       << "a_fps = " << exact(file.model.a) << "\nb_s = " << exact(file.model.b)
       << "\nlevel = " << exact(file.level) << "\na_ci95_fps = " << pair(file.a_ci)
       << "\nb_ci95_s = " << pair(file.b_ci) << "\nn_participants = " << file.n_participants
+      << "\nn_simulated = " << file.n_simulated << "\ntest_data = " << (file.test_data ? "true" : "false")
       << "\nfps_mean = " << base::toml_quoted(file.fps_mean)
       << "\nprotocol_sha256 = " << base::toml_quoted(file.protocol_sha256)
       << "\ndate_utc = " << base::toml_quoted(file.date_utc) << "\n";

@@ -18,6 +18,8 @@ struct PtpeFile {
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};
   int n_participants = 0;
+  int n_simulated = 0;                ///< of them simulated observers; the key may be missing
+  bool test_data = false;             ///< fitted to test data; the key may be missing
   std::string fps_mean = "harmonic";  ///< which realised mean was the predictor: harmonic | arithmetic
   std::string protocol_sha256;        ///< 64 hexadecimal digits
   std::string date_utc;               ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"

@@ -46,6 +46,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   const auto file = sim::parse_ptpe_file(sim::format_ptpe_file(apps::ptpe_file(fit)), "ptpe.toml");
   EXPECT_EQ(file.model.a, fit.main().fit->a);
   EXPECT_EQ(file.b_ci, fit.main().spread->b_ci);
+  EXPECT_EQ(file.n_simulated, 16);
 }
 
 TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
@@ -81,6 +82,22 @@ TEST(PilotFit, NeverPoolsTestDataOrProtocols) {
   EXPECT_EQ(apps::select_pilot(rows, {"2", apps::ExcludedVerdicts::Fail})->ratings.size(), 1u);
   EXPECT_FALSE(apps::select_pilot(rows, {"3", apps::ExcludedVerdicts::Fail}));
   EXPECT_FALSE(apps::select_pilot({}, {}));
+}
+
+TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
+  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
+  EXPECT_EQ(apps::select_pilot(rows, {})->simulated_participants, 6);
+  for (auto& row : rows) {
+    if (row.participant == "p0" || row.participant == "p1") row.observer.clear();
+  }
+  const auto people = *apps::select_pilot(rows, {});
+  EXPECT_EQ(people.simulated_participants, 0);
+  EXPECT_EQ(people.simulated_left_out, 4 * 21);
+  EXPECT_EQ(people.ratings.size(), 2u * 21);
+  EXPECT_TRUE(has_flag(apps::fit_pilot(people, 4, {200, 1, 0.95}), "simulated_left_out"));
+  // People whose data are only test data do not push the others out.
+  for (auto& row : rows) row.test_data = row.observer.empty();
+  EXPECT_EQ(apps::select_pilot(rows, {})->simulated_participants, 4);
 }
 
 TEST(PilotFit, FlagsAContourThatLeavesTheGrid) {

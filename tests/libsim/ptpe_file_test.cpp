@@ -19,6 +19,8 @@ sim::PtpeFile example() {
   file.a_ci = {1.0 / 3, 25};
   file.b_ci = {-1e-17, 0.03};
   file.n_participants = 16;
+  file.n_simulated = 3;
+  file.test_data = true;
   file.fps_mean = "arithmetic";
   file.protocol_sha256 = std::string(64, 'a');
   file.date_utc = "2026-01-31T12:00:00Z";
@@ -50,6 +52,8 @@ TEST(PtpeFile, ReadsBackEveryBitOfWhatItWrites) {
   EXPECT_EQ(back.a_ci, file.a_ci);
   EXPECT_EQ(back.b_ci, file.b_ci);
   EXPECT_EQ(back.n_participants, file.n_participants);
+  EXPECT_EQ(back.n_simulated, file.n_simulated);
+  EXPECT_EQ(back.test_data, file.test_data);
   EXPECT_EQ(back.fps_mean, file.fps_mean);
   EXPECT_EQ(back.protocol_sha256, file.protocol_sha256);
   EXPECT_EQ(back.date_utc, file.date_utc);
@@ -58,6 +62,8 @@ TEST(PtpeFile, ReadsBackEveryBitOfWhatItWrites) {
 TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
   const std::vector<std::pair<std::string, std::string>> changes{
       {"a_fps = 23.68", "a_fps = 0.0"},
+      {"n_simulated = 3", "n_simulated = 17"},
+      {"test_data = true", "test_data = 1"},
       {"a_fps = 23.68", "a_fps = \"23\""},
       {"a_fps = 23.68", "a_fps = nan"},
       {"a_fps = 23.68", "a = 23.68"},
