@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/rating_table.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -41,6 +43,7 @@ constexpr std::array tables{
     Table{"response", "responses.csv", "response_id"},
     Table{"event", "events.csv", "event_id"},
 };
+constexpr const char* ratings_file = "ratings.csv";
 constexpr const char* dictionary_file = "dictionary.csv";
 constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
 
@@ -62,7 +65,7 @@ std::string csv_value(const Statement& row, int column) {
 }
 
 bool is_our_name(const std::string& name) {
-  if (name == dictionary_file) return true;
+  if (name == ratings_file || name == dictionary_file) return true;
   if (name.starts_with("protocol_") && name.ends_with(".toml")) return true;
   for (const Table& table : tables) {
     if (name == table.file) return true;
@@ -112,11 +115,26 @@ class Draft {
   void put_in_place() {
     std::error_code ignored;
     const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
-    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), flags) != 0)
-      fail("cannot be put in place");
+    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), flags) == 0) return;
+    // Network file systems know the plain rename alone: the earlier export steps aside first.
+    if (errno != EINVAL || !replace_in_two_steps()) fail("cannot be put in place");
   }
 
  private:
+  bool replace_in_two_steps() {
+    std::error_code ignored;
+    const fs::path aside = path_.string() + ".old";
+    if (fs::exists(target_, ignored) && ::rename(target_.c_str(), aside.c_str()) != 0) return false;
+    if (::rename(path_.c_str(), target_.c_str()) != 0) {
+      const int problem = errno;
+      ::rename(aside.c_str(), target_.c_str());
+      errno = problem;
+      return false;
+    }
+    fs::remove_all(aside, ignored);
+    return true;
+  }
+
   [[noreturn]] void fail(const std::string& problem) {
     throw base::Error(target_.string(), problem + ": " + std::strerror(errno),
                       "free space, or name a folder where you may write");
@@ -155,11 +173,11 @@ class CsvFile {
   std::FILE* file_;
 };
 
-/// A table as it is; a protocol's text goes into a file of its own.
-std::int64_t write_table(Connection& database, const Table& table, const fs::path& folder,
-                         const fs::path& target) {
-  CsvFile file(folder / table.file, (target / table.file).string());
-  Statement row(database, std::string("SELECT * FROM ") + table.name + " ORDER BY " + table.order);
+/// The rows that `sql` selects, under a line with the names of its columns.
+std::int64_t write_rows(Connection& database, const std::string& sql, const char* name,
+                        const fs::path& folder, const fs::path& target) {
+  CsvFile file(folder / name, (target / name).string());
+  Statement row(database, sql);
   std::string line;
   for (int i = 0; i < row.columns(); ++i) line += (i ? "," : "") + row.column_name(i);
   file.write(line + "\r\n");
@@ -180,14 +198,22 @@ std::int64_t write_dictionary(Connection& database, const fs::path& folder, cons
   CsvFile file(folder / dictionary_file, (target / dictionary_file).string());
   file.write(dictionary_header);
   std::int64_t rows = 0;
+  std::map<std::pair<std::string, std::string>, ColumnMeaning> schema;
+  const auto write = [&](const char* name, const std::string& column, const ColumnMeaning& meaning) {
+    file.write(std::string(name) + ',' + csv_field(column) + ',' + meaning.type + ',' +
+               csv_field(meaning.meaning) + "\r\n");
+    ++rows;
+  };
   for (const Table& table : tables) {
     Statement sql(database, "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
     if (!sql.bind(0, table.name).step()) continue;
     for (const ColumnMeaning& column : column_meanings(table.name, sql.text(0))) {
-      file.write(std::string(table.file) + ',' + csv_field(column.column) + ',' + column.type + ',' +
-                 csv_field(column.meaning) + "\r\n");
-      ++rows;
+      write(table.file, column.column, column);
+      schema[{column.table, column.column}] = column;
     }
+  }
+  for (const RatingColumn& column : rating_columns()) {
+    write(ratings_file, column.name, schema[{column.table, column.column}]);
   }
   file.finish();
   return rows;
@@ -235,8 +261,11 @@ std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folde
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
   for (const Table& table : tables) {
-    files.push_back({table.file, write_table(*database, table, draft.path(), target)});
+    const std::string sql = std::string("SELECT * FROM ") + table.name + " ORDER BY " + table.order;
+    files.push_back({table.file, write_rows(*database, sql, table.file, draft.path(), target)});
   }
+  files.push_back(
+      {ratings_file, write_rows(*database, rating_table_sql(), ratings_file, draft.path(), target)});
   files.push_back({dictionary_file, write_dictionary(*database, draft.path(), target)});
   write_protocols(*database, draft.path(), target);
   database->execute("COMMIT");

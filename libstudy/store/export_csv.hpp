@@ -14,8 +14,8 @@ struct ExportedFile {
 };
 
 /// Writes one file for each table (protocols, questions, runs, sessions, trials, presentations, responses,
-/// frames, events), dictionary.csv with what each column means, and the text of each protocol as
-/// protocol_<hash>.toml.
+/// frames, events), ratings.csv with one line for each planned trial joined from them, dictionary.csv with
+/// what each column means, and the text of each protocol as protocol_<hash>.toml.
 ///
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "libstudy/store/database.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -28,7 +31,7 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
   const auto files = export_csv(database, folder / "out");
-  EXPECT_EQ(files.size(), 10u);
+  EXPECT_EQ(files.size(), 11u);
   EXPECT_THAT(test::bytes_of(folder / "out" / "responses.csv"),
               ::testing::StartsWith("response_id,trial_id,presentation_id,question_id,score,response_time_s,"
                                     "answered_utc\r\n1,1,1,1,6,0.5,2"));
@@ -65,6 +68,26 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
   EXPECT_EQ(tables, 9);
 }
 
+TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {
+  const test::TemporaryFolder folder;
+  export_csv(make_study(folder), folder / "out");
+  const std::string ratings = test::bytes_of(folder / "out" / "ratings.csv");
+  EXPECT_EQ(std::count(ratings.begin(), ratings.end(), '\n'), 1 + 21);
+  EXPECT_THAT(ratings, ::testing::StartsWith("trial_id,protocol,protocol_version,participant,visit,"));
+  EXPECT_THAT(ratings, HasSubstr("\r\n1,ptpe_pilot,1.0,P01,1,0,\"ptpe:a=31,b=0.035\",virtual,0,0,"));
+  EXPECT_THAT(ratings, HasSubstr(",satisfaction,6,0.5,1,fail,D,"));
+  EXPECT_THAT(ratings, HasSubstr(",satisfaction,,,,,,"));  // not answered yet
+  const std::string dictionary = test::bytes_of(folder / "out" / "dictionary.csv");
+  const std::string names = ratings.substr(0, ratings.find('\r'));
+  std::istringstream header(names);
+  for (std::string name; std::getline(header, name, ',');) {
+    const std::size_t at = dictionary.find("\nratings.csv," + name + ",");
+    ASSERT_NE(at, std::string::npos) << name;
+    const std::string line = dictionary.substr(at + 1, dictionary.find('\r', at) - at - 1);
+    EXPECT_NE(line.back(), ',') << line << " says nothing";
+  }
+}
+
 TEST(ExportCsv, QuotesWhatNeedsIt) {
   const test::TemporaryFolder folder;
   make_study(folder);
@@ -97,7 +120,7 @@ TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder.path()), {}), files);
   EXPECT_EQ(test::bytes_of(folder / "namesake" / "dictionary.csv"), "other words");
   fs::create_directory(folder / "empty");
-  EXPECT_EQ(export_csv(database, folder / "empty").size(), 10u);
+  EXPECT_EQ(export_csv(database, folder / "empty").size(), 11u);
 }
 
 }  // namespace
