@@ -20,6 +20,12 @@ if(VIP_SANITIZE)
   target_link_options(vip_flags INTERFACE -fsanitize=${VIP_SANITIZE})
 endif()
 
+if(VIP_LIBFUZZER)
+  # The libraries carry the coverage that libFuzzer steers by; the entries alone link its main.
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=fuzzer-no-link,address>)
+  target_link_options(vip_flags INTERFACE -fsanitize=address)
+endif()
+
 # vip_library(NAME SOURCES... ) a static library; vip_program(NAME ...) an installed program.
 function(vip_library name)
   add_library(${name} STATIC ${ARGN})
