@@ -97,4 +97,7 @@ inline Ended run_program(const std::vector<std::string>& arguments,
   return Process(arguments, prepare).wait();
 }
 
+/// A command line as a user types it; stdout and stderr both come in `out`.
+inline Ended run_shell(const std::string& line) { return run_program({"/bin/sh", "-c", line + " 2>&1"}); }
+
 }  // namespace apps::test

@@ -1,8 +1,6 @@
 #pragma once
 /// What the end-to-end tests of vip-study share: a folder, a short protocol, a look into a database.
 
-#include <stdlib.h>
-
 #include <map>
 #include <set>
 #include <tuple>
@@ -10,6 +8,7 @@
 #include "libstudy/store/sqlite.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace apps::test {
 
@@ -17,25 +16,7 @@ namespace fs = std::filesystem;
 
 inline const std::string vip_study = VIP_BIN_DIR "/vip-study";
 
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "vip-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::permissions(path_, fs::perms::owner_all, ignored);
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using ::test::TemporaryFolder;
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

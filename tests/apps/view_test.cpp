@@ -1,32 +1,25 @@
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/render/png.hpp"
 #include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int code;
-  std::string text;  ///< stdout and stderr
-};
+using apps::test::Ended;
 
 /// vip-view on a small dam: 64 particles, nothing to settle.
 class ViewE2e : public ::testing::Test {
  protected:
   ViewE2e() {
-    std::string pattern = (fs::temp_directory_path() / "vip-view-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
     base::write_file_atomically(scene(), R"(format = 1
 name = "SmallDam"
 gravity_m_s2 = 9.81
@@ -50,40 +43,32 @@ vertical_fov_deg = 60.0
 near_m = 0.1
 )");
   }
-  ~ViewE2e() override { fs::remove_all(folder); }
 
   std::string scene() const { return (folder / "dam.toml").string(); }
 
-  Outcome view(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
-                                " " VIP_BIN_DIR "/vip-view " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    Outcome outcome{-1, ""};
-    std::array<char, 512> chunk;
-    while (pipe && fgets(chunk.data(), chunk.size(), pipe)) outcome.text += chunk.data();
-    const int status = pipe ? pclose(pipe) : -1;
-    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
+  Ended view(const std::string& arguments, const std::string& environment = "") const {
+    return apps::test::run_shell("env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
+                                 " " VIP_BIN_DIR "/vip-view " + arguments);
   }
 
-  Outcome small_run(const std::string& more) const {
+  Ended small_run(const std::string& more) const {
     return view("--headless " + scene() +
                 " --method LoRes --n-star 64 --backend cpu --size 64x48 --frames 3 " + more);
   }
 
-  fs::path folder;
+  test::TemporaryFolder folder;
 };
 
 TEST_F(ViewE2e, WritesEverySecondPicture) {
-  const auto outcome = small_run("--every 2 --png " + (folder / "new" / "out").string());
-  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  const auto outcome = small_run("--every 2 --png " + (folder / "new/out").string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder / "new" / "out"))
+  for (const auto& entry : fs::directory_iterator(folder / "new/out"))
     names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"frame_0000.png", "frame_0002.png"}));
-  const auto first = sim::read_png(folder / "new" / "out" / "frame_0000.png");
-  const auto third = sim::read_png(folder / "new" / "out" / "frame_0002.png");
+  const auto first = sim::read_png(folder / "new/out" / "frame_0000.png");
+  const auto third = sim::read_png(folder / "new/out" / "frame_0002.png");
   EXPECT_EQ(first.width, 64);
   EXPECT_EQ(first.height, 48);
   EXPECT_NE(first.rgba, third.rgba);  // the water moved
@@ -91,8 +76,8 @@ TEST_F(ViewE2e, WritesEverySecondPicture) {
 
 TEST_F(ViewE2e, ExplainsItsSchedule) {
   const auto outcome = small_run("--explain");
-  ASSERT_EQ(outcome.code, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("density constraint"), std::string::npos) << outcome.text;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("density constraint"), std::string::npos) << outcome.out;
 }
 
 TEST_F(ViewE2e, LoadsAFittedModel) {
@@ -105,10 +90,10 @@ TEST_F(ViewE2e, LoadsAFittedModel) {
   file.date_utc = base::utc_now();
   base::write_file_atomically(folder / "fitted.toml", sim::format_ptpe_file(file));
   const auto outcome = small_run("--ptpe " + (folder / "fitted.toml").string());
-  ASSERT_EQ(outcome.code, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("a = 31.5000"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("tau = "), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("over the last 2 frames"), std::string::npos) << outcome.text;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("a = 31.5000"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("tau = "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("over the last 2 frames"), std::string::npos) << outcome.out;
 }
 
 TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
@@ -127,25 +112,25 @@ TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
   };
   for (const auto& [arguments, named] : cases) {
     const auto outcome = view(arguments);
-    EXPECT_EQ(outcome.code, 1) << arguments;
-    EXPECT_NE(outcome.text.find("error: "), std::string::npos) << outcome.text;
-    EXPECT_NE(outcome.text.find(named), std::string::npos) << outcome.text;
-    EXPECT_NE(outcome.text.find("mend: "), std::string::npos) << outcome.text;
+    EXPECT_EQ(outcome.exit_code, 1) << arguments;
+    EXPECT_NE(outcome.out.find("error: "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find(named), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("mend: "), std::string::npos) << outcome.out;
     EXPECT_TRUE(!fs::exists(out) || fs::is_empty(out)) << arguments;
   }
-  EXPECT_EQ(view(run + out + " --camera nowhere").code, 2);
+  EXPECT_EQ(view(run + out + " --camera nowhere").exit_code, 2);
 }
 
 TEST_F(ViewE2e, NoDisplayNamesHeadless) {
   const auto outcome = view(scene() + " --method LoRes --n-star 64 --backend cpu");
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.text.find("--headless"), std::string::npos) << outcome.text;
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.out.find("--headless"), std::string::npos) << outcome.out;
 }
 
 TEST_F(ViewE2e, NoDriverIsAClearError) {
   const auto outcome = view("--headless " + scene(), "__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json");
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.text.find("libgl1-mesa-dri"), std::string::npos) << outcome.text;
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.out.find("libgl1-mesa-dri"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 /// The program vip-stats on real databases.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <iterator>
@@ -17,28 +14,17 @@
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace {
 
 using study::test::TemporaryFolder;
 
-struct Outcome {
-  int status = -1;
-  std::string output;  ///< stdout and stderr
-};
-
 /// `before` is what the shell does first, `as` what the program is started with.
-Outcome vip_stats(const std::string& arguments, const std::string& before = "", const std::string& as = "") {
-  const std::string line = before + as + VIP_BIN_DIR "/vip-stats " + arguments + " 2>&1";
-  FILE* pipe = popen(line.c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer{};
-  while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
+apps::test::Ended vip_stats(const std::string& arguments, const std::string& before = "",
+                            const std::string& as = "") {
+  return apps::test::run_shell(before + as + VIP_BIN_DIR "/vip-stats " + arguments);
 }
 
 using Score = std::function<int(const study::ShownTrial&)>;
@@ -85,7 +71,7 @@ TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
   const auto at = [&](const char* name) { return (folder / name).string(); };
   const auto outcome = vip_stats("fit-ptpe " + at("study.db") + " --level 4 --out " + at("fitted.toml") +
                                  " --json " + at("fit.json") + " --svg " + at("heat.svg") + " --seed 3");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   const auto fit =
       apps::fit_pilot(*apps::select_pilot(study::read_ratings(folder / "study.db"), {}), 4, {2000, 3, 0.95});
   const auto json = read_json(folder / "fit.json");
@@ -128,8 +114,8 @@ TEST(VipStatsE2e, SaysPlainlyThatThereIsNoFitAndKeepsOldFiles) {
   const auto outcome = vip_stats("fit-ptpe --db " + (folder / "study.db").string() + " --out " +
                                  (folder / "fitted.toml").string() + " --json " +
                                  (folder / "fit.json").string() + " --svg " + (folder / "heat.svg").string());
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.output.find("all ratings are equal"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.out.find("all ratings are equal"), std::string::npos) << outcome.out;
   const auto json = read_json(folder / "fit.json");
   EXPECT_EQ(json.at("status"), "failed");
   EXPECT_EQ(json.at("converged"), false);
@@ -144,8 +130,8 @@ TEST(VipStatsE2e, RefusesWhatIsNoDatabase) {
   for (const char* name : {"missing.db", "text.db"}) {
     const auto path = (folder / name).string();
     const auto outcome = vip_stats("fit-ptpe " + path + " --json " + (folder / "fit.json").string());
-    EXPECT_EQ(outcome.status, 1) << outcome.output;
-    EXPECT_NE(outcome.output.find(path), std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+    EXPECT_NE(outcome.out.find(path), std::string::npos) << outcome.out;
     EXPECT_FALSE(std::filesystem::exists(folder / "fit.json"));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "missing.db"));
@@ -155,10 +141,10 @@ TEST(VipStatsE2e, RefusesOutputsThatOverwriteInputOrEachOther) {
   const TemporaryFolder folder;
   base::write_file_atomically(folder / "study.db", "precious");
   const auto path = (folder / "study.db").string();
-  EXPECT_EQ(vip_stats("fit-ptpe " + path + " --json " + path).status, 1);
+  EXPECT_EQ(vip_stats("fit-ptpe " + path + " --json " + path).exit_code, 1);
   const auto twice = vip_stats("fit-ptpe " + path + " --json x.json --svg ./x.json");
-  EXPECT_EQ(twice.status, 1);
-  EXPECT_NE(twice.output.find("mend"), std::string::npos) << twice.output;
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_NE(twice.out.find("mend"), std::string::npos) << twice.out;
   EXPECT_EQ(study::test::bytes_of(folder / "study.db"), "precious");
 }
 
@@ -195,8 +181,8 @@ TEST(VipStatsE2e, LeavesNothingHalfWrittenAtAFileSizeLimit) {
   const auto json = (out / "fit.json").string();
   const auto outcome = vip_stats("fit-ptpe " + study.database() + " --resamples 100 --json " + json,
                                  "ulimit -f 1; ", LockedStudy::unprivileged());
-  EXPECT_EQ(outcome.status, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find(json + ": cannot be written"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_NE(outcome.out.find(json + ": cannot be written"), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(out.path()), 0u);
 }
 
@@ -206,10 +192,10 @@ TEST(VipStatsE2e, ReadsAndFailsCleanlyInFoldersThatItMayNotWrite) {
   std::filesystem::permissions(out.path(), LockedStudy::read_only);
   const auto file = (out / "fitted.toml").string();
   const std::string fit = "fit-ptpe " + study.database() + " --resamples 100";
-  EXPECT_EQ(vip_stats(fit, "", LockedStudy::unprivileged()).status, 0);
+  EXPECT_EQ(vip_stats(fit, "", LockedStudy::unprivileged()).exit_code, 0);
   const auto outcome = vip_stats(fit + " --out " + file, "", LockedStudy::unprivileged());
-  EXPECT_EQ(outcome.status, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_NE(outcome.out.find(file), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(out.path()), 0u);
   std::filesystem::permissions(out.path(), std::filesystem::perms::owner_all);
 }
@@ -217,7 +203,7 @@ TEST(VipStatsE2e, ReadsAndFailsCleanlyInFoldersThatItMayNotWrite) {
 TEST(VipStatsE2e, RefusesAWrongCommandLine) {
   for (const char* arguments : {"fit-ptpe", "fit-ptpe a.db --db b.db", "fit-ptpe a.db --level nan",
                                 "fit-ptpe a.db --exclude all", "fit-ptpe a.db --resamples 1", "fit"}) {
-    EXPECT_EQ(vip_stats(arguments).status, 2) << arguments;
+    EXPECT_EQ(vip_stats(arguments).exit_code, 2) << arguments;
   }
 }
 

@@ -2,43 +2,29 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace {
 
-struct Outcome {
-  int status = -1;
-  std::string output;  // stdout and stderr
-};
-
-Outcome vip_study(const std::string& arguments) {
-  FILE* pipe = popen((VIP_BIN_DIR "/vip-study " + arguments + " 2>&1").c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer{};
-  while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
+apps::test::Ended vip_study(const std::string& arguments) {
+  return apps::test::run_shell(VIP_BIN_DIR "/vip-study " + arguments);
 }
 
 TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   const study::test::TemporaryFolder folder;
   const auto json_path = folder / "check.json";
   const auto outcome = vip_study("check protocols/ptpe_pilot.toml --refresh 90 --json " + json_path.string());
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, testing::HasSubstr("14 exact, 7 approximate, 0 unreachable of 21"));
-  EXPECT_THAT(outcome.output, testing::HasSubstr("play speed: 0.17 to 0.83 of real time"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("14 exact, 7 approximate, 0 unreachable of 21"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("play speed: 0.17 to 0.83 of real time"));
   const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
   EXPECT_EQ(json.at("exact"), 14);
   EXPECT_EQ(json.at("settings").size(), 21u);
@@ -58,12 +44,12 @@ TEST(VipStudyCheckE2e, BadInputGivesOneErrorAndNoFile) {
   const auto broken = folder / "broken.toml";
   std::ofstream(broken) << "format = 1\nname = \"x\"\nversion = 3\n";
   const auto outcome = vip_study("check " + broken.string() + " --refresh 90 --json " + json_path.string());
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.output, testing::HasSubstr("broken.toml:3:11: 'version' must be text"));
-  EXPECT_THAT(outcome.output, testing::HasSubstr("mend: "));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, testing::HasSubstr("broken.toml:3:11: 'version' must be text"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("mend: "));
   EXPECT_FALSE(std::filesystem::exists(json_path));
-  EXPECT_EQ(vip_study("check " + broken.string()).status, 2);
-  EXPECT_EQ(vip_study("check " + broken.string() + " --refresh 0").status, 2);
+  EXPECT_EQ(vip_study("check " + broken.string()).exit_code, 2);
+  EXPECT_EQ(vip_study("check " + broken.string() + " --refresh 0").exit_code, 2);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #pragma once
 /// A small study in a temporary folder, for tests of the store and the session.
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,28 +9,11 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace study::test {
 
-/// A folder that is removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "vip-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using ::test::TemporaryFolder;
 
 inline std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1u << 30); }
 

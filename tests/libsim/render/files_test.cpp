@@ -8,18 +8,13 @@
 #include "libsim/render/png.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace {
 
 class RenderFiles : public ::testing::Test {
  protected:
-  RenderFiles() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "vip-render-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~RenderFiles() override { std::filesystem::remove_all(folder); }
-
-  std::filesystem::path folder;
+  test::TemporaryFolder folder;
 };
 
 sim::Image gradient() {
@@ -69,7 +64,7 @@ TEST_F(RenderFiles, DamagedPngIsNamed) {
 TEST_F(RenderFiles, PngThatCannotBeWrittenLeavesTheOldOne) {
   sim::write_png(folder / "a.png", gradient());
   EXPECT_THROW(sim::write_png(folder / "a.png", sim::Image{}), base::Error);
-  EXPECT_THROW(sim::write_png(folder / "no" / "a.png", gradient()), base::Error);
+  EXPECT_THROW(sim::write_png(folder / "no/a.png", gradient()), base::Error);
   EXPECT_EQ(sim::read_png(folder / "a.png").rgba, gradient().rgba);
 }
 
