@@ -18,8 +18,8 @@ class InstallE2e : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TemporaryFolder>();
     const std::string log = *folder_ / "install.log";
-    const std::string command =
-        "cmake --install '" VIP_BIN_DIR "/..' --prefix '" + *folder_ / "prefix" + "' >'" + log + "' 2>&1";
+    const std::string command = "cmake --install '" VIP_BIN_DIR "/..' --prefix '" +
+                                (*folder_ / "prefix").string() + "' >'" + log + "' 2>&1";
     installed_ = std::system(command.c_str()) == 0;
   }
   static void TearDownTestSuite() { folder_.reset(); }

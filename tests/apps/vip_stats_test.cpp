@@ -96,15 +96,15 @@ TEST(VipStatsE2e, SaysWhetherTheIntervalsHoldTheObserversTruth) {
                      truth);
   };
   const auto far = fit("ptpe:a=40,b=0.2");
-  ASSERT_EQ(far.status, 0) << far.output;
-  EXPECT_NE(far.output.find("does NOT hold the true 40"), std::string::npos) << far.output;
+  ASSERT_EQ(far.exit_code, 0) << far.out;
+  EXPECT_NE(far.out.find("does NOT hold the true 40"), std::string::npos) << far.out;
   EXPECT_EQ(read_json(json_path).at("truth").at("b_ci_holds_it"), false);
   const auto json = read_json(json_path);
   const double a = json.at("a"), b = json.at("b");
   const auto near = fit("ptpe:a=" + std::to_string(a) + ",b=" + std::to_string(b));
-  EXPECT_EQ(near.output.find("NOT"), std::string::npos) << near.output;
+  EXPECT_EQ(near.out.find("NOT"), std::string::npos) << near.out;
   EXPECT_EQ(read_json(json_path).at("truth").at("a_ci_holds_it"), true);
-  EXPECT_EQ(fit("a=24,b=0.02").status, 1);
+  EXPECT_EQ(fit("a=24,b=0.02").exit_code, 1);
 }
 
 TEST(VipStatsE2e, SaysPlainlyThatThereIsNoFitAndKeepsOldFiles) {

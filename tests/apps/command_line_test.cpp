@@ -49,11 +49,11 @@ TEST(ProgramsE2e, AWrongCommandLineEndsWithTwo) {
   }
 }
 
-TEST(ProgramsE2e, WithoutACommandTheHelpIsShown) {
+TEST(ProgramsE2e, AMissingCommandShowsTheHelpAndEndsWithTwo) {
   for (const std::string program : {"vip-study", "vip-stats", "vip-bench"}) {
     const Ended ended = run_program({path_of(program)});
-    EXPECT_EQ(ended.exit_code, 0) << program;
-    EXPECT_THAT(ended.out, HasSubstr("Usage: " + program));
+    EXPECT_EQ(ended.exit_code, 2) << program;
+    EXPECT_THAT(ended.err, HasSubstr("Usage: " + program));
   }
 }
 
