@@ -5,8 +5,10 @@
 namespace study {
 
 namespace {
-// The kernel wakes a sleeper some tens of microseconds late; the last stretch is spun.
-constexpr std::int64_t spin_ns = 300'000;
+// A sleeper wakes some tens of microseconds late, on an idle virtual machine up to a few milliseconds,
+// because its halted processor must be scheduled again; the last stretch is spun. At 50 frames/s this costs a
+// tenth of one core.
+constexpr std::int64_t spin_ns = 2'000'000;
 }  // namespace
 
 std::int64_t RealClock::now_ns() const {
