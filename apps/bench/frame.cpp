@@ -27,39 +27,28 @@ struct FrameOptions {
   std::string json;
   int frames = 100;
   int warm_up = 5;
-  int substeps = 0;
-  int iterations = 0;
-  double dt_s = 0;
-  double relaxation = -1;
-  double tensile = -1;
-  double viscosity = -1;
-  double warm_start = -1;
-  double momentum = -1;
-  double over_relaxation = -1;
-  double longest_step = -1;
+  sim::SimulationOptions
+      fluid;  ///< the solver's numbers; method, n_* and back end are read from the words above
   bool no_render = false;
   std::string size = "1280x720";
   int views = 1;
 };
 
 std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
-  sim::SimulationOptions out;
+  sim::SimulationOptions out = options.fluid;
   out.method = sim::parse_method(options.method);
   out.n_star = sim::parse_n_star(options.n_star);
   out.backend = sim::choose_backend(options.backend);
-  out.substeps = options.substeps;
-  out.iterations = options.iterations;
-  out.frame_dt_s = options.dt_s;
-  out.relaxation = options.relaxation;
-  out.tensile = options.tensile;
-  out.viscosity = options.viscosity;
-  out.warm_start = options.warm_start;
-  out.momentum = options.momentum;
-  out.over_relaxation = options.over_relaxation;
-  out.longest_step = options.longest_step;
   Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
   out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
   return sim::make_simulation(scene, out);
+}
+
+/// Support radius (4 r) over rest spacing of the first particle.
+double h_over_d(const sim::Simulation& fluid) {
+  std::vector<sim::RenderParticle> particles;
+  fluid.read_particles(particles);
+  return particles.empty() ? 0 : 4 * static_cast<double>(particles.front().radius_m) / fluid.spacing_m();
 }
 
 /// Density error averaged over ten states spread over the run, so that one calm or wild moment does not
@@ -135,7 +124,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
                         {"solve_ms_mean", mean},
                         {"solve_ms_median", quantile(solve_ms, 0.5)},
                         {"solve_ms_p95", quantile(solve_ms, 0.95)},
-                        {"h_over_d", 2.0},
+                        {"h_over_d", h_over_d(*fluid)},
                         {"neighbours_mean", accuracy.neighbours_mean},
                         {"density_error_mean", accuracy.error_mean},
                         {"density_max", accuracy.density_max},
@@ -196,22 +185,24 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--warm-up", options->warm_up, "Untimed frames before")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  command->add_option("--substeps", options->substeps, "Substeps a frame; 0 = the scene's rule")
+  command->add_option("--substeps", options->fluid.substeps, "Substeps a frame; 0 = the scene's rule")
       ->check(CLI::Range(0, 64));
-  command->add_option("--iterations", options->iterations, "Projections a substep; 0 = the scene's")
+  command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
       ->check(CLI::Range(0, 64));
-  command->add_option("--dt", options->dt_s, "Frame step in s; 0 = the scene's")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--relaxation", options->relaxation, "Constraint relaxation; negative = default");
-  command->add_option("--tensile", options->tensile, "s_corr strength; negative = default");
-  command->add_option("--viscosity", options->viscosity, "XSPH c; negative = default");
-  command->add_option("--warm-start", options->warm_start,
-                      "Share of the last multipliers kept; negative = default");
-  command->add_option("--over-relaxation", options->over_relaxation,
-                      "Factor on multiplier changes; negative = default");
-  command->add_option("--longest-step", options->longest_step,
-                      "Speed limit in h a substep; negative = default");
-  command->add_option("--momentum", options->momentum,
-                      "Share of the last projection taken again; negative = default");
+  command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; 0 = the scene's")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--relaxation", options->fluid.relaxation, "Constraint relaxation")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--tensile", options->fluid.tensile, "s_corr strength")->check(CLI::Range(0.0, 100.0));
+  command->add_option("--viscosity", options->fluid.viscosity, "XSPH c")->check(CLI::Range(0.0, 100.0));
+  command->add_option("--warm-start", options->fluid.warm_start, "Share of the last multipliers kept")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--over-relaxation", options->fluid.over_relaxation, "Factor on multiplier changes")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--longest-step", options->fluid.longest_step, "Speed limit in h a substep")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--momentum", options->fluid.momentum, "Share of the last projection taken again")
+      ->check(CLI::Range(0.0, 100.0));
   command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
   command->add_option("--views", options->views, "1, or 2 eyes side by side")

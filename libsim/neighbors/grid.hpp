@@ -1,6 +1,7 @@
 #pragma once
 /// A sorted, compact grid: particles ordered by (64-bit cell key, id), a list of the occupied cells, no array
-/// over the domain. Each mass level has its own cell size, its key's top bits, and so its own run of the list.
+/// over the domain. Each mass level has its own cell size, its key's top bits, and so its own run of the
+/// list.
 
 #include <cstdint>
 
@@ -40,8 +41,8 @@ class Grid {
   static constexpr int rows_per_cell = 9;
 
   /// Sorts the particles by the cell of their predicted positions and permutes their columns. Cell edge =
-  /// margin x h. Positions beyond the key's range go to its outermost cells (they are outside every search
-  /// radius of one another's cells only by distance, so no pair is lost or made up).
+  /// margin x h. Positions beyond the key's range share its outermost cells; pairs are still decided by
+  /// distance, so none is lost or made up.
   void build(Particles& particles, float margin);
 
   /// For particle i: the cell it lies in; for cell c: its rows.

@@ -155,8 +155,8 @@ class FluidSimulation final : public Simulation {
 
  private:
   void open(const std::vector<ParticleState>& start) {
-    // Two columns of int indices per neighbour list entry bound the count.
-    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2) {
+    // Particles and their nine rows a cell are indexed with int.
+    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::rows_per_cell) {
       throw base::Error("particles", "are too many", "use a smaller --n-star");
     }
     schedule_ = compile_schedule({state_.parameters, false});
