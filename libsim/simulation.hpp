@@ -50,10 +50,10 @@ struct SimulationOptions {
   double relaxation = -1;
   double tensile = -1;
   double viscosity = -1;
-  double warm_start = -1;
   double momentum = -1;
-  double over_relaxation = -1;
   double longest_step = -1;
+  int coarse_cycles = -1;
+  double coarse_edge = -1;
 };
 
 /// What the guards met since the simulation was made. Nothing is hidden: each count says how often a rule

@@ -26,13 +26,6 @@ struct Gather {
   }
 };
 
-struct GatherMultiplier {
-  const int* order;
-  const float* in;
-  float* out;
-  SIM_FN void operator()(int i) const { out[i] = in[order[i]]; }
-};
-
 template <class T>
 void fit(Array<T>& column, bool wanted, std::size_t n) {
   if (wanted) {
@@ -47,7 +40,7 @@ void fit(Array<T>& column, bool wanted, std::size_t n) {
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
       "position",      "velocity", "id",         "level",   "predicted", "predicted_next",
-      "velocity_next", "lambda",   "multiplier", "density", "neighbours"};
+      "velocity_next", "lambda",   "density", "neighbours"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -64,16 +57,13 @@ void Particles::allocate(ColumnSet set, int n) {
   fit(predicted_next, wanted(Column::PredictedNext), size);
   fit(velocity_next, wanted(Column::VelocityNext), size);
   fit(lambda, wanted(Column::Lambda), size);
-  const bool fresh = wanted(Column::Multiplier) && multiplier.size() != size;
-  fit(multiplier, wanted(Column::Multiplier), size);
-  if (fresh) multiplier.zero();
   fit(density, wanted(Column::Density), size);
 }
 
 std::size_t Particles::bytes() const {
   return position.bytes() + velocity.bytes() + predicted.bytes() + predicted_next.bytes() +
-         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() + multiplier.bytes() +
-         spare_multiplier_.bytes() + density.bytes() + spare_a_.bytes() + spare_b_.bytes() +
+         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() +
+         density.bytes() + spare_a_.bytes() + spare_b_.bytes() +
          spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
 }
 
@@ -92,11 +82,6 @@ void Particles::reorder(const Array<int>& order) {
   velocity.swap(spare_c_);
   id.swap(spare_id_);
   level.swap(spare_level_);
-  if (multiplier.size() == 0) return;
-  spare_multiplier_.resize(size);
-  for_each("reorder multipliers", n_,
-           GatherMultiplier{order.data(), multiplier.data(), spare_multiplier_.data()});
-  multiplier.swap(spare_multiplier_);
 }
 
 }  // namespace sim::SIM_BACKEND

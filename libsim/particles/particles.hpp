@@ -19,7 +19,6 @@ enum class Column : unsigned {
   PredictedNext,  ///< Vec4: where a projection writes, then swapped with Predicted
   VelocityNext,   ///< Vec4: where a velocity filter writes, then swapped with Velocity
   Lambda,         ///< float: change of the density constraint's multiplier in this projection, kg m2
-  Multiplier,     ///< float: its sum over a substep's projections, kept for the next substep's start
   Density,        ///< float: rho / rho_0, walls included
   Neighbours,     ///< the combined neighbour list (neighbors/neighbour_list.hpp)
   count
@@ -56,7 +55,7 @@ class Particles {
   Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
   Array<int> id;
   Array<std::uint8_t> level;
-  Array<float> lambda, multiplier, density;
+  Array<float> lambda, density;
 
   /// Permutes the columns that outlive a substep: new[i] = old[order[i]].
   void reorder(const Array<int>& order);
@@ -67,7 +66,6 @@ class Particles {
   // Targets of the permutation, swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
-  Array<float> spare_multiplier_;
   Array<std::uint8_t> spare_level_;
 };
 

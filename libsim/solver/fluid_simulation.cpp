@@ -22,9 +22,9 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   choose(out.relaxation, options.relaxation);
   choose(out.tensile, options.tensile);
   choose(out.viscosity, options.viscosity);
-  choose(out.warm_start, options.warm_start);
   choose(out.momentum, options.momentum);
-  choose(out.over_relaxation, options.over_relaxation);
+  if (options.coarse_cycles >= 0) out.coarse_cycles = options.coarse_cycles;
+  choose(out.coarse_edge, options.coarse_edge);
   choose(out.longest_step, options.longest_step);
   return out;
 }
@@ -163,6 +163,9 @@ class FluidSimulation final : public Simulation {
     auto& p = state_.particles;
     p.allocate(schedule_.columns, static_cast<int>(start.size()));
     const auto h = static_cast<float>(2 * resolution_.spacing_m);
+    state_.finest_support = h;
+    state_.domain = {{0, 0, 0}, {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
+                     static_cast<float>(scene_.tank_size_m[2])}};
     std::vector<Vec4> position;
     std::vector<Vec4> velocity;
     std::vector<int> id;

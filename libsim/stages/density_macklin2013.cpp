@@ -6,19 +6,16 @@ namespace {
 
 /// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
 /// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
-/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but
-/// for one factor. Accumulate: with a warm start the sum over projections is what must stay compressive,
-/// Lambda = min(Lambda + delta, 0), so that a start that pushed too hard is taken back (projected Jacobi).
-template <bool OneLevel, bool Accumulate>
+/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
+template <bool OneLevel>
 struct Density {
   const Vec4* predicted;
   Neighbours neighbours;
   Walls walls;
   float* lambda;
-  float* multiplier;
   float* density;
   Guards* guards;
-  float rest_density, relaxation, over_relaxation;
+  float rest_density, relaxation;
 
   SIM_FN void operator()(int i) const {
     const Vec4 self = predicted[i];
@@ -60,61 +57,21 @@ struct Density {
     const float spacing = 0.5f * self.w;
     const float softness = relaxation / (spacing * spacing);
     const float stiffness = dot(gradient, gradient) + volume * volume * squares + softness;
-    const float wish = -over_relaxation * mass * (filled - 1) / stiffness;
-    if constexpr (Accumulate) {
-      const float sum = fminf(multiplier[i] + wish, 0.0f);
-      lambda[i] = sum - multiplier[i];
-      multiplier[i] = sum;
-    } else {
-      lambda[i] = fminf(wish, 0.0f);
-    }
+    lambda[i] = fminf(-mass * (filled - 1) / stiffness, 0.0f);
     density[i] = filled;
   }
 };
 
-template <bool OneLevel, bool Accumulate>
+template <bool OneLevel>
 void launch(FluidState& state) {
   auto& p = state.particles;
   for_each("density", p.size(),
-           Density<OneLevel, Accumulate>{p.predicted.data(), state.neighbours.view(), state.walls,
-                                         p.lambda.data(), p.multiplier.data(), p.density.data(),
-                                         state.guard(), state.parameters.rest_density,
-                                         state.parameters.relaxation, state.parameters.over_relaxation});
+           Density<OneLevel>{p.predicted.data(), state.neighbours.view(), state.walls, p.lambda.data(),
+                             p.density.data(), state.guard(), state.parameters.rest_density,
+                             state.parameters.relaxation});
 }
-
-template <bool OneLevel>
-void launch(FluidState& state) {
-  state.parameters.warm_start > 0 ? launch<OneLevel, true>(state) : launch<OneLevel, false>(state);
-}
-
-struct Restart {
-  float* multiplier;
-  float* lambda;
-  float share;
-  SIM_FN void operator()(int i) const {
-    multiplier[i] *= share;
-    lambda[i] = multiplier[i];
-  }
-};
 
 }  // namespace
-
-Stage warm_start_stage() {
-  return {"warm start",
-          "the last substep's multipliers applied first",
-          Phase::Substep,
-          columns(Column::Predicted, Column::Neighbours, Column::Id),
-          columns(Column::Multiplier, Column::Lambda, Column::PredictedNext, Column::Predicted),
-          [](const Demand& demand) -> std::string {
-            return demand.parameters.warm_start > 0 ? "warm start > 0" : "";
-          },
-          [](FluidState& state) {
-            auto& p = state.particles;
-            for_each("warm start", p.size(),
-                     Restart{p.multiplier.data(), p.lambda.data(), state.parameters.warm_start});
-            displacement_stage().run(state);
-          }};
-}
 
 Stage density_stage() {
   return {"density constraint",

@@ -2,6 +2,7 @@
 /// Everything a stage may touch.
 
 #include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/stages/kernels.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -19,11 +20,10 @@ struct SolverParameters {
   float tensile = 0;
   /// Share of the last projection's step that is taken again (momentum); 0 in a substep's first projection.
   float momentum = 0.4f;
-  /// Factor on each change of a multiplier; above 1 converges faster until it oscillates.
-  float over_relaxation = 1;
-  /// Share of the last substep's multipliers that a substep starts from; 0 leaves the pass and its column
-  /// out.
-  float warm_start = 0;
+  /// V-cycles of the coarse pressure before the projections; 0 leaves the pass out.
+  int coarse_cycles = 2;
+  /// Edge of its cells as a share of the finest h.
+  float coarse_edge = 2;
   /// XSPH c; 0 leaves the pass out.
   float viscosity = 0.1f;
   /// Longest way of a particle in a substep, as a share of h.
@@ -36,12 +36,15 @@ struct SolverParameters {
 struct FluidState {
   SolverParameters parameters;
   Walls walls{};
+  Domain domain{};
+  float finest_support = 0;  ///< h of the lightest particles, m
   Vec3 refuge{};  ///< where a particle goes whose place is lost
   bool one_level = true;
   int iteration = 0;  ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;
+  CoarseGrid coarse;
   Array<Guards> guards;
 
   Guards* guard() { return guards.data(); }

@@ -121,6 +121,14 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
+  /// True where x lies inside every wall.
+  SIM_FN bool holds(Vec3 x) const {
+    for (int k = 0; k < count; ++k) {
+      if (dot(planes[k].normal, x) < planes[k].offset) return false;
+    }
+    return true;
+  }
+
   /// Moves x to at least `gap` inside every wall; true when it had to.
   SIM_FN bool project(Vec3& x, float gap) const {
     bool moved = false;

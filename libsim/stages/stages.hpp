@@ -31,8 +31,8 @@ struct Stage {
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
-/// Start from the last substep's pressure.
-Stage warm_start_stage();
+/// The slow part of the pressure, solved on cells and applied first.
+Stage coarse_pressure_stage();
 /// Density, unilateral constraint and its multiplier lambda.
 Stage density_stage();
 /// Position correction, momentum-exact, and wall projection.

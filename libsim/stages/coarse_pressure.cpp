@@ -1,0 +1,146 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+constexpr float fixed_point = 1 << 20;
+
+/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume.
+struct Gather {
+  const Vec4* predicted;
+  const float* density;
+  CellFrame frame;
+  CellBlock block;
+  CellSum* sums;
+  float unit_volume;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 p = predicted[i];
+    const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
+    const int x = static_cast<int>(floorf(at.x));
+    const int y = static_cast<int>(floorf(at.y));
+    const int z = static_cast<int>(floorf(at.z));
+    if (!block.holds(x, y, z)) return;
+    CellSum& sum = sums[block.index(x, y, z)];
+    const float volume = mass_of(p.w, 1) / unit_volume;
+    const float excess = fminf(fmaxf(density[i] - 1, -1.0f), 4.0f);
+    const auto fixed = [](float value) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point)); };
+    atomic_add(&sum.volume, fixed(volume));
+    atomic_add(&sum.excess, fixed(volume * excess));
+  }
+};
+
+/// Turns sums into the equation: cells with particles are fluid, with source edge^2 times their mean C.
+struct Classify {
+  CellFrame frame;
+  CellBlock block;
+  Walls walls;
+  const CellSum* sums;
+  CellKind* kind;
+  float* source;
+
+  SIM_FN void operator()(int i) const {
+    const CellSum sum = sums[i];
+    source[i] = 0;
+    if (sum.volume > 0) {
+      kind[i] = CellKind::Fluid;
+      const auto excess = static_cast<float>(static_cast<std::int64_t>(sum.excess));
+      source[i] = frame.edge * frame.edge * excess / static_cast<float>(sum.volume);
+      return;
+    }
+    const int x = i % block.nx;
+    const int y = i / block.nx % block.ny;
+    const int z = i / (block.nx * block.ny);
+    const Vec3 centre = frame.low + frame.edge * Vec3{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<float>(z) + 0.5f};
+    kind[i] = walls.holds(centre) ? CellKind::Air : CellKind::Solid;
+  }
+};
+
+/// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be.
+struct Shift {
+  Vec4* predicted;
+  CellFrame frame;
+  CellBlock block;
+  const CellKind* kind;
+  const float* q;
+  Walls walls;
+  Guards* guards;
+  float wall_gap;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 p = predicted[i];
+    const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
+    Vec3 x = xyz(p);
+    x += (1 / frame.edge) * Vec3{along<1, 0, 0>(at), along<0, 1, 0>(at), along<0, 0, 1>(at)};
+    if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    predicted[i] = with_w(x, p.w);
+  }
+
+  SIM_FN CellKind kind_at(int x, int y, int z) const {
+    if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
+    return y >= block.ny ? CellKind::Air : CellKind::Solid;
+  }
+  SIM_FN float q_at(int x, int y, int z) const { return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f; }
+
+  /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
+  template <int X, int Y, int Z>
+  SIM_FN float along(Vec3 at) const {
+    // Face (x, y, z) lies between cell (x, y, z) - (X, Y, Z) and cell (x, y, z).
+    const Vec3 local = at - Vec3{X ? 0 : 0.5f, Y ? 0 : 0.5f, Z ? 0 : 0.5f};
+    const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
+    const Vec3 part = local - base;
+    float weights = 0;
+    float sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = static_cast<int>(base.x) + (corner & 1);
+      const int y = static_cast<int>(base.y) + (corner >> 1 & 1);
+      const int z = static_cast<int>(base.z) + (corner >> 2);
+      const float weight = (corner & 1 ? part.x : 1 - part.x) * (corner & 2 ? part.y : 1 - part.y) *
+                           (corner & 4 ? part.z : 1 - part.z);
+      const CellKind here = kind_at(x, y, z);
+      const CellKind before = kind_at(x - X, y - Y, z - Z);
+      if (here != CellKind::Fluid && before != CellKind::Fluid) continue;
+      weights += weight;
+      if (here == CellKind::Solid || before == CellKind::Solid) continue;
+      sum += weight * (q_at(x - X, y - Y, z - Z) - q_at(x, y, z));
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
+};
+
+void run(FluidState& state) {
+  auto& p = state.particles;
+  auto& grid = state.coarse;
+  density_stage().run(state);
+  const float h = state.finest_support;
+  const float edge = state.parameters.coarse_edge * h;
+  grid.fit(state.domain, edge);
+  const CellBlock block = grid.multigrid.block();
+  grid.sums.zero();
+  for_each("gather cells", p.size(),
+           Gather{p.predicted.data(), p.density.data(), grid.frame, block, grid.sums.data(), mass_of(h, 1)});
+  for_each("classify cells", block.size(),
+           Classify{grid.frame, block, state.walls, grid.sums.data(), grid.multigrid.kind().data(),
+                    grid.multigrid.source().data()});
+  grid.multigrid.solve(state.parameters.coarse_cycles);
+  for_each("shift", p.size(),
+           Shift{p.predicted.data(), grid.frame, block, grid.multigrid.kind().data(), grid.multigrid.q().data(),
+                 state.walls, state.guard(), state.parameters.wall_gap});
+}
+
+}  // namespace
+
+Stage coarse_pressure_stage() {
+  return {"coarse pressure",
+          "multigrid on the fluid's cells",
+          Phase::Substep,
+          columns(Column::Predicted, Column::Neighbours, Column::Id),
+          columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
+          [](const Demand& demand) -> std::string {
+            return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0" : "";
+          },
+          run};
+}
+
+}  // namespace sim::SIM_BACKEND
