@@ -199,9 +199,12 @@ void add_frame_command(CLI::App& app) {
       ->check(CLI::Range(0.0, 100.0));
   command->add_option("--momentum", options->fluid.momentum, "Share of the last projection taken again")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--coarse-cycles", options->fluid.coarse_cycles, "V-cycles of the coarse pressure; 0 = none")
+  command
+      ->add_option("--coarse-cycles", options->fluid.coarse_cycles,
+                   "V-cycles of the coarse pressure; 0 = none")
       ->check(CLI::Range(0, 16));
-  command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")->check(CLI::Range(0.5, 8.0));
+  command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
+      ->check(CLI::Range(0.5, 8.0));
   command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
   command->add_option("--views", options->views, "1, or 2 eyes side by side")

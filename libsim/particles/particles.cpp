@@ -39,8 +39,8 @@ void fit(Array<T>& column, bool wanted, std::size_t n) {
 
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position",      "velocity", "id",         "level",   "predicted", "predicted_next",
-      "velocity_next", "lambda",   "density", "neighbours"};
+      "position",       "velocity",      "id",     "level",   "predicted",
+      "predicted_next", "velocity_next", "lambda", "density", "neighbours"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -62,9 +62,8 @@ void Particles::allocate(ColumnSet set, int n) {
 
 std::size_t Particles::bytes() const {
   return position.bytes() + velocity.bytes() + predicted.bytes() + predicted_next.bytes() +
-         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() +
-         density.bytes() + spare_a_.bytes() + spare_b_.bytes() +
-         spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
+         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() + density.bytes() +
+         spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
 }
 
 void Particles::reorder(const Array<int>& order) {

@@ -38,8 +38,8 @@ struct LinkFinest {
 };
 
 /// Links of a coarser grid: half the sum of the finer ones across each face, since the way is twice as long
-/// (scaled Galerkin operator of piecewise constant aggregates; Braess 1995). The way to the air grows less: the
-/// pressure is zero half a finest cell beyond the last face on every grid.
+/// (scaled Galerkin operator of piecewise constant aggregates; Braess 1995). The way to the air grows less:
+/// the pressure is zero half a finest cell beyond the last face on every grid.
 struct LinkCoarser {
   CellBlock fine, coarse;
   const Links* fine_links;
@@ -61,7 +61,8 @@ struct LinkCoarser {
                        z > 0 ? fine_links[at - fine.nx * fine.ny].z : 0.0f, 0};
       air += fmaxf(own.sum - own.x - own.y - own.z - back.x - back.y - back.z, 0.0f);
       // A link between two children drops out of their sum.
-      out.sum += 0.5f * ((child & 1 ? own.x : back.x) + (child & 2 ? own.y : back.y) + (child & 4 ? own.z : back.z));
+      out.sum +=
+          0.5f * ((child & 1 ? own.x : back.x) + (child & 2 ? own.y : back.y) + (child & 4 ? own.z : back.z));
       if (child & 1) out.x += 0.5f * own.x;
       if (child & 2) out.y += 0.5f * own.y;
       if (child & 4) out.z += 0.5f * own.z;
@@ -99,8 +100,8 @@ struct Smooth {
   }
 };
 
-/// source of the coarser grid = sum of the finer residuals. Where a cell rests at q = 0 and wants to pull, nothing
-/// is left to solve.
+/// source of the coarser grid = sum of the finer residuals. Where a cell rests at q = 0 and wants to pull,
+/// nothing is left to solve.
 struct Restrict {
   LevelView fine, coarse;
   bool push_only;
@@ -139,7 +140,8 @@ struct Prolong {
     for (int corner = 0; corner < 8; ++corner) {
       const Place c{corner & 1 ? beside.x : parent.x, corner & 2 ? beside.y : parent.y,
                     corner & 4 ? beside.z : parent.z};
-      const float weight = (corner & 1 ? 0.25f : 0.75f) * (corner & 2 ? 0.25f : 0.75f) * (corner & 4 ? 0.25f : 0.75f);
+      const float weight =
+          (corner & 1 ? 0.25f : 0.75f) * (corner & 2 ? 0.25f : 0.75f) * (corner & 4 ? 0.25f : 0.75f);
       const bool wall = c.x < 0 || c.y < 0 || c.z < 0 || c.x >= coarse.block.nx || c.z >= coarse.block.nz;
       float value = own;
       if (!wall) value = c.y < coarse.block.ny ? coarse.q[coarse.block.index(c.x, c.y, c.z)] : 0.0f;
@@ -152,7 +154,9 @@ struct Prolong {
 
 /// Conductance to the air of grid l, l >= 1, over that of the next finer one.
 float to_air(std::size_t l) {
-  const auto way = [](std::size_t grid) { return grid == 0 ? 1.0f : 0.5f + static_cast<float>(1 << (grid - 1)); };
+  const auto way = [](std::size_t grid) {
+    return grid == 0 ? 1.0f : 0.5f + static_cast<float>(1 << (grid - 1));
+  };
   return way(l - 1) / way(l);
 }
 
@@ -163,7 +167,8 @@ constexpr int coarsest_sweeps = 4;
 }  // namespace
 
 void Multigrid::fit(CellBlock finest) {
-  if (!levels_.empty() && finest.nx == block().nx && finest.ny == block().ny && finest.nz == block().nz) return;
+  if (!levels_.empty() && finest.nx == block().nx && finest.ny == block().ny && finest.nz == block().nz)
+    return;
   levels_.clear();
   for (CellBlock block = finest;; block = block.halved()) {
     Level level;

@@ -1,6 +1,6 @@
 #pragma once
-/// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >= 0,
-/// q = 0 in the air, no flux through walls.
+/// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >=
+/// 0, q = 0 in the air, no flux through walls.
 
 #include <array>
 #include <vector>

@@ -164,8 +164,9 @@ class FluidSimulation final : public Simulation {
     p.allocate(schedule_.columns, static_cast<int>(start.size()));
     const auto h = static_cast<float>(2 * resolution_.spacing_m);
     state_.finest_support = h;
-    state_.domain = {{0, 0, 0}, {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
-                     static_cast<float>(scene_.tank_size_m[2])}};
+    state_.domain = {{0, 0, 0},
+                     {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
+                      static_cast<float>(scene_.tank_size_m[2])}};
     std::vector<Vec4> position;
     std::vector<Vec4> velocity;
     std::vector<int> id;

@@ -8,6 +8,8 @@ namespace {
 
 std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
   switch (phase) {
+    case Phase::FrameStart:
+      return schedule.frame_start;
     case Phase::Substep:
       return schedule.substep;
     case Phase::Iteration:
@@ -22,6 +24,8 @@ std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
 
 const char* phase_name(Phase phase) {
   switch (phase) {
+    case Phase::FrameStart:
+      return "frame start";
     case Phase::Substep:
       return "substep";
     case Phase::Iteration:
@@ -75,7 +79,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
     out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) +
                        padded(reason, 40) + stage.source + "\n";
   }
-  for (const auto* passes : {&out.substep, &out.iteration, &out.substep_end, &out.frame_end})
+  for (const auto* passes :
+       {&out.frame_start, &out.substep, &out.iteration, &out.substep_end, &out.frame_end})
     check_reads(*passes, written);
   out.explanation += absent + "  columns:";
   for (std::size_t c = 0; c < out.columns.size(); ++c) {
@@ -86,6 +91,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 }
 
 void run_frame(const Schedule& schedule, FluidState& state) {
+  run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
     state.iteration = 0;
     run_all(schedule.substep, state);

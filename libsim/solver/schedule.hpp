@@ -9,7 +9,7 @@
 namespace sim::SIM_BACKEND {
 
 struct Schedule {
-  std::vector<Stage> substep, iteration, substep_end, frame_end;
+  std::vector<Stage> frame_start, substep, iteration, substep_end, frame_end;
   ColumnSet columns;      ///< union of what the passes read and write
   std::string explanation;  ///< each pass with why it is there, each known stage with why it is not
 };
@@ -17,7 +17,7 @@ struct Schedule {
 /// Prunes, never reorders. A pass that reads a column nothing has written is an error (base::Error names both).
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages());
 
-/// One frame: substeps x (substep passes, iterations x iteration passes, closing passes), then the frame's end.
+/// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes), then the frame's end.
 void run_frame(const Schedule& schedule, FluidState& state);
 
 }  // namespace sim::SIM_BACKEND

@@ -25,13 +25,19 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     const float volume = mass_of(p.w, 1) / unit_volume;
     const float excess = fminf(fmaxf(density[i] - 1, -1.0f), 4.0f);
-    const auto fixed = [](float value) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point)); };
+    const auto fixed = [](float value) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
+    };
     atomic_add(&sum.volume, fixed(volume));
     atomic_add(&sum.excess, fixed(volume * excess));
   }
 };
 
-/// Turns sums into the equation: cells with particles are fluid, with source edge^2 times their mean C.
+/// A cell whose particles miss more than this share of the rest density on average holds a surface: q = 0
+/// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
+constexpr float surface_deficit = 0.05f;
+
+/// Turns sums into the equation: source edge^2 times the mean C of a cell's particles.
 struct Classify {
   CellFrame frame;
   CellBlock block;
@@ -44,15 +50,20 @@ struct Classify {
     const CellSum sum = sums[i];
     source[i] = 0;
     if (sum.volume > 0) {
-      kind[i] = CellKind::Fluid;
-      const auto excess = static_cast<float>(static_cast<std::int64_t>(sum.excess));
-      source[i] = frame.edge * frame.edge * excess / static_cast<float>(sum.volume);
-      return;
+      const auto excess =
+          static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
+      if (excess > -surface_deficit) {
+        kind[i] = CellKind::Fluid;
+        source[i] = frame.edge * frame.edge * excess;
+        return;
+      }
     }
     const int x = i % block.nx;
     const int y = i / block.nx % block.ny;
     const int z = i / (block.nx * block.ny);
-    const Vec3 centre = frame.low + frame.edge * Vec3{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<float>(z) + 0.5f};
+    const Vec3 centre =
+        frame.low + frame.edge * Vec3{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                                      static_cast<float>(z) + 0.5f};
     kind[i] = walls.holds(centre) ? CellKind::Air : CellKind::Solid;
   }
 };
@@ -81,7 +92,9 @@ struct Shift {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
     return y >= block.ny ? CellKind::Air : CellKind::Solid;
   }
-  SIM_FN float q_at(int x, int y, int z) const { return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f; }
+  SIM_FN float q_at(int x, int y, int z) const {
+    return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
+  }
 
   /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
   template <int X, int Y, int Z>
@@ -125,8 +138,8 @@ void run(FluidState& state) {
                     grid.multigrid.source().data()});
   grid.multigrid.solve(state.parameters.coarse_cycles);
   for_each("shift", p.size(),
-           Shift{p.predicted.data(), grid.frame, block, grid.multigrid.kind().data(), grid.multigrid.q().data(),
-                 state.walls, state.guard(), state.parameters.wall_gap});
+           Shift{p.predicted.data(), grid.frame, block, grid.multigrid.kind().data(),
+                 grid.multigrid.q().data(), state.walls, state.guard(), state.parameters.wall_gap});
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ struct FluidState {
   Walls walls{};
   Domain domain{};
   float finest_support = 0;  ///< h of the lightest particles, m
-  Vec3 refuge{};  ///< where a particle goes whose place is lost
+  Vec3 refuge{};             ///< where a particle goes whose place is lost
   bool one_level = true;
   int iteration = 0;  ///< projection within the substep
   Particles particles;

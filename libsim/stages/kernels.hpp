@@ -1,6 +1,7 @@
 #pragma once
-/// Smoothing kernels and walls of the solver: density by poly6, gradients by spiky (Mueller et al. 2003; Macklin and Mueller 2013),
-/// evaluated once a pair with hbar = (h_i + h_j) / 2 so that W_ij = W_ji and pair terms cancel exactly.
+/// Smoothing kernels and walls of the solver: density by poly6, gradients by spiky (Mueller et al. 2003;
+/// Macklin and Mueller 2013), evaluated once a pair with hbar = (h_i + h_j) / 2 so that W_ij = W_ji and pair
+/// terms cancel exactly.
 
 #include <cstdint>
 
@@ -9,8 +10,8 @@
 namespace sim::SIM_BACKEND {
 
 inline constexpr float pi = 3.14159265358979f;
-/// Density of the cubic lattice with h = 2 d under poly6: 103950 / (32768 pi). Masses are divided by it, so that the lattice
-/// has exactly the rest density.
+/// Density of the cubic lattice with h = 2 d under poly6: 103950 / (32768 pi). Masses are divided by it, so
+/// that the lattice has exactly the rest density.
 inline constexpr float lattice_density = 103950.0f / (32768.0f * pi);
 /// Pairs closer than this share of h count as coincident.
 inline constexpr float coincident = 1e-5f;
@@ -93,9 +94,10 @@ struct Walls {
   Plane planes[most];
   int count;
 
-  /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient (1/m) with the spiky
-  /// kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875 is missing.
-  /// f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for spiky; both are exact.
+  /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
+  /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
+  /// is missing. f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for
+  /// spiky; both are exact.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     float present = 1;
     gradient = {0, 0, 0};

@@ -15,7 +15,7 @@ struct Demand {
   bool settling = false;  ///< the gate is closed and the water comes to rest
 };
 
-enum class Phase { Substep, Iteration, SubstepEnd, FrameEnd };
+enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
 struct Stage {
   const char* name;

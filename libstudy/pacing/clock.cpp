@@ -6,9 +6,9 @@ namespace study {
 
 namespace {
 // A sleeper wakes some tens of microseconds late, on an idle virtual machine up to a few milliseconds,
-// because its halted processor must be scheduled again; the last stretch is spun. At 50 frames/s this costs a
-// tenth of one core.
-constexpr std::int64_t spin_ns = 2'000'000;
+// because its halted processor must be scheduled again; the last stretch is spun. At 50 frames/s this costs
+// two fifths of one core.
+constexpr std::int64_t spin_ns = 8'000'000;
 }  // namespace
 
 std::int64_t RealClock::now_ns() const {
