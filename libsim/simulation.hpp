@@ -2,6 +2,7 @@
 /// The fluid as programs see it: one scene, one method, one back end.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -44,6 +45,8 @@ struct SimulationOptions {
   double frame_dt_s = 0;  ///< 0 = the scene's
   /// Start from these particles (all of the method's level) and skip filling and settling.
   std::optional<std::vector<ParticleState>> start;
+  /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
+  std::filesystem::path cache;
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
   // Numbers of the solver; a negative value keeps the measured default (libsim/stages/fluid_state.hpp).

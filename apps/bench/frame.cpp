@@ -11,6 +11,7 @@
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timing.hpp"
 #include "apps/common/program.hpp"
+#include "libsim/scene/settled_state.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -36,6 +37,7 @@ struct FrameOptions {
 
 std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
   sim::SimulationOptions out = options.fluid;
+  out.cache = sim::default_cache_folder();
   out.method = sim::parse_method(options.method);
   out.n_star = sim::parse_n_star(options.n_star);
   out.backend = sim::choose_backend(options.backend);
@@ -190,21 +192,21 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
       ->check(CLI::Range(0, 64));
   command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; 0 = the scene's")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_in(0.0, 1.0));
   command->add_option("--relaxation", options->fluid.relaxation, "Constraint relaxation")
-      ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--tensile", options->fluid.tensile, "s_corr strength")->check(CLI::Range(0.0, 100.0));
-  command->add_option("--viscosity", options->fluid.viscosity, "XSPH c")->check(CLI::Range(0.0, 100.0));
+      ->check(number_in(0.0, 100.0));
+  command->add_option("--tensile", options->fluid.tensile, "s_corr strength")->check(number_in(0.0, 100.0));
+  command->add_option("--viscosity", options->fluid.viscosity, "XSPH c")->check(number_in(0.0, 100.0));
   command->add_option("--longest-step", options->fluid.longest_step, "Speed limit in h a substep")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_in(0.0, 100.0));
   command->add_option("--momentum", options->fluid.momentum, "Share of the last projection taken again")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_in(0.0, 100.0));
   command
       ->add_option("--coarse-cycles", options->fluid.coarse_cycles,
                    "V-cycles of the coarse pressure; 0 = none")
       ->check(CLI::Range(0, 16));
   command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
-      ->check(CLI::Range(0.5, 8.0));
+      ->check(number_in(0.5, 8.0));
   command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
   command->add_option("--views", options->views, "1, or 2 eyes side by side")

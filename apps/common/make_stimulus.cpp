@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "apps/common/fluid_stimulus.hpp"
+#include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -25,6 +26,7 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
 std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
   const sim::Scene scene = sim::read_scene(choice.scene);
   sim::SimulationOptions options;
+  options.cache = sim::default_cache_folder();
   options.method = sim::parse_method(choice.method);
   options.n_star = sim::parse_n_star(choice.n_star);
   options.backend = sim::choose_backend(choice.backend);

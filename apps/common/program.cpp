@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +31,17 @@ void wait_passively(char** argv) {
 }
 
 }  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);
+  const auto check = [low, high, range](std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    if (number && value >= low && value <= high) return "";
+    return "\"" + text + "\" is not a number from " + range;
+  };
+  return CLI::Validator(check, range);
+}
 
 int run_program(CLI::App& app, int argc, char** argv) {
   wait_passively(argv);

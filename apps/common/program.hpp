@@ -12,6 +12,9 @@ namespace apps {
 /// or GOMP_SPINCOUNT is set, it starts the program over, once, with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
+/// Accepts finite numbers from low to high (CLI::Range lets NaN through).
+CLI::Validator number_in(double low, double high);
+
 /// A line on stderr that shows how far a long step is. Drawn at most ten times a second; a plain line a tenth
 /// when stderr is not a terminal. Nothing is shown for steps that end within two seconds.
 class Progress {

@@ -12,6 +12,7 @@
 #include "apps/study/session_player.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -131,6 +132,7 @@ Work prepare(const BakeCommand& command) {
     if (!progress) progress = std::make_unique<Progress>("settling", static_cast<std::size_t>(total));
     progress->update(static_cast<std::size_t>(done));
   };
+  options.cache = sim::default_cache_folder();
   work.simulation = sim::make_simulation(work.scene, options);
   fill_header(command, options, work);
   return work;
@@ -215,7 +217,7 @@ void add_bake_command(CLI::App& app) {
       ->capture_default_str();
   sub.add_option("--content-step", command->content_step_s,
                  "Fluid time between frames, s; default: the scene's")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(number_in(1e-6, 1));
   sub.add_option("--pictures", command->pictures, "Keep pictures of this size too, such as 640x360");
   sub.add_option("--camera", command->camera, "Camera of the pictures")
       ->check(CLI::IsMember({"view", "overview"}))

@@ -162,7 +162,7 @@ void add_check_command(CLI::App& app) {
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--refresh", options->refresh_hz, "The display's refresh in Hz")
       ->required()
-      ->check(CLI::Range(10.0, 1000.0));
+      ->check(number_in(10, 1000));
   command->add_option("--json", options->json, "File for every number of the report");
   command->callback([options] { check_protocol(*options); });
 }

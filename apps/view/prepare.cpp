@@ -3,6 +3,7 @@
 
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
+#include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -26,6 +27,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
   prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
   if (!options.ptpe.empty()) prepared.ptpe = sim::read_ptpe_file(options.ptpe);
   sim::SimulationOptions choice;
+  choice.cache = sim::default_cache_folder();
   choice.method = sim::parse_method(options.method);
   choice.n_star = sim::parse_n_star(options.n_star);
   choice.backend = sim::choose_backend(options.backend);

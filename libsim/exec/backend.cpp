@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "libsim/scene/settled_state.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 
@@ -44,13 +45,25 @@ Backend choose_backend(std::string_view name) {
   throw base::Error("--backend cuda", problem, cuda_mend);
 }
 
-
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
+namespace {
+std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const SimulationOptions& options) {
 #ifdef SIM_HAS_CUDA
   if (options.backend == Backend::Cuda) return cuda::make_simulation(scene, options);
 #endif
   if (options.backend == Backend::Cuda) choose_backend("cuda");
   return cpu::make_simulation(scene, options);
+}
+}  // namespace
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
+  if (options.start || options.cache.empty() || scene.settle_frames == 0)
+    return make_on_backend(scene, options);
+  const std::string key = settled_key(scene, options);
+  SimulationOptions from_cache = options;
+  from_cache.start = read_settled(options.cache, key);
+  auto simulation = make_on_backend(scene, from_cache);
+  if (!from_cache.start) write_settled(options.cache, key, simulation->read_state());
+  return simulation;
 }
 
 }  // namespace sim

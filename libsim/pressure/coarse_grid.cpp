@@ -12,7 +12,7 @@ void CoarseGrid::fit(const Domain& domain, float edge) {
   frame = {domain.low, edge};
   const auto cells = [&](float length) { return std::max(1, static_cast<int>(std::ceil(length / edge))); };
   multigrid.fit({cells(size.x), cells(size.y), cells(size.z)});
-  sums.resize(static_cast<std::size_t>(multigrid.block().size()));
+  sums.resize(static_cast<std::size_t>(multigrid.finest().block.size()));
 }
 
 }  // namespace sim::SIM_BACKEND

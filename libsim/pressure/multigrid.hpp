@@ -2,17 +2,15 @@
 /// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >=
 /// 0, q = 0 in the air, no flux through walls.
 
-#include <array>
 #include <vector>
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// What a cell of the finest grid holds.
 enum class CellKind : std::uint8_t { Air, Fluid, Solid };
 
-/// Cells of one grid, x fastest.
+/// Cells of one grid, x fastest. Beside and below it are walls, above it is air.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 
@@ -24,46 +22,52 @@ struct CellBlock {
   SIM_FN CellBlock halved() const { return {(nx + 1) / 2, (ny + 1) / 2, (nz + 1) / 2}; }
 };
 
-/// Conductances of a cell: to its neighbours at +x, +y, +z, and the sum over all six faces, air included.
-/// All zero where there is no fluid.
-struct alignas(16) Links {
-  float x, y, z, sum;
-};
-
-/// One grid as kernels see it. The equation of cell i is sum_i q_i - sum_j link_ij q_j = source_i.
-struct LevelView {
-  CellBlock block;
-  const Links* links;
+/// One grid as kernels see it. The equation of a fluid cell is the sum of conductance (q_i - q_j) over its
+/// six neighbours j that are not solid = source_i.
+struct GridView {
+  CellBlock block, finest;
+  int scale;  ///< edge of a cell in finest cells
+  CellKind* kind;
   float* q;
   float* source;
+
+  SIM_FN CellKind kind_at(int x, int y, int z) const {
+    if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
+    return y >= block.ny ? CellKind::Air : CellKind::Solid;
+  }
+  /// Finest cells along a cell's edge; the last cell of a row may reach beyond the block.
+  SIM_FN float extent(int cell, int finest_cells) const {
+    const int left = finest_cells - cell * scale;
+    return static_cast<float>(left < scale ? left : scale);
+  }
+  /// 0 in air, walls and outside.
+  SIM_FN float q_at(int x, int y, int z) const {
+    return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
+  }
 };
 
 class Multigrid {
  public:
   /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed.
   void fit(CellBlock finest);
-  const CellBlock& block() const { return levels_.front().block; }
-  /// Input of solve(), one value a cell: what it holds, and edge^2 C.
-  Array<CellKind>& kind() { return kind_; }
-  Array<float>& source() { return levels_.front().source; }
+  /// The finest grid. Write kind and source (edge^2 C of each fluid cell), then solve.
+  GridView finest() { return view(0); }
   /// Runs V-cycles from q = 0.
   void solve(int cycles);
-  const Array<float>& q() const { return levels_.front().q; }
 
  private:
   struct Level {
     CellBlock block;
-    Array<Links> links;
+    Array<CellKind> kind;
     Array<float> q, source;
-    LevelView view() { return {block, links.data(), q.data(), source.data()}; }
   };
 
-  void link();
+  GridView view(std::size_t level);
+
   void cycle(std::size_t level);
-  void smooth(std::size_t level, std::array<int, 2> colours);
+  void smooth(std::size_t level, int first_colour);
 
   std::vector<Level> levels_;
-  Array<CellKind> kind_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -5,6 +5,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 constexpr float fixed_point = 1 << 20;
+/// More than this is not compression but particles on top of each other, which the projections part.
+constexpr float most_excess = 0.5f;
 
 /// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume.
 struct Gather {
@@ -24,7 +26,7 @@ struct Gather {
     if (!block.holds(x, y, z)) return;
     CellSum& sum = sums[block.index(x, y, z)];
     const float volume = mass_of(p.w, 1) / unit_volume;
-    const float excess = fminf(fmaxf(density[i] - 1, -1.0f), 4.0f);
+    const float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
     };
@@ -40,31 +42,26 @@ constexpr float surface_deficit = 0.05f;
 /// Turns sums into the equation: source edge^2 times the mean C of a cell's particles.
 struct Classify {
   CellFrame frame;
-  CellBlock block;
+  GridView grid;
   Walls walls;
   const CellSum* sums;
-  CellKind* kind;
-  float* source;
 
   SIM_FN void operator()(int i) const {
     const CellSum sum = sums[i];
-    source[i] = 0;
+    grid.source[i] = 0;
     if (sum.volume > 0) {
       const auto excess =
           static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
       if (excess > -surface_deficit) {
-        kind[i] = CellKind::Fluid;
-        source[i] = frame.edge * frame.edge * excess;
+        grid.kind[i] = CellKind::Fluid;
+        grid.source[i] = frame.edge * frame.edge * excess;
         return;
       }
     }
-    const int x = i % block.nx;
-    const int y = i / block.nx % block.ny;
-    const int z = i / (block.nx * block.ny);
-    const Vec3 centre =
-        frame.low + frame.edge * Vec3{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
-                                      static_cast<float>(z) + 0.5f};
-    kind[i] = walls.holds(centre) ? CellKind::Air : CellKind::Solid;
+    const CellBlock& block = grid.block;
+    const auto centre = [](int cell) { return static_cast<float>(cell) + 0.5f; };
+    const Vec3 at{centre(i % block.nx), centre(i / block.nx % block.ny), centre(i / (block.nx * block.ny))};
+    grid.kind[i] = walls.holds(frame.low + frame.edge * at) ? CellKind::Air : CellKind::Solid;
   }
 };
 
@@ -72,9 +69,7 @@ struct Classify {
 struct Shift {
   Vec4* predicted;
   CellFrame frame;
-  CellBlock block;
-  const CellKind* kind;
-  const float* q;
+  GridView grid;
   Walls walls;
   Guards* guards;
   float wall_gap;
@@ -86,14 +81,6 @@ struct Shift {
     x += (1 / frame.edge) * Vec3{along<1, 0, 0>(at), along<0, 1, 0>(at), along<0, 0, 1>(at)};
     if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, p.w);
-  }
-
-  SIM_FN CellKind kind_at(int x, int y, int z) const {
-    if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
-    return y >= block.ny ? CellKind::Air : CellKind::Solid;
-  }
-  SIM_FN float q_at(int x, int y, int z) const {
-    return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
   }
 
   /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
@@ -111,12 +98,12 @@ struct Shift {
       const int z = static_cast<int>(base.z) + (corner >> 2);
       const float weight = (corner & 1 ? part.x : 1 - part.x) * (corner & 2 ? part.y : 1 - part.y) *
                            (corner & 4 ? part.z : 1 - part.z);
-      const CellKind here = kind_at(x, y, z);
-      const CellKind before = kind_at(x - X, y - Y, z - Z);
+      const CellKind here = grid.kind_at(x, y, z);
+      const CellKind before = grid.kind_at(x - X, y - Y, z - Z);
       if (here != CellKind::Fluid && before != CellKind::Fluid) continue;
       weights += weight;
       if (here == CellKind::Solid || before == CellKind::Solid) continue;
-      sum += weight * (q_at(x - X, y - Y, z - Z) - q_at(x, y, z));
+      sum += weight * (grid.q_at(x - X, y - Y, z - Z) - grid.q_at(x, y, z));
     }
     return weights > 0 ? sum / weights : 0;
   }
@@ -124,22 +111,20 @@ struct Shift {
 
 void run(FluidState& state) {
   auto& p = state.particles;
-  auto& grid = state.coarse;
+  auto& coarse = state.coarse;
   density_stage().run(state);
-  const float h = state.finest_support;
-  const float edge = state.parameters.coarse_edge * h;
-  grid.fit(state.domain, edge);
-  const CellBlock block = grid.multigrid.block();
-  grid.sums.zero();
+  coarse.fit(state.domain, state.parameters.coarse_edge * state.finest_support);
+  const GridView grid = coarse.multigrid.finest();
+  coarse.sums.zero();
   for_each("gather cells", p.size(),
-           Gather{p.predicted.data(), p.density.data(), grid.frame, block, grid.sums.data(), mass_of(h, 1)});
-  for_each("classify cells", block.size(),
-           Classify{grid.frame, block, state.walls, grid.sums.data(), grid.multigrid.kind().data(),
-                    grid.multigrid.source().data()});
-  grid.multigrid.solve(state.parameters.coarse_cycles);
-  for_each("shift", p.size(),
-           Shift{p.predicted.data(), grid.frame, block, grid.multigrid.kind().data(),
-                 grid.multigrid.q().data(), state.walls, state.guard(), state.parameters.wall_gap});
+           Gather{p.predicted.data(), p.density.data(), coarse.frame, grid.block, coarse.sums.data(),
+                  mass_of(state.finest_support, 1)});
+  for_each("classify cells", grid.block.size(),
+           Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
+  coarse.multigrid.solve(state.parameters.coarse_cycles);
+  for_each(
+      "shift", p.size(),
+      Shift{p.predicted.data(), coarse.frame, grid, state.walls, state.guard(), state.parameters.wall_gap});
 }
 
 }  // namespace

@@ -50,4 +50,12 @@ struct FluidState {
   Guards* guard() { return guards.data(); }
 };
 
+/// v, or as much of it as moves a particle by longest_step h in a substep; counted when that is less.
+SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
+  const float speed = length(v);
+  if (!(speed > limit)) return v;
+  atomic_add(&guards->speed_limited, std::uint64_t{1});
+  return (limit / speed) * v;
+}
+
 }  // namespace sim::SIM_BACKEND

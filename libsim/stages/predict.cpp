@@ -20,12 +20,7 @@ struct Predict {
     quarantine(x, v);
     position[i] = with_w(x, h);
     v.y -= gravity * dt;
-    const float limit = longest_step * h / dt;
-    const float speed = length(v);
-    if (speed > limit) {
-      v = (limit / speed) * v;
-      atomic_add(&guards->speed_limited, std::uint64_t{1});
-    }
+    v = limited(v, longest_step * h / dt, guards);
     velocity[i] = with_w(v, 0);
     x = fused(x, dt, v);
     if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});

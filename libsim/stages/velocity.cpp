@@ -9,11 +9,13 @@ struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  float dt;
+  Guards* guards;
+  float dt, longest_step;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
-    velocity[i] = with_w(v + (1 / dt) * (xyz(predicted[i]) - free), 0);
+    const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
+    velocity[i] = with_w(limited(after, longest_step * predicted[i].w / dt, guards), 0);
     position[i] = predicted[i];
   }
 };
@@ -35,7 +37,8 @@ Stage velocity_stage() {
           [](FluidState& state) {
             auto& p = state.particles;
             for_each("velocity", p.size(),
-                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), state.parameters.dt});
+                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), state.guard(),
+                             state.parameters.dt, state.parameters.longest_step});
           }};
 }
 

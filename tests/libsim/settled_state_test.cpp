@@ -1,0 +1,96 @@
+#include "libsim/scene/settled_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class SettledState : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("settled_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    scene_ = fluid_test::tank({2, 2, 2}, {1, 1, 1}, 10);
+    scene_.sha256 = "of a test";
+    options_.n_star = 64;
+    options_.cache = folder_;
+    options_.settling = [this](int, int) { ++settled_frames_; };
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::vector<fluid_test::ParticleState> after_five_frames() {
+    const auto fluid = sim::make_simulation(scene_, options_);
+    for (int frame = 0; frame < 5; ++frame) fluid->step_frame();
+    return fluid->read_state();
+  }
+  fs::path only_file() const { return fs::directory_iterator(folder_)->path(); }
+
+  static bool same(const std::vector<fluid_test::ParticleState>& a,
+                   const std::vector<fluid_test::ParticleState>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+  }
+
+  fs::path folder_;
+  sim::Scene scene_;
+  sim::SimulationOptions options_;
+  int settled_frames_ = 0;
+};
+
+TEST_F(SettledState, SecondRunStartsFromTheKeptStateBitForBit) {
+  const auto first = after_five_frames();
+  EXPECT_EQ(settled_frames_, 10);
+  EXPECT_TRUE(same(first, after_five_frames()));
+  EXPECT_EQ(settled_frames_, 10) << "the second run must not settle";
+  options_.cache.clear();
+  EXPECT_TRUE(same(first, after_five_frames()));
+  EXPECT_EQ(settled_frames_, 20) << "without a folder every run settles";
+}
+
+TEST_F(SettledState, EveryChoiceHasItsOwnState) {
+  std::vector<std::string> keys{sim::settled_key(scene_, options_)};
+  const auto add = [&] { keys.push_back(sim::settled_key(scene_, options_)); };
+  options_.n_star = 128;
+  add();
+  options_.method = sim::MethodKind::LoRes;
+  add();
+  options_.momentum = 0.1;
+  add();
+  options_.coarse_cycles = 1;
+  add();
+  scene_.sha256 = "of another";
+  add();
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+}
+
+TEST_F(SettledState, DamagedFileIsSettledAgain) {
+  const auto first = after_five_frames();
+  for (const bool shorten : {true, false}) {
+    const auto path = only_file();
+    if (shorten) {
+      fs::resize_file(path, fs::file_size(path) - 32);
+    } else {
+      std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekp(100);
+      file.put('x');
+    }
+    const int before = settled_frames_;
+    EXPECT_TRUE(same(first, after_five_frames()));
+    EXPECT_EQ(settled_frames_, before + 10);
+  }
+}
+
+TEST_F(SettledState, FolderThatCannotBeWrittenIsNoError) {
+  options_.cache = "/proc/no/such/folder";
+  EXPECT_EQ(after_five_frames().size(), 512u);
+}
+
+}  // namespace
