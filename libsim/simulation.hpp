@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libsim/methods/method.hpp"
+#include "libsim/methods/preset.hpp"
 #include "libsim/scene/scene.hpp"
 
 namespace sim {
@@ -40,10 +41,13 @@ struct SimulationOptions {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 32 * 1024;
   Backend backend = Backend::Cpu;
-  int iterations = 0;     ///< constraint projections a substep; 0 = the scene's
-  int substeps = 0;       ///< a frame; 0 = by the scene's rule
-  double frame_dt_s = 0;  ///< 0 = the scene's
-  /// Start from these particles (all of the method's level) and skip filling and settling.
+  Readings readings = readings_of(Preset::Tuned);
+  int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
+  int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
+  int substeps = 0;          ///< a frame; 0 = by the scene's rule
+  double frame_dt_s = 0;     ///< 0 = the scene's
+  /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
+  /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
   std::optional<std::vector<ParticleState>> start;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
@@ -74,10 +78,11 @@ struct FrameReport {
   int frame = 0;  ///< frames since the gate opened
   double time_s = 0;
   std::int64_t particles = 0;
-  std::vector<std::int64_t> particles_by_level;
-  double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
-  double density_max = 0;         ///< max of rho / rho_0
-  double neighbours_mean = 0;     ///< without self, within h
+  std::vector<std::int64_t> particles_by_level;  ///< up to the coarsest level that is present
+  std::int64_t mass_units = 0;                   ///< total mass in m_*: the sum of 2^level, exact
+  double density_error_mean = 0;                 ///< mean of max(rho / rho_0 - 1, 0)
+  double density_max = 0;                        ///< max of rho / rho_0
+  double neighbours_mean = 0;                    ///< without self, within h
   double speed_max_m_s = 0;
   GuardCounts guards;
 };
@@ -91,7 +96,9 @@ class Simulation {
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
-  /// Rest spacing d = 2 r of the finest particles present, m.
+  /// The most particles there can ever be; buffers of this size never grow.
+  virtual std::int64_t particle_capacity() const { return particle_count(); }
+  /// Rest spacing d = 2 r of the finest particles that the method can hold, m.
   virtual double spacing_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;

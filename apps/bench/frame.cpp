@@ -177,7 +177,7 @@ void add_frame_command(CLI::App& app) {
   auto options = std::make_shared<FrameOptions>();
   auto* command = app.add_subcommand("frame", "Milliseconds a frame of one scene and method");
   command->add_option("scene", options->scene, "Scene file")->capture_default_str();
-  command->add_option("--method", options->method, "LoRes or HiRes")->capture_default_str();
+  command->add_option("--method", options->method, sim::method_names())->capture_default_str();
   command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
       ->capture_default_str();
   command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();

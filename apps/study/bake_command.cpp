@@ -209,7 +209,7 @@ void add_bake_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand("bake", "Compute the frames of a scene into a file, or check one");
   auto* scene = sub.add_option("scene", command->scene, "Scene file");
   auto* out = sub.add_option("--out", command->out, "Bake file to write");
-  sub.add_option("--method", command->method, "LoRes or HiRes")->capture_default_str();
+  sub.add_option("--method", command->method, sim::method_names())->capture_default_str();
   sub.add_option("--n-star", command->n_star, "Particles when all are coarsest; k = 1,024")
       ->capture_default_str();
   sub.add_option("--frames", command->frames, "Content steps to compute")

@@ -2,6 +2,7 @@
 
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
+#include "libsim/methods/method.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
@@ -9,7 +10,7 @@ int main(int argc, char** argv) {
   std::string size = "1280x720";
   app.add_option("scene", options.scene, "Scene file")->required();
   app.add_flag("--headless", options.headless, "No window: run the frames and write pictures");
-  app.add_option("--method", options.method, "LoRes or HiRes")->capture_default_str();
+  app.add_option("--method", options.method, sim::method_names())->capture_default_str();
   app.add_option("--n-star", options.n_star, "Particles when all are coarsest; k = 1,024")
       ->capture_default_str();
   app.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();

@@ -55,6 +55,12 @@ class Array {
     }
     size_ = size;
   }
+  /// Makes room for later sizes; contents are undefined when it grows.
+  void reserve(std::size_t capacity) {
+    const std::size_t size = size_;
+    if (capacity > capacity_) resize(capacity);
+    size_ = size;
+  }
   void swap(Array& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);

@@ -17,14 +17,38 @@ std::string lower(std::string_view text) {
 }
 }  // namespace
 
-MethodKind parse_method(std::string_view name) {
-  const std::string word = lower(name);
-  if (word == "lores") return MethodKind::LoRes;
-  if (word == "hires") return MethodKind::HiRes;
-  throw base::Error("method \"" + std::string(name) + "\"", "is not known", "use LoRes or HiRes");
+const std::array<MethodTraits, 5>& all_methods() {
+  using Target = TargetSource;
+  static constexpr std::array<MethodTraits, 5> methods{{
+      {MethodKind::LoRes, "LoRes", Target::None, false, 3},
+      {MethodKind::HiRes, "HiRes", Target::None, false, 0},
+      {MethodKind::FovFluid, "FovFluid", Target::Gaze, false, 0},
+      {MethodKind::Ours, "Ours", Target::Saliency, false, 0},
+      {MethodKind::OursTsp, "Ours-TSp", Target::Saliency, true, 0},
+  }};
+  return methods;
 }
 
-std::string method_name(MethodKind method) { return method == MethodKind::LoRes ? "LoRes" : "HiRes"; }
+const MethodTraits& traits_of(MethodKind method) { return all_methods()[static_cast<std::size_t>(method)]; }
+
+MethodKind parse_method(std::string_view name) {
+  const std::string word = lower(name);
+  for (const auto& method : all_methods()) {
+    if (word == lower(method.name)) return method.kind;
+  }
+  throw base::Error("method \"" + std::string(name) + "\"", "is not known", "use " + method_names());
+}
+
+std::string method_name(MethodKind method) { return traits_of(method).name; }
+
+std::string method_names() {
+  std::string out;
+  for (const auto& method : all_methods()) {
+    if (!out.empty()) out += method.kind == all_methods().back().kind ? " or " : ", ";
+    out += method.name;
+  }
+  return out;
+}
 
 std::int64_t parse_n_star(std::string_view text) {
   std::int64_t value = 0;
@@ -42,7 +66,7 @@ std::int64_t parse_n_star(std::string_view text) {
 }
 
 std::int64_t particle_count(MethodKind method, std::int64_t n_star) {
-  return method == MethodKind::LoRes ? n_star : 8 * n_star;
+  return traits_of(method).start_level == 3 ? n_star : 8 * n_star;
 }
 
 }  // namespace sim

@@ -1,23 +1,53 @@
 #pragma once
 /// The methods under study, as data, and particle counts as users write them.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace sim {
 
-enum class MethodKind { LoRes, HiRes };
+enum class MethodKind { LoRes, HiRes, FovFluid, Ours, OursTsp };
 
-/// "LoRes", "HiRes" (any case); others are a base::Error naming the known ones.
+/// Levels that a particle's mass can have: 2^0 .. 2^3 times m_*.
+inline constexpr int most_levels = 4;
+
+/// What sets the level that a particle should have.
+enum class TargetSource {
+  None,     ///< all particles keep one level
+  Gaze,     ///< finest in the fovea, coarsest outside, a band between (FovFluid-like, after [42])
+  Saliency  ///< Eq. 1-9
+};
+
+/// A method as a choice of what runs; no method has code of its own.
+struct MethodTraits {
+  MethodKind kind{};
+  const char* name = "";
+  TargetSource target = TargetSource::None;
+  bool temporal = false;  ///< temporal acceleration (Alg. 3)
+  int start_level = 0;    ///< level of all particles at frame 0
+
+  /// Particles split and merge.
+  bool adaptive() const { return target != TargetSource::None; }
+};
+
+/// The five methods, in the order of the paper's tables.
+const std::array<MethodTraits, 5>& all_methods();
+const MethodTraits& traits_of(MethodKind method);
+
+/// "LoRes", "HiRes", "FovFluid", "Ours", "Ours-TSp" (any case); others are a base::Error naming the known
+/// ones.
 MethodKind parse_method(std::string_view name);
 std::string method_name(MethodKind method);
+/// "LoRes, HiRes, FovFluid, Ours or Ours-TSp", for help texts and errors.
+std::string method_names();
 
 /// "16k" = 16,384; "4096" = 4,096. The paper's n_*: particles when all are coarsest. 64 .. 4M, else
 /// base::Error.
 std::int64_t parse_n_star(std::string_view text);
 
-/// LoRes holds n_*, HiRes 8 n_* particles at every step.
+/// Particles at frame 0: n_* for LoRes, 8 n_* for the others. LoRes and HiRes hold them at every step.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

@@ -1,5 +1,8 @@
 #include "libsim/particles/particles.hpp"
 
+#include <algorithm>
+#include <type_traits>
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -27,60 +30,102 @@ struct Gather {
 };
 
 template <class T>
-void fit(Array<T>& column, bool wanted, std::size_t n) {
-  if (wanted) {
-    column.resize(n);
-  } else {
-    column = Array<T>();
-  }
-}
+struct GatherOne {
+  const int* order;
+  const T* in;
+  T* out;
+  SIM_FN void operator()(int i) const { out[i] = in[order[i]]; }
+};
 
 }  // namespace
 
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position",       "velocity",      "id",     "level",   "predicted",
-      "predicted_next", "velocity_next", "lambda", "density", "neighbours"};
+      "position", "velocity",   "id",     "level",   "predicted", "predicted_next", "velocity_next", "lambda",
+      "density",  "neighbours", "target", "history", "age"};
   return names[static_cast<std::size_t>(column)];
 }
 
-void Particles::allocate(ColumnSet set, int n) {
-  n_ = n;
+LevelSupports level_supports(double finest_support) {
+  LevelSupports out{};
+  for (int level = 0; level < LevelSupports::most; ++level) {
+    out.h[level] = static_cast<float>(std::cbrt(1 << level) * finest_support);
+  }
+  return out;
+}
+
+template <class Self, class Visit>
+void Particles::for_each_column(Self& self, Visit visit) {
+  visit(self.position, self.has(Column::Position));
+  visit(self.velocity, self.has(Column::Velocity));
+  visit(self.id, self.has(Column::Id));
+  visit(self.level, self.has(Column::Level));
+  visit(self.predicted, self.has(Column::Predicted));
+  visit(self.predicted_next, self.has(Column::PredictedNext));
+  visit(self.velocity_next, self.has(Column::VelocityNext));
+  visit(self.lambda, self.has(Column::Lambda));
+  visit(self.density, self.has(Column::Density));
+  visit(self.target, self.has(Column::Target));
+  visit(self.history, self.has(Column::History));
+  visit(self.age, self.has(Column::Age));
+}
+
+template <class Visit>
+void Particles::for_each_lasting_extra(Visit visit) {
+  if (has(Column::Target)) visit(target, spare_byte_);
+  if (has(Column::History)) visit(history, spare_byte_);
+  if (has(Column::Age)) visit(age, spare_byte_);
+}
+
+void Particles::allocate(ColumnSet set, int n, int capacity) {
   set_ = set;
-  const auto size = static_cast<std::size_t>(n);
-  const auto wanted = [&](Column column) { return set.test(static_cast<std::size_t>(column)); };
-  fit(position, wanted(Column::Position), size);
-  fit(velocity, wanted(Column::Velocity), size);
-  fit(id, wanted(Column::Id), size);
-  fit(level, wanted(Column::Level), size);
-  fit(predicted, wanted(Column::Predicted), size);
-  fit(predicted_next, wanted(Column::PredictedNext), size);
-  fit(velocity_next, wanted(Column::VelocityNext), size);
-  fit(lambda, wanted(Column::Lambda), size);
-  fit(density, wanted(Column::Density), size);
+  capacity_ = std::max(n, capacity);
+  for_each_column(*this, [&](auto& column, bool wanted) {
+    if (wanted) {
+      column.reserve(static_cast<std::size_t>(capacity_));
+    } else {
+      column = std::remove_reference_t<decltype(column)>();
+    }
+  });
+  resize(n);
+}
+
+void Particles::resize(int n) {
+  n_ = n;
+  for_each_column(*this, [&](auto& column, bool wanted) {
+    if (wanted) column.resize(static_cast<std::size_t>(n));
+  });
 }
 
 std::size_t Particles::bytes() const {
-  return position.bytes() + velocity.bytes() + predicted.bytes() + predicted_next.bytes() +
-         velocity_next.bytes() + id.bytes() + level.bytes() + lambda.bytes() + density.bytes() +
-         spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
+  std::size_t sum = spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() +
+                    spare_level_.bytes() + spare_byte_.bytes();
+  for_each_column(*this, [&](const auto& column, bool) { sum += column.bytes(); });
+  return sum;
 }
 
 void Particles::reorder(const Array<int>& order) {
-  const auto size = static_cast<std::size_t>(n_);
-  spare_a_.resize(size);
-  spare_b_.resize(size);
-  spare_c_.resize(size);
-  spare_id_.resize(size);
-  spare_level_.resize(size);
-  for_each("reorder", n_,
+  const int n = static_cast<int>(order.size());
+  const auto room = [&](auto& spare) {
+    spare.reserve(static_cast<std::size_t>(capacity_));
+    spare.resize(order.size());
+    return spare.data();
+  };
+  for_each("reorder", n,
            Gather{order.data(), position.data(), predicted.data(), velocity.data(), id.data(), level.data(),
-                  spare_a_.data(), spare_b_.data(), spare_c_.data(), spare_id_.data(), spare_level_.data()});
+                  room(spare_a_), room(spare_b_), room(spare_c_), room(spare_id_), room(spare_level_)});
   position.swap(spare_a_);
   predicted.swap(spare_b_);
   velocity.swap(spare_c_);
   id.swap(spare_id_);
   level.swap(spare_level_);
+  for_each_lasting_extra([&](auto& column, auto& spare) {
+    for_each("reorder", n,
+             GatherOne<std::remove_reference_t<decltype(*column.data())>>{order.data(), column.data(),
+                                                                          room(spare)});
+    column.swap(spare);
+  });
+  if (n != n_) resize(n);
 }
 
 }  // namespace sim::SIM_BACKEND

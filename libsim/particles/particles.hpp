@@ -21,6 +21,9 @@ enum class Column : unsigned {
   Lambda,         ///< float: change of the density constraint's multiplier in this projection, kg m2
   Density,        ///< float: rho / rho_0, walls included
   Neighbours,     ///< the combined neighbour list (neighbors/neighbour_list.hpp)
+  Target,         ///< uint8: level that the particle should have
+  History,        ///< uint8: targets of the last four frames, two bits each, the newest lowest
+  Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
   count
 };
 using ColumnSet = std::bitset<static_cast<std::size_t>(Column::count)>;
@@ -43,30 +46,51 @@ struct Guards {
   std::uint64_t wall_projected;
 };
 
+/// Support radius of each mass level, m: cbrt(2^level) h_* (Eq. 10).
+struct LevelSupports {
+  static constexpr int most = 4;
+  float h[most];
+};
+LevelSupports level_supports(double finest_support);
+
 /// n particles in the grid's order.
 class Particles {
  public:
-  /// Gives each column of the set room for n particles and frees the others.
-  void allocate(ColumnSet set, int n);
+  /// Gives each column of the set room for `capacity` particles (at least n), n of them in use, and frees the
+  /// others.
+  void allocate(ColumnSet set, int n, int capacity = 0);
   int size() const { return n_; }
+  int capacity() const { return capacity_; }
+  bool has(Column column) const { return set_.test(static_cast<std::size_t>(column)); }
+  /// Sets how many are in use, at most the capacity. Those that stay keep their values.
+  void resize(int n);
   /// Bytes held by all columns.
   std::size_t bytes() const;
 
   Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
   Array<int> id;
-  Array<std::uint8_t> level;
+  Array<std::uint8_t> level, target, history, age;
   Array<float> lambda, density;
 
-  /// Permutes the columns that outlive a substep: new[i] = old[order[i]].
+  /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes
+  /// the number of particles. A source may be named more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
  private:
+  /// Gives each column to visit(column, declared), in one fixed order.
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit visit);
+  /// Columns beyond position, predicted, velocity, id and level that outlive a substep: visit(column, spare).
+  template <class Visit>
+  void for_each_lasting_extra(Visit visit);
+
   int n_ = 0;
+  int capacity_ = 0;
   ColumnSet set_;
   // Targets of the permutation, swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
-  Array<std::uint8_t> spare_level_;
+  Array<std::uint8_t> spare_level_, spare_byte_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -10,8 +10,8 @@ Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_s
   for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
   Resolution out;
   out.finest_spacing_m = std::cbrt(volume / static_cast<double>(8 * n_star));
-  out.level = method == MethodKind::LoRes ? 3 : 0;
-  out.spacing_m = out.finest_spacing_m * (method == MethodKind::LoRes ? 2 : 1);
+  out.level = traits_of(method).start_level;
+  out.spacing_m = out.finest_spacing_m * std::cbrt(1 << out.level);
   return out;
 }
 

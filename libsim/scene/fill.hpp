@@ -11,8 +11,8 @@ namespace sim {
 /// Resolution that follows from a scene's fixed volume and n_*.
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
-  double spacing_m = 0;         ///< d of the method's particles: d_* for HiRes, 2 d_* for LoRes
-  int level = 0;                ///< 0 = finest; LoRes holds level 3 (mass 8 m_*)
+  double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for the others
+  int level = 0;                ///< their level: 3 (mass 8 m_*) for LoRes, 0 (m_*) for the others
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 

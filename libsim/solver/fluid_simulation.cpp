@@ -29,6 +29,16 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   return out;
 }
 
+Demand demand_of(const SimulationOptions& options, const SolverParameters& parameters) {
+  const MethodTraits& method = traits_of(options.method);
+  Demand out;
+  out.parameters = parameters;
+  out.levels = method.adaptive();
+  out.saliency = method.target == TargetSource::Saliency;
+  out.activation = method.temporal;
+  return out;
+}
+
 Walls walls_of(const Scene& scene, bool gate_closed) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
@@ -62,6 +72,28 @@ std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& o
   return out;
 }
 
+/// Refuses what the solver could not hold.
+void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive) {
+  for (const auto& particle : start) {
+    const std::string who = "start, particle " + std::to_string(particle.id);
+    if (particle.level < 0 || particle.level >= most_levels) {
+      throw base::Error(who, "has level " + std::to_string(particle.level), "use levels 0 to 3");
+    }
+    if (adaptive && (particle.id < 0 || particle.id >= capacity)) {
+      throw base::Error(who, "has an id outside 0 .. " + std::to_string(capacity - 1),
+                        "number the particles from 0");
+    }
+  }
+}
+
+/// The finest and the coarsest level of the particles; `level` twice when there are none.
+std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level) {
+  if (start.empty()) return {level, level};
+  const auto [least, most] = std::minmax_element(
+      start.begin(), start.end(), [](const auto& a, const auto& b) { return a.level < b.level; });
+  return {least->level, most->level};
+}
+
 struct PackForDrawing {
   const Vec4* position;
   Vec4* out;
@@ -73,6 +105,13 @@ class FluidSimulation final : public Simulation {
  public:
   FluidSimulation(const Scene& scene, const SimulationOptions& options)
       : scene_(scene), options_(options), resolution_(resolution_of(scene, options.method, options.n_star)) {
+    if (options.levels < 1 || options.levels > most_levels) {
+      throw base::Error(
+          "N = " + std::to_string(options.levels),
+          "is not a number of levels: a particle splits into at most 2^3 in one step, the corners "
+          "of a cube",
+          "use 1 to 4 levels");
+    }
     state_.parameters = solver_parameters(scene, options);
     state_.guards.resize(1);
     state_.guards.zero();
@@ -99,8 +138,11 @@ class FluidSimulation final : public Simulation {
     out.frame = frame_;
     out.time_s = frame_ * static_cast<double>(state_.parameters.dt) * state_.parameters.substeps;
     out.particles = particle_count();
-    out.particles_by_level.assign(static_cast<std::size_t>(resolution_.level) + 1, 0);
-    out.particles_by_level.back() = out.particles;
+    for (const std::uint8_t level : state_.particles.level.to_host()) {
+      if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
+      ++out.particles_by_level[level];
+      out.mass_units += std::int64_t{1} << level;
+    }
     out.density_error_mean = measured.density_error_mean;
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
@@ -111,6 +153,7 @@ class FluidSimulation final : public Simulation {
   }
 
   std::int64_t particle_count() const override { return state_.particles.size(); }
+  std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override { return state_.particles.bytes(); }
@@ -149,21 +192,33 @@ class FluidSimulation final : public Simulation {
     const auto& k = state_.parameters;
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
-           std::to_string(particle_count()) + " particles of level " + std::to_string(resolution_.level) +
-           ", " + std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
+           std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
+           std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
   }
 
  private:
+  std::string levels_in_words() const {
+    if (traits_of(options_.method).adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
+    return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
+  }
+
   void open(const std::vector<ParticleState>& start) {
     // Particles and their nine rows a cell are indexed with int.
     if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::rows_per_cell) {
       throw base::Error("particles", "are too many", "use a smaller --n-star");
     }
-    schedule_ = compile_schedule({state_.parameters, false});
+    const bool adaptive = traits_of(options_.method).adaptive();
+    const int capacity = static_cast<int>(
+        std::max<std::int64_t>(static_cast<std::int64_t>(start.size()), adaptive ? 8 * options_.n_star : 0));
+    check_start(start, capacity, adaptive);
+    schedule_ = compile_schedule(demand_of(options_, state_.parameters));
     auto& p = state_.particles;
-    p.allocate(schedule_.columns, static_cast<int>(start.size()));
-    const auto h = static_cast<float>(2 * resolution_.spacing_m);
-    state_.finest_support = h;
+    p.allocate(schedule_.columns, static_cast<int>(start.size()), capacity);
+    const auto [finest, coarsest] = levels_of(start, resolution_.level);
+    state_.one_level = !adaptive && finest == coarsest;
+    state_.supports = level_supports(2 * resolution_.finest_spacing_m);
+    state_.finest_support = state_.supports.h[0];
+    state_.lightest_support = state_.supports.h[adaptive ? 0 : finest];
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
@@ -172,6 +227,7 @@ class FluidSimulation final : public Simulation {
     std::vector<int> id;
     std::vector<std::uint8_t> level;
     for (const auto& particle : start) {
+      const float h = state_.supports.h[particle.level];
       position.push_back({particle.x_m, particle.y_m, particle.z_m, h});
       velocity.push_back({particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0});
       id.push_back(particle.id);
@@ -185,7 +241,11 @@ class FluidSimulation final : public Simulation {
   }
 
   void settle() {
-    const Schedule settling = compile_schedule({state_.parameters, true});
+    // Levels and activity wait until the water rests.
+    Demand demand;
+    demand.parameters = state_.parameters;
+    demand.settling = true;
+    const Schedule settling = compile_schedule(demand);
     state_.walls = walls_of(scene_, scene_.gate);
     for (int frame = 0; frame < scene_.settle_frames; ++frame) {
       run_frame(settling, state_);

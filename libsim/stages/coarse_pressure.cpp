@@ -113,12 +113,12 @@ void run(FluidState& state) {
   auto& p = state.particles;
   auto& coarse = state.coarse;
   density_stage().run(state);
-  coarse.fit(state.domain, state.parameters.coarse_edge * state.finest_support);
+  coarse.fit(state.domain, state.parameters.coarse_edge * state.lightest_support);
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),
            Gather{p.predicted.data(), p.density.data(), coarse.frame, grid.block, coarse.sums.data(),
-                  mass_of(state.finest_support, 1)});
+                  mass_of(state.lightest_support, 1)});
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);

@@ -37,10 +37,12 @@ struct FluidState {
   SolverParameters parameters;
   Walls walls{};
   Domain domain{};
-  float finest_support = 0;  ///< h of the lightest particles, m
-  Vec3 refuge{};             ///< where a particle goes whose place is lost
-  bool one_level = true;
-  int iteration = 0;  ///< projection within the substep
+  float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
+  float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
+  LevelSupports supports{};
+  Vec3 refuge{};          ///< where a particle goes whose place is lost
+  bool one_level = true;  ///< all particles have one level, for good
+  int iteration = 0;      ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;

@@ -12,7 +12,10 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the wanted outputs call for.
 struct Demand {
   SolverParameters parameters;
-  bool settling = false;  ///< the gate is closed and the water comes to rest
+  bool settling = false;    ///< the gate is closed and the water comes to rest
+  bool levels = false;      ///< particles split and merge
+  bool saliency = false;    ///< their targets follow saliency
+  bool activation = false;  ///< temporal acceleration chooses who is solved
 };
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };

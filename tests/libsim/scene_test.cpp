@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 
+#include "libsim/methods/preset.hpp"
 #include "libsim/scene/fill.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -52,7 +54,8 @@ TEST(Scene, SubstepsFollowTheRule) {
 TEST(Fill, HoldsExactCountsAndVolumeAtEveryResolution) {
   const auto scene = dam();
   for (const std::int64_t n_star : {512, 2048, 16384, 32768}) {
-    for (const auto method : {MethodKind::LoRes, MethodKind::HiRes}) {
+    for (const auto& traits : sim::all_methods()) {
+      const auto method = traits.kind;
       const auto points = sim::fill_positions(scene, method, n_star);
       ASSERT_EQ(static_cast<std::int64_t>(points.size()), sim::particle_count(method, n_star));
       double top = 0;
@@ -92,7 +95,34 @@ TEST(Method, CountsAreReadAsUsersWriteThem) {
     EXPECT_THROW(sim::parse_n_star(bad), base::Error) << bad;
   }
   EXPECT_EQ(sim::parse_method("hires"), MethodKind::HiRes);
-  EXPECT_THROW(sim::parse_method("Best"), base::Error);
+}
+
+TEST(Method, FiveAreKnownByNameInAnyCase) {
+  for (const auto& method : sim::all_methods()) {
+    EXPECT_EQ(sim::traits_of(method.kind).kind, method.kind);
+    std::string name = method.name;
+    for (char& c : name) c = static_cast<char>(std::toupper(c));
+    EXPECT_EQ(sim::parse_method(name), method.kind) << name;
+  }
+  EXPECT_EQ(sim::particle_count(MethodKind::LoRes, 64), 64);
+  EXPECT_EQ(sim::particle_count(MethodKind::OursTsp, 64), 512);
+  try {
+    sim::parse_method("Best");
+    FAIL() << "an unknown method was taken";
+  } catch (const base::Error& error) {
+    for (const auto& method : sim::all_methods()) EXPECT_THAT(error.what(), testing::HasSubstr(method.name));
+  }
+}
+
+TEST(Preset, TwoAreKnownAndDiffer) {
+  EXPECT_EQ(sim::parse_preset("Paper"), sim::Preset::Paper);
+  EXPECT_EQ(sim::parse_preset("tuned"), sim::Preset::Tuned);
+  EXPECT_THROW(sim::parse_preset("best"), base::Error);
+  const auto paper = sim::readings_of(sim::Preset::Paper);
+  const auto tuned = sim::readings_of(sim::Preset::Tuned);
+  EXPECT_EQ(paper.thickness, sim::ThicknessWeight::Max);
+  EXPECT_EQ(tuned.thickness, sim::ThicknessWeight::Min);
+  EXPECT_LT(tuned.split_share, paper.split_share);
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ FluidState column_of(int side, int layers, float spacing, float squeeze) {
   state.guards.zero();
   const float h = 2 * spacing;
   const float width = static_cast<float>(side) * spacing;
-  state.finest_support = h;
+  state.lightest_support = h;
   state.domain = {{0, 0, 0}, {width, 2 * static_cast<float>(layers) * spacing, width}};
   state.walls.planes[0] = {{1, 0, 0}, 0};
   state.walls.planes[1] = {{-1, 0, 0}, -width};
@@ -201,7 +201,7 @@ SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
 SIM_TEST(CoarsePressure, TakesNoParticlesAndParticlesOutsideTheDomain) {
   FluidState none;
   none.guards.resize(1);
-  none.finest_support = 0.2f;
+  none.lightest_support = 0.2f;
   none.domain = {{0, 0, 0}, {1, 1, 1}};
   none.particles.allocate(ColumnSet().set(), 0);
   neighbours_stage().run(none);

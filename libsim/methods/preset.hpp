@@ -1,0 +1,69 @@
+#pragma once
+/// Where the paper can be read in more than one way: one switch each, two presets. `paper` follows the
+/// paper's own equation wherever it is possible, with plain misprints mended; `tuned` takes the reading that
+/// measures better.
+
+#include <string>
+#include <string_view>
+
+namespace sim {
+
+enum class Preset { Paper, Tuned };
+
+/// "paper" or "tuned" (any case); others are a base::Error.
+Preset parse_preset(std::string_view name);
+std::string preset_name(Preset preset);
+
+/// Eq. 3: how acuity falls beyond the fovea.
+enum class AcuityFalloff { Hyperbolic, Smoothstep };
+/// Eq. 7: min(e^(d/2), 5) or the printed max.
+enum class ThicknessWeight { Min, Max };
+/// Eq. 9: from the 1st to the 99th percentile with a moving average, or from the least to the largest value.
+enum class Normalisation { Percentile, MinMax };
+
+/// Every switch. Units and readings: the equations they name.
+struct Readings {
+  // Eq. 1-9: saliency
+  double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature
+  AcuityFalloff falloff = AcuityFalloff::Hyperbolic;
+  double fovea_half_angle_deg = 7.5;
+  double image_plane_m = 1;  ///< z_Pi, Eq. 4
+  ThicknessWeight thickness = ThicknessWeight::Min;
+  bool hide_manifold_behind = false;  ///< Eq. 5: f_m of covered particles divided by gamma_t
+  /// Eq. 6: differences over this multiple of h: the paper's 2, or 1 (an eighth of the neighbours).
+  double gradient_reach = 1;
+  /// Eq. 6: differences times h_i, without unit; false leaves 1/m.
+  bool dimensionless = true;
+  /// Eq. 6: epsilon_v as a share of sqrt(g d_*), epsilon_rho as a share of rho_0; without this floor the
+  /// jitter of still water is salient.
+  double speed_floor = 0.1;
+  double density_floor = 1e-3;
+  Normalisation normalisation = Normalisation::Percentile;
+
+  // Algorithms 1 and 2: levels
+  /// Targets of neighbours differ by one level at most.
+  bool graded_targets = true;
+  /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for each split.
+  double split_offset[3] = {0.794, 1.09, 0.866};
+  /// At most this share of the particles splits in a frame, and no two within one spacing; 1 = no throttle.
+  double split_share = 0.05;
+  /// Partners of a merge must want the same level; false: both want a coarser one.
+  bool merge_same_target = false;
+  /// Farthest members from the merged particle's centre, in its radii.
+  double merge_reach = 1;
+  /// A merged particle keeps this share of the sum of radii from others of its level or coarser.
+  double merge_overlap = 0.8;
+  /// A merge may not leave a neighbour two levels finer.
+  bool merge_keeps_steps = true;
+
+  // Algorithm 3: temporal acceleration
+  /// Eq. 14: dV/dl over |V| + epsilon, without unit; false leaves m/s.
+  bool dimensionless_levels = true;
+  int longest_rest_frames = 3;  ///< frames that a particle may stay inactive in a row; 0 = no limit
+  /// Spray, particles at walls, fast ones and those just split or merged are never inactive.
+  bool keep_fragile_active = true;
+};
+
+Readings readings_of(Preset preset);
+
+}  // namespace sim
