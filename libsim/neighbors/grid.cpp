@@ -20,8 +20,8 @@ struct MakeKeys {
   SIM_FN void operator()(int i) const {
     const Vec4 p = predicted[i];
     const float edge = margin * p.w;
-    keys[i] = cell_key({level[i], cell_coordinate(p.x, edge, cell_limit_xz), cell_coordinate(p.y, edge, cell_limit_y),
-                        cell_coordinate(p.z, edge, cell_limit_xz)});
+    keys[i] = cell_key({level[i], cell_coordinate(p.x, edge, cell_limit_xz),
+                        cell_coordinate(p.y, edge, cell_limit_y), cell_coordinate(p.z, edge, cell_limit_xz)});
     order[i] = i;
   }
 };
@@ -104,21 +104,6 @@ struct OrderWithinCells {
   }
 };
 
-/// The first cell whose key is not less than `key`.
-SIM_FN int lower_bound(const std::uint64_t* keys, int count, std::uint64_t key) {
-  int first = 0;
-  while (count > 0) {
-    const int half = count / 2;
-    if (keys[first + half] < key) {
-      first += half + 1;
-      count -= half + 1;
-    } else {
-      count = half;
-    }
-  }
-  return first;
-}
-
 struct FindRows {
   const std::uint64_t* cell_keys;
   const int* cell_begin;
@@ -151,13 +136,18 @@ void Grid::find_cells(int n) {
   for_each("mark cells", n, MarkHeads{keys_.data(), heads_.data()});
   scanner_.inclusive_sum(heads_, cell_of_);
   for_each("list cells", n,
-           ListCells{keys_.data(), heads_.data(), cell_of_.data(), cell_begin_.data(), cell_keys_.data(), cell_count_.data(), n});
+           ListCells{keys_.data(), heads_.data(), cell_of_.data(), cell_begin_.data(), cell_keys_.data(),
+                     cell_count_.data(), n});
 }
 
-void Grid::build(Particles& particles, float margin) {
+void Grid::sort(Particles& particles, float margin) {
   const int n = particles.size();
-  if (n == 0) return;
   const auto size = static_cast<std::size_t>(n);
+  // Once for all sizes to come.
+  const auto room = static_cast<std::size_t>(particles.capacity());
+  for (auto* column : {&keys_, &cell_keys_}) column->reserve(room);
+  for (auto* column : {&order_, &heads_, &cell_of_}) column->reserve(room);
+  cell_begin_.reserve(room + 1);
   keys_.resize(size);
   order_.resize(size);
   for_each("cell keys", n,
@@ -167,8 +157,23 @@ void Grid::build(Particles& particles, float margin) {
   for_each("order within cells", n,
            OrderWithinCells{cell_begin_.data(), cell_count_.data(), particles.id.data(), order_.data()});
   particles.reorder(order_);
-  rows_.resize(size * rows_per_cell);
+}
+
+void Grid::build(Particles& particles, float margin) {
+  const int n = particles.size();
+  if (n == 0) return;
+  sort(particles, margin);
+  rows_.reserve(static_cast<std::size_t>(particles.capacity()) * rows_per_cell);
+  rows_.resize(static_cast<std::size_t>(n) * rows_per_cell);
   for_each("find rows", n, FindRows{cell_keys_.data(), cell_begin_.data(), cell_count_.data(), rows_.data()});
+}
+
+void Grid::build(Particles& particles, float margin, const LevelSupports& supports) {
+  const int n = particles.size();
+  if (n == 0) return;
+  sort(particles, margin);
+  level_rows_.find({cell_keys_.data(), cell_begin_.data(), cell_count_.data()}, n, particles.capacity(),
+                   supports, margin);
 }
 
 int Grid::count_cells() const { return cell_count_.size() ? cell_count_.to_host()[0] : 0; }

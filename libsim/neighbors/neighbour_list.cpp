@@ -6,10 +6,32 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// The runs of particles that can hold neighbours: nine rows of three cells,
+struct OneLevelRows {
+  const IndexRange* rows;
+  template <class Visit>
+  SIM_FN void operator()(int cell, Visit visit) const {
+    for (int row = 0; row < Grid::rows_per_cell; ++row) visit(rows[cell * Grid::rows_per_cell + row]);
+  }
+};
+
+/// or those of every level.
+struct MixedRows {
+  LevelRowsView rows;
+  template <class Visit>
+  SIM_FN void operator()(int cell, Visit visit) const {
+    for (int level = 0; level < LevelSupports::most; ++level) {
+      const int count = rows.size(cell, level);
+      for (int row = 0; row < count; ++row) visit(rows(cell, level, row));
+    }
+  }
+};
+
+template <class Rows>
 struct ListNeighbours {
   const Vec4* predicted;
   const int* cell_of;
-  const IndexRange* rows;
+  Rows rows;
   Neighbours list;
   int* entry;
   int* count;
@@ -17,19 +39,26 @@ struct ListNeighbours {
   std::uint64_t* dropped;
   float margin;
 
-  SIM_FN void operator()(int i) const {
-    const Vec4 self = predicted[i];
-    int found = 0;
-    for (int row = 0; row < Grid::rows_per_cell; ++row) {
-      const IndexRange range = rows[cell_of[i] * Grid::rows_per_cell + row];
+  /// Takes the near ones of a run.
+  struct Take {
+    const ListNeighbours& task;
+    int i;
+    Vec4 self;
+    int& found;
+    SIM_FN void operator()(IndexRange range) const {
       for (int j = range.begin; j < range.end; ++j) {
-        const Vec4 other = predicted[j];
+        const Vec4 other = task.predicted[j];
         const Vec3 offset = xyz(self) - xyz(other);
-        const float radius = margin * 0.5f * (self.w + other.w);
+        const float radius = task.margin * 0.5f * (self.w + other.w);
         const bool near = dot(offset, offset) < radius * radius && j != i;
-        append(i, found, j, near);
+        task.append(i, found, j, near);
       }
     }
+  };
+
+  SIM_FN void operator()(int i) const {
+    int found = 0;
+    rows(cell_of[i], Take{*this, i, predicted[i], found});
     // The last slot only takes what is not kept.
     const int kept = list.capacity - 1;
     if (found > kept) {
@@ -54,18 +83,34 @@ struct ListNeighbours {
 
 }  // namespace
 
-void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+template <class Rows>
+void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows, std::uint64_t* dropped) {
   const auto n = static_cast<std::size_t>(particles.size());
-  const std::size_t groups = (n + list_interleave - 1) / list_interleave;
+  const auto room = static_cast<std::size_t>(particles.capacity());
+  const auto entries = [&](std::size_t size) {
+    const std::size_t groups = (size + list_interleave - 1) / list_interleave;
+    return groups * list_interleave * static_cast<std::size_t>(capacity_);
+  };
+  count_.reserve(room);
+  entry_.reserve(entries(room));
   count_.resize(n);
-  entry_.resize(groups * list_interleave * static_cast<std::size_t>(capacity_));
+  entry_.resize(entries(n));
   if (longest_.size() == 0) {
     longest_.resize(1);
     longest_.zero();
   }
   for_each("list neighbours", particles.size(),
-           ListNeighbours{particles.predicted.data(), grid.cell_of_particle(), grid.rows(), view(), entry_.data(), count_.data(),
-                          longest_.data(), dropped, margin});
+           ListNeighbours<Rows>{particles.predicted.data(), grid.cell_of_particle(), rows, view(),
+                                entry_.data(), count_.data(), longest_.data(), dropped, margin});
+}
+
+void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+  list(particles, grid, OneLevelRows{grid.rows()}, dropped);
+}
+
+void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+  capacity_ = std::max(capacity_, mixed_capacity);
+  list(particles, grid, MixedRows{grid.level_rows()}, dropped);
 }
 
 void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {

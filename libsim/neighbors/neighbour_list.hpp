@@ -1,5 +1,6 @@
 #pragma once
-/// One list of neighbours a substep, with a margin, that all passes of the substep read; iterations never walk the grid.
+/// One list of neighbours a substep, with a margin, that all passes of the substep read; iterations never
+/// walk the grid.
 
 #include "libsim/neighbors/grid.hpp"
 
@@ -21,7 +22,9 @@ struct Neighbours {
   SIM_FN std::size_t place(int i, int k) const {
     const int group = i / list_interleave;
     const int lane = i % list_interleave;
-    return (static_cast<std::size_t>(group) * static_cast<std::size_t>(capacity) + static_cast<std::size_t>(k)) * list_interleave +
+    return (static_cast<std::size_t>(group) * static_cast<std::size_t>(capacity) +
+            static_cast<std::size_t>(k)) *
+               list_interleave +
            static_cast<std::size_t>(lane);
   }
   SIM_FN int operator()(int i, int k) const { return entry[place(i, k)]; }
@@ -32,19 +35,28 @@ class NeighbourList {
   /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
   static constexpr float margin = 1.1f;
 
-  /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond the capacity are
-  /// left out and counted in `dropped`.
+  /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond
+  /// the capacity are left out and counted in `dropped`.
   void build(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  /// The same for mixed levels.
+  void build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
 
-  /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries. True when it grew.
+  /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries.
+  /// True when it grew.
   bool grow();
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
 
  private:
+  /// A coarse particle among the finest has 113 within the support, some 150 within the margin.
+  static constexpr int mixed_capacity = 192;
+
+  template <class Rows>
+  void list(const Particles& particles, const Grid& grid, Rows rows, std::uint64_t* dropped);
+
   int capacity_ = 80;
   Array<int> count_, entry_, longest_;
 };

@@ -64,8 +64,14 @@ Stage neighbours_stage() {
           columns(Column::Neighbours),
           [](const Demand&) -> std::string { return "the density constraint needs neighbours"; },
           [](FluidState& state) {
-            state.grid.build(state.particles, NeighbourList::margin);
-            state.neighbours.build(state.particles, state.grid, &state.guard()->neighbours_dropped);
+            auto* dropped = &state.guard()->neighbours_dropped;
+            if (state.one_level) {
+              state.grid.build(state.particles, NeighbourList::margin);
+              state.neighbours.build(state.particles, state.grid, dropped);
+            } else {
+              state.grid.build(state.particles, NeighbourList::margin, state.supports);
+              state.neighbours.build_mixed(state.particles, state.grid, dropped);
+            }
           }};
 }
 

@@ -19,7 +19,15 @@ struct Listed {
   std::size_t entries = 0;
 };
 
-Listed list(const std::vector<Vec4>& points, bool reversed = false) {
+constexpr float finest = 0.3f;
+
+/// The level of a support radius among those of `finest`.
+std::uint8_t level_of(float h) {
+  return static_cast<std::uint8_t>(std::lround(3 * std::log2(static_cast<double>(h) / finest)));
+}
+
+/// Lists as one level, or as mixed levels of `finest`.
+Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed = false) {
   const int n = static_cast<int>(points.size());
   Particles particles;
   particles.allocate(columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level), n);
@@ -34,15 +42,22 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false) {
   particles.predicted.from_host(at);
   particles.id.from_host(id);
   particles.velocity.zero();
-  particles.level.zero();
+  std::vector<std::uint8_t> level(points.size(), 0);
+  if (mixed) std::transform(at.begin(), at.end(), level.begin(), [](Vec4 p) { return level_of(p.w); });
+  particles.level.from_host(level);
   Grid grid;
   NeighbourList neighbours;
   Array<std::uint64_t> dropped(1);
   dropped.zero();
   do {
     dropped.zero();
-    grid.build(particles, NeighbourList::margin);
-    neighbours.build(particles, grid, dropped.data());
+    if (mixed) {
+      grid.build(particles, NeighbourList::margin, level_supports(static_cast<double>(finest)));
+      neighbours.build_mixed(particles, grid, dropped.data());
+    } else {
+      grid.build(particles, NeighbourList::margin);
+      neighbours.build(particles, grid, dropped.data());
+    }
   } while (neighbours.grow());
 
   Listed out;
@@ -79,14 +94,14 @@ std::vector<std::set<int>> brute_force(const std::vector<Vec4>& points) {
   return out;
 }
 
-void expect_brute_force(const std::vector<Vec4>& points) {
-  const Listed listed = list(points);
+void expect_brute_force(const std::vector<Vec4>& points, bool mixed = false) {
+  const Listed listed = list(points, false, mixed);
   EXPECT_EQ(listed.dropped, 0u);
   std::size_t distinct = 0;
   for (const auto& set : listed.sets) distinct += set.size();
   EXPECT_EQ(listed.entries, distinct) << "an entry is listed twice";
   EXPECT_EQ(listed.sets, brute_force(points));
-  EXPECT_EQ(list(points, true).id, listed.id) << "the order depends on the order before";
+  EXPECT_EQ(list(points, true, mixed).id, listed.id) << "the order depends on the order before";
 }
 
 std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
@@ -99,6 +114,55 @@ std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
 
 SIM_TEST(NeighbourList, EqualsBruteForceOnRandomPoints) {
   for (const float size : {0.2f, 1.0f, 3.0f}) expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
+}
+
+/// Gives each point one of `levels`, by turns.
+std::vector<Vec4> mixed_points(std::vector<Vec4> points, const std::vector<int>& levels) {
+  const auto supports = level_supports(static_cast<double>(finest));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].w = supports.h[levels[i % levels.size()]];
+  return points;
+}
+
+SIM_TEST(MixedNeighbourList, EqualsBruteForceOnRandomPoints) {
+  for (const auto& levels :
+       std::vector<std::vector<int>>{{0, 1, 2, 3}, {0, 3}, {1, 2}, {3, 3, 3, 0}, {0}, {3}, {2, 0, 0, 0, 0, 0, 0}}) {
+    for (const float size : {0.3f, 1.2f, 4.0f}) {
+      expect_brute_force(mixed_points(random_points(size < 1 ? 300 : 1500, size, finest, 7), levels), true);
+    }
+  }
+}
+
+SIM_TEST(MixedNeighbourList, EqualsBruteForceOnCellPlanes) {
+  // Lattice points on the planes of the finest cells and of those twice as wide.
+  const float edge = NeighbourList::margin * finest;
+  std::vector<Vec4> points;
+  for (int i = 0; i < 1000; ++i) {
+    points.push_back({static_cast<float>(i % 10 - 5) * edge, static_cast<float>(i / 10 % 10 - 5) * edge,
+                      static_cast<float>(i / 100 - 5) * edge, finest});
+  }
+  expect_brute_force(mixed_points(points, {0, 3, 0, 1, 2}), true);
+}
+
+SIM_TEST(MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
+  expect_brute_force(mixed_points(random_points(300, 0.05f, finest, 3), {0, 1, 2, 3}), true);
+  std::vector<Vec4> points;
+  for (const float far : {-1e9f, -6.9e5f, -6e5f, -3.4e5f, 0.0f, 3.4e5f, 6e5f, 6.9e5f, 1e9f}) {
+    for (int i = 0; i < 12; ++i) points.push_back({far, far > 0 ? far : 0.1f * static_cast<float>(i), -far, finest});
+  }
+  expect_brute_force(mixed_points(points, {0, 1, 2, 3}), true);
+  // Only fine particles beyond the range of their own grid but within that of a coarse one.
+  expect_brute_force(mixed_points({{1.0e6f, 0, 0, 0}, {1.0e6f, 0.2f, 0, 0}, {1.0e6f, 0.4f, 0, 0}}, {3, 0}), true);
+}
+
+SIM_TEST(MixedNeighbourList, TakesNoneOneAndThin) {
+  expect_brute_force({}, true);
+  expect_brute_force(mixed_points({{1, 2, 3, 0}}, {2}), true);
+  // A coarse particle over a line of fine ones that crosses many cells.
+  std::vector<Vec4> points;
+  for (int i = 0; i < 200; ++i) points.push_back({0.01f * static_cast<float>(i), 0, 0, finest});
+  auto mixed = mixed_points(points, {0});
+  mixed.push_back({1, 0.3f, 0.1f, level_supports(static_cast<double>(finest)).h[3]});
+  expect_brute_force(mixed, true);
 }
 
 SIM_TEST(NeighbourList, EqualsBruteForceOnCellPlanes) {
