@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "stats/image/psnr.hpp"
+#include "stats/image/ssim.hpp"
+
+namespace {
+
+struct Image {
+  int width, height;
+  std::vector<std::uint8_t> rgb;
+  stats::ImageView view() const { return {width, height, rgb}; }
+};
+
+Image flat(int width, int height, int value) {
+  const auto bytes = static_cast<std::size_t>(3 * width * height);
+  return {width, height, std::vector<std::uint8_t>(bytes, static_cast<std::uint8_t>(value))};
+}
+
+/// Whole numbers from a 32-bit congruence (Numerical Recipes), the same in every language.
+Image noise(int width, int height, std::uint32_t seed) {
+  Image out = flat(width, height, 0);
+  for (auto& byte : out.rgb) {
+    seed = seed * 1664525u + 1013904223u;
+    byte = static_cast<std::uint8_t>(seed >> 24);
+  }
+  return out;
+}
+
+/// A slope with noise of +-16 on it.
+Image rough(const Image& noise_image) {
+  Image out = noise_image;
+  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
+    const int x = static_cast<int>(i / 3) % out.width;
+    const int y = static_cast<int>(i / 3) / out.width;
+    out.rgb[i] = static_cast<std::uint8_t>(40 + 2 * x + y + out.rgb[i] / 8);
+  }
+  return out;
+}
+
+TEST(Psnr, KnownOffsets) {
+  const Image a = flat(16, 9, 100);
+  EXPECT_NEAR(stats::psnr_db(a.view(), flat(16, 9, 101).view()).value, 48.1308, 5e-5);
+  EXPECT_NEAR(stats::psnr_db(a.view(), flat(16, 9, 90).view()).value, 28.1308, 5e-5);
+  EXPECT_EQ(stats::psnr_db(flat(16, 9, 0).view(), flat(16, 9, 255).view()).value, 0);
+  EXPECT_EQ(stats::psnr_db(a.view(), a.view()).value, std::numeric_limits<double>::infinity());
+}
+
+TEST(Psnr, TakesTheThreeChannelsTogether) {
+  const Image a = flat(4, 4, 100);
+  Image b = a;
+  for (std::size_t i = 0; i < b.rgb.size(); i += 3) b.rgb[i] = 103;  // red alone by 3: MSE 9 / 3
+  EXPECT_DOUBLE_EQ(stats::mean_squared_error(a.view(), b.view()).value, 3);
+}
+
+TEST(Psnr, SeesTheMaskOnly) {
+  const Image a = flat(8, 8, 100);
+  Image b = a;
+  std::vector<std::uint8_t> mask(64, 0);
+  for (std::size_t i = 0; i < 16; ++i) mask[i] = 255;
+  for (std::size_t c = 0; c < 24; ++c) b.rgb[c] = 110;  // the first 8 pixels, half of the mask
+  b.rgb[3 * 63] = 0;                                    // outside of it
+  const auto masked = stats::mean_squared_error(a.view(), b.view(), mask);
+  EXPECT_EQ(masked.pixels, 16u);
+  EXPECT_DOUBLE_EQ(masked.value, 50);
+  const std::vector<std::uint8_t> none(64, 0);
+  EXPECT_TRUE(std::isnan(stats::psnr_db(a.view(), b.view(), none).value));
+  EXPECT_EQ(stats::psnr_db(a.view(), b.view(), none).pixels, 0u);
+}
+
+TEST(Psnr, RefusesPicturesThatDoNotFit) {
+  const Image a = flat(8, 8, 1);
+  EXPECT_THROW(stats::psnr_db(a.view(), flat(8, 9, 1).view()), std::invalid_argument);
+  EXPECT_THROW(stats::psnr_db(a.view(), a.view(), std::vector<std::uint8_t>(63, 1)), std::invalid_argument);
+  EXPECT_THROW(stats::psnr_db({8, 8, std::span(a.rgb).first(12)}, a.view()), std::invalid_argument);
+  EXPECT_THROW(stats::psnr_db({0, 0, {}}, {0, 0, {}}), std::invalid_argument);
+}
+
+TEST(Ssim, ConstantsHaveTheClosedForm) {
+  const auto map = stats::ssim_map(flat(20, 15, 100).view(), flat(20, 15, 110).view());
+  EXPECT_EQ(map.width, 10);
+  EXPECT_EQ(map.height, 5);
+  const double c1 = 2.55 * 2.55;
+  EXPECT_NEAR(map.mean().value, (2 * 100 * 110 + c1) / (100 * 100 + 110 * 110 + c1), 1e-9);
+  EXPECT_NEAR(map.mean().value, 0.995476, 5e-7);
+}
+
+TEST(Ssim, IsOneForEqualAndSymmetric) {
+  const Image a = noise(40, 30, 1);
+  const Image b = rough(noise(40, 30, 2));
+  EXPECT_NEAR(stats::ssim_map(a.view(), a.view()).mean().value, 1, 1e-9);
+  const double ab = stats::ssim_map(a.view(), b.view()).mean().value;
+  EXPECT_DOUBLE_EQ(ab, stats::ssim_map(b.view(), a.view()).mean().value);
+  EXPECT_LT(ab, 0.5);
+}
+
+/// One index by the definition: two-dimensional weights, variances around the mean.
+double ssim_at(const Image& a, const Image& b, int cx, int cy) {
+  const auto luma = [](const Image& image, int x, int y) {
+    const std::uint8_t* p = image.rgb.data() + 3 * (y * image.width + x);
+    return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
+  };
+  double total = 0, ma = 0, mb = 0, va = 0, vb = 0, cov = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int dy = -5; dy <= 5; ++dy) {
+      for (int dx = -5; dx <= 5; ++dx) {
+        const double w = std::exp(-(dx * dx + dy * dy) / 4.5);
+        const double x = luma(a, cx + dx, cy + dy);
+        const double y = luma(b, cx + dx, cy + dy);
+        if (pass == 0) {
+          total += w;
+          ma += w * x;
+          mb += w * y;
+        } else {
+          va += w / total * (x - ma) * (x - ma);
+          vb += w / total * (y - mb) * (y - mb);
+          cov += w / total * (x - ma) * (y - mb);
+        }
+      }
+    }
+    if (pass == 0) {
+      ma /= total;
+      mb /= total;
+    }
+  }
+  const double c1 = 2.55 * 2.55;
+  const double c2 = 7.65 * 7.65;
+  const double luminance = (2 * ma * mb + c1) / (ma * ma + mb * mb + c1);
+  const double contrast = (2 * std::sqrt(va * vb) + c2) / (va + vb + c2);
+  const double structure = (cov + c2 / 2) / (std::sqrt(va * vb) + c2 / 2);
+  return luminance * contrast * structure;
+}
+
+TEST(Ssim, EqualsItsDefinitionAtEveryPixel) {
+  const Image a = rough(noise(31, 24, 3));
+  const Image b = rough(noise(31, 24, 4));
+  const auto map = stats::ssim_map(a.view(), b.view());
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * map.width + x);
+      ASSERT_NEAR(map.index[i], ssim_at(a, b, x + 5, y + 5), 1e-9) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(Ssim, MasksTheMapAndNotThePictures) {
+  const Image a = rough(noise(30, 30, 5));
+  const Image b = rough(noise(30, 30, 6));
+  const auto map = stats::ssim_map(a.view(), b.view());
+  std::vector<std::uint8_t> mask(900, 0);
+  mask[12 * 30 + 17] = 1;
+  mask[3 * 30 + 3] = 1;  // in the border: no index
+  const auto score = map.mean(mask);
+  EXPECT_EQ(score.pixels, 1u);
+  EXPECT_DOUBLE_EQ(score.value, map.index[(12 - 5) * 20 + 17 - 5]);
+  EXPECT_TRUE(std::isnan(map.mean(std::vector<std::uint8_t>(900, 0)).value));
+  EXPECT_THROW(map.mean(std::vector<std::uint8_t>(400, 1)), std::invalid_argument);
+  EXPECT_THROW(stats::ssim_map(flat(10, 11, 1).view(), flat(10, 11, 1).view()), std::invalid_argument);
+}
+
+}  // namespace
