@@ -49,6 +49,8 @@ struct SimulationOptions {
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
   std::optional<std::vector<ParticleState>> start;
+  /// Frames that lie behind the start: nozzles go on from there. >= 0.
+  int start_frame = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
   /// Called after each settling frame with (done, total).
@@ -71,6 +73,7 @@ struct GuardCounts {
   std::uint64_t not_finite = 0;          ///< particles whose NaN or infinity was quarantined
   std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back inside a wall
+  std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles
 };
 
 /// State of the fluid after a frame.
@@ -84,6 +87,7 @@ struct FrameReport {
   double density_max = 0;                        ///< max of rho / rho_0
   double neighbours_mean = 0;                    ///< without self, within h
   double speed_max_m_s = 0;
+  std::int64_t poured = 0;  ///< by nozzles since the simulation was made, in units of m_*
   GuardCounts guards;
 };
 
@@ -110,7 +114,7 @@ class Simulation {
   virtual bool copy_to_gl(unsigned buffer) = 0;
   /// Waits for all launched work.
   virtual void synchronize() = 0;
-  /// Bytes of memory that particles hold.
+  /// Bytes of memory that particles and their choice for the nozzles hold.
   virtual std::size_t particle_bytes() const = 0;
   /// The schedule in words: each pass with why it is there, each known stage with why it is not.
   virtual std::string explain() const = 0;

@@ -137,7 +137,8 @@ nlohmann::json run_frames(const FrameOptions& options) {
                           {"coincident_pairs", report.guards.coincident_pairs},
                           {"not_finite", report.guards.not_finite},
                           {"neighbours_dropped", report.guards.neighbours_dropped},
-                          {"wall_projected", report.guards.wall_projected}}},
+                          {"wall_projected", report.guards.wall_projected},
+                          {"nozzle_waited", report.guards.nozzle_waited}}},
                         {"schedule", fluid->explain()}};
   if (pictures.timer) {
     result.update(pictures.timer->figures());

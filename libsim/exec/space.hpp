@@ -88,7 +88,7 @@ class Array {
   std::size_t capacity_ = 0;
 };
 
-/// Sorts `order` (a permutation of 0..n-1, given as iota) by keys[order], stably. Keys come back sorted.
+/// Sorts the pairs (keys[i], order[i]) by key, stably; `order` is any payload, often 0..n-1.
 class Sorter {
  public:
   void sort(Array<std::uint64_t>& keys, Array<int>& order);

@@ -56,6 +56,42 @@ void read_water(const base::TomlTable& table, Scene& scene) {
   scene.settle_frames = static_cast<int>(table.integer("settle_frames", {0, 10'000}));
 }
 
+/// The mouth must lie within the walls, below the drawn rim and above the floor.
+void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene& scene) {
+  for (const std::size_t k : {0u, 2u}) {
+    const double at = nozzle.position_m[k];
+    if (at < 0 || at > scene.tank_size_m[k])
+      table.fail("position_m", "lies outside the tank", "keep the nozzle within [0, tank.size_m]");
+    if (std::min(at, scene.tank_size_m[k] - at) < nozzle.diameter_m / 2)
+      table.fail("position_m", "puts a part of the mouth inside a wall",
+                 "keep the centre at least half a diameter away from the walls");
+  }
+  if (nozzle.position_m[1] <= 0 || nozzle.position_m[1] > scene.tank_size_m[1])
+    table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
+}
+
+void read_nozzles(const base::TomlTable& root, Scene& scene) {
+  for (const auto& table : root.tables("nozzle")) {
+    Nozzle nozzle;
+    nozzle.diameter_m = table.number("diameter_m", {1e-3, farthest_m});
+    nozzle.position_m = vector(table, "position_m");
+    nozzle.speed_m_s = table.number("speed_m_s", {1e-2, 1000});
+    nozzle.on_frames = static_cast<int>(table.integer("on_frames", {1, 1e6}));
+    nozzle.off_frames = static_cast<int>(table.integer("off_frames", {0, 1e6}));
+    check_place(table, nozzle, scene);
+    if (nozzle.speed_m_s > scene.v_ref_m_s)
+      table.fail("speed_m_s", "is faster than time.v_ref_m_s, from which the substeps follow",
+                 "raise time.v_ref_m_s or slow the nozzle down");
+    scene.nozzles.push_back(nozzle);
+  }
+  if (scene.nozzles.empty()) return;
+  const auto recirculation = root.table("recirculation");
+  scene.recirculation_corner_m = recirculation.number("corner_m", {1e-2, farthest_m});
+  if (2 * scene.recirculation_corner_m > std::min(scene.tank_size_m[0], scene.tank_size_m[2]))
+    recirculation.fail("corner_m", "makes the corner columns overlap",
+                       "use at most half of the tank's width");
+}
+
 }  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& name) {
@@ -80,6 +116,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   scene.min_substeps = static_cast<int>(time.integer("min_substeps", {1, 64}));
   scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
 
+  read_nozzles(root, scene);
   scene.view = camera(root.table("view"));
   scene.overview = root.has("overview") ? camera(root.table("overview")) : overview_of(scene.view);
   for (const auto& key : root.tables("gaze")) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libsim/scene/nozzle.hpp"
+
 namespace sim {
 
 using Vec3d = std::array<double, 3>;
@@ -46,12 +48,16 @@ struct Scene {
   int min_substeps = 2;
   std::vector<int> checkpoints;
   std::vector<GazeKey> gaze;
+  std::vector<Nozzle> nozzles;
+  /// Nozzles pour what lies lowest in the four corner columns of this edge; 0 without nozzles.
+  double recirculation_corner_m = 0;
   Camera view;         ///< the participant's
   Camera overview;     ///< for figures
   std::string sha256;  ///< of the file's text
 };
 
-/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water outside the tank.
+/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water or nozzle
+/// outside the tank.
 Scene parse_scene(std::string_view text, const std::string& name);
 Scene read_scene(const std::filesystem::path& path);
 

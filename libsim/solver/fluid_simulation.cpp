@@ -29,10 +29,11 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   return out;
 }
 
-Demand demand_of(const SimulationOptions& options, const SolverParameters& parameters) {
+Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters) {
   const MethodTraits& method = traits_of(options.method);
   Demand out;
   out.parameters = parameters;
+  out.nozzles = !scene.nozzles.empty();
   out.levels = method.adaptive();
   out.saliency = method.target == TargetSource::Saliency;
   out.activation = method.temporal;
@@ -104,7 +105,10 @@ struct PackForDrawing {
 class FluidSimulation final : public Simulation {
  public:
   FluidSimulation(const Scene& scene, const SimulationOptions& options)
-      : scene_(scene), options_(options), resolution_(resolution_of(scene, options.method, options.n_star)) {
+      : scene_(scene),
+        options_(options),
+        resolution_(resolution_of(scene, options.method, options.n_star)),
+        frame_(options.start_frame) {
     if (options.levels < 1 || options.levels > most_levels) {
       throw base::Error(
           "N = " + std::to_string(options.levels),
@@ -113,6 +117,7 @@ class FluidSimulation final : public Simulation {
           "use 1 to 4 levels");
     }
     state_.parameters = solver_parameters(scene, options);
+    set_jets();
     state_.guards.resize(1);
     state_.guards.zero();
     state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
@@ -126,6 +131,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void step_frame() override {
+    state_.jets.frame = frame_;
     run_frame(schedule_, state_);
     state_.neighbours.grow();
     ++frame_;
@@ -147,8 +153,9 @@ class FluidSimulation final : public Simulation {
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
     out.speed_max_m_s = measured.speed_max_m_s;
-    out.guards = {met.speed_limited, met.coincident_pairs, met.not_finite, met.neighbours_dropped,
-                  met.wall_projected};
+    out.guards = {met.speed_limited,      met.coincident_pairs, met.not_finite,
+                  met.neighbours_dropped, met.wall_projected,   state_.jets.waited};
+    out.poured = (static_cast<std::int64_t>(state_.jets.poured)) << resolution_.level;
     return out;
   }
 
@@ -156,7 +163,9 @@ class FluidSimulation final : public Simulation {
   std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }
   void synchronize() override { SIM_BACKEND::synchronize(); }
-  std::size_t particle_bytes() const override { return state_.particles.bytes(); }
+  std::size_t particle_bytes() const override {
+    return state_.particles.bytes() + state_.jets.columns.bytes();
+  }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
     out.resize(static_cast<std::size_t>(state_.particles.size()));
@@ -211,7 +220,7 @@ class FluidSimulation final : public Simulation {
     const int capacity = static_cast<int>(
         std::max<std::int64_t>(static_cast<std::int64_t>(start.size()), adaptive ? 8 * options_.n_star : 0));
     check_start(start, capacity, adaptive);
-    schedule_ = compile_schedule(demand_of(options_, state_.parameters));
+    schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
     auto& p = state_.particles;
     p.allocate(schedule_.columns, static_cast<int>(start.size()), capacity);
     const auto [finest, coarsest] = levels_of(start, resolution_.level);
@@ -240,6 +249,16 @@ class FluidSimulation final : public Simulation {
     state_.walls = walls_of(scene_, false);
   }
 
+  void set_jets() {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    auto& jets = state_.jets;
+    jets.nozzles = scene_.nozzles;
+    jets.spacing_m = resolution_.spacing_m;
+    jets.frame_dt_s = options_.frame_dt_s > 0 ? options_.frame_dt_s : scene_.frame_dt_s;
+    jets.corners = {
+        {0, 0, 0}, {f(scene_.tank_size_m[0]), 0, f(scene_.tank_size_m[2])}, f(scene_.recirculation_corner_m)};
+  }
+
   void settle() {
     // Levels and activity wait until the water rests.
     Demand demand;
@@ -263,7 +282,7 @@ class FluidSimulation final : public Simulation {
   FluidState state_;
   Schedule schedule_;
   GlSharing gl_;
-  int frame_ = 0;
+  int frame_;
 };
 
 }  // namespace

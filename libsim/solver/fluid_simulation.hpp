@@ -13,7 +13,7 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// What the method calls for while it runs.
-Demand demand_of(const SimulationOptions& options, const SolverParameters& parameters);
+Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
 Walls walls_of(const Scene& scene, bool gate_closed);
 

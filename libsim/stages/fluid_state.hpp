@@ -1,6 +1,7 @@
 #pragma once
 /// Everything a stage may touch.
 
+#include "libsim/flow/jets.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/stages/kernels.hpp"
@@ -47,6 +48,7 @@ struct FluidState {
   Grid grid;
   NeighbourList neighbours;
   CoarseGrid coarse;
+  Jets jets;
   Array<Guards> guards;
 
   Guards* guard() { return guards.data(); }

@@ -12,6 +12,7 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the wanted outputs call for.
 struct Demand {
   SolverParameters parameters;
+  bool nozzles = false;     ///< the scene has one
   bool settling = false;    ///< the gate is closed and the water comes to rest
   bool levels = false;      ///< particles split and merge
   bool saliency = false;    ///< their targets follow saliency
@@ -30,6 +31,8 @@ struct Stage {
   void (*run)(FluidState&);
 };
 
+/// Moves the lowest water of the corner columns into the jets.
+Stage nozzle_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.

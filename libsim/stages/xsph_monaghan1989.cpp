@@ -68,9 +68,9 @@ Stage xsph_stage() {
 }
 
 std::vector<Stage> all_stages() {
-  return {predict_stage(), neighbours_stage(),   coarse_pressure_stage(),
-          density_stage(), displacement_stage(), velocity_stage(),
-          xsph_stage(),    settling_stage()};
+  return {nozzle_stage(),  predict_stage(),      neighbours_stage(), coarse_pressure_stage(),
+          density_stage(), displacement_stage(), velocity_stage(),   xsph_stage(),
+          settling_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -190,6 +190,8 @@ SIM_TEST(Schedule, LeavesOutWhatNothingCallsFor) {
   const auto with = compile_schedule(demand);
   EXPECT_TRUE(with.columns.test(static_cast<std::size_t>(Column::VelocityNext)));
   EXPECT_EQ(with.frame_end.size(), 1u);
+  EXPECT_EQ(with.frame_start.size(), 0u);
+  EXPECT_NE(with.explanation.find("-  nozzle"), std::string::npos);
   EXPECT_EQ(without.frame_end.size(), 0u);
 }
 

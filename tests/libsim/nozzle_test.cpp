@@ -1,0 +1,218 @@
+/// Nozzles and recirculation: the timetable, the scenes that have them, and their ledger.
+
+#include "libsim/scene/nozzle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <random>
+
+#include "stats/base/error.hpp"
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+using fluid_test::ParticleState;
+using sim::Backend;
+using sim::MethodKind;
+
+constexpr double pi = 3.14159265358979;
+
+sim::Scene jet_impact() { return sim::read_scene("data/scenes/jet_impact.toml"); }
+sim::Scene faucet() { return sim::read_scene("data/scenes/faucet.toml"); }
+
+TEST(JetLayer, HasTheSitesOfItsDescription) {
+  EXPECT_EQ(sim::jet_layer(jet_impact().nozzles[0], 0.3).sites, 79);
+  EXPECT_EQ(sim::jet_layer(jet_impact().nozzles[0], 0.15).sites, 314);
+  EXPECT_EQ(sim::jet_layer(faucet().nozzles[0], 0.3).sites, 28);
+  EXPECT_EQ(sim::jet_layer(faucet().nozzles[0], 0.15).sites, 113);
+  // A mouth narrower than a particle still pours.
+  sim::Nozzle thin = faucet().nozzles[0];
+  thin.diameter_m = 0.01;
+  EXPECT_EQ(sim::jet_layer(thin, 0.15).sites, 1);
+}
+
+TEST(LayersDue, PourTheSameVolumeAtEverySpacing) {
+  for (const auto& scene : {jet_impact(), faucet()}) {
+    const auto& nozzle = scene.nozzles[0];
+    const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
+    for (const double spacing : {0.0945, 0.15, 0.3, 0.6}) {
+      const double layer = sim::jet_layer(nozzle, spacing).sites * spacing * spacing * spacing;
+      std::int64_t layers = 0;
+      const int frames = 5 * (nozzle.on_frames + nozzle.off_frames);
+      for (int frame = 0; frame < frames; ++frame) {
+        const auto due = sim::layers_due(nozzle, spacing, frame, 1.0 / 60);
+        ASSERT_EQ(due.first, layers) << "no layer is skipped or poured twice";
+        layers += due.count;
+        if (due.count) {
+          ASSERT_GE(due.first_time_s, -1e-12);
+          ASSERT_LT(due.first_time_s + (due.count - 1) * due.interval_s, 1.0 / 60);
+        }
+      }
+      const double open_s = 5 * nozzle.on_frames / 60.0;
+      EXPECT_NEAR(static_cast<double>(layers) * layer, flow * open_s, 0.51 * layer) << spacing;
+    }
+  }
+  EXPECT_NEAR(pi / 4 * 9 * 12, 84.8, 0.05);
+}
+
+TEST(LayersDue, NothingComesWhileTheNozzleRests) {
+  const auto nozzle = faucet().nozzles[0];
+  for (int frame = 0; frame < 240; ++frame) {
+    const bool open = frame % 120 < 60;
+    const auto due = sim::layers_due(nozzle, 0.15, frame, 1.0 / 60);
+    EXPECT_EQ(due.count > 0, open) << frame;  // 1.78 layers a frame: never none while open
+  }
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    sim::parse_scene(text, "scene.toml");
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(NozzleScene, ErrorsNameThePlaceAndTheMend) {
+  const std::string good = base::read_file(base::resource("data/scenes/jet_impact.toml"), 1 << 20);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return error_of(text.replace(at, from.size(), to));
+  };
+  EXPECT_EQ(error_of(good), "no error");
+  EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [1.0, 7.7, 7.2]"),
+              testing::AllOf(testing::HasSubstr("inside a wall"), testing::HasSubstr("scene.toml:2")));
+  EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [7.2, 7.7, 13.0]"),
+              testing::HasSubstr("inside a wall"));
+  EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [7.2, 7.7, 15.0]"),
+              testing::HasSubstr("outside the tank"));
+  EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [7.2, -1.0, 7.2]"),
+              testing::HasSubstr("below the floor"));
+  EXPECT_THAT(with("diameter_m = 3.0", "diameter_m = 0.0"), testing::HasSubstr("out of range"));
+  EXPECT_THAT(with("speed_m_s = 12.0", "speed_m_s = -12.0"), testing::HasSubstr("out of range"));
+  EXPECT_THAT(with("speed_m_s = 12.0", "speed_m_s = 19.0"), testing::HasSubstr("faster than time.v_ref_m_s"));
+  EXPECT_THAT(with("on_frames = 80", "on_frames = 0"), testing::HasSubstr("out of range"));
+  EXPECT_THAT(with("corner_m = 2.0", "corner_m = 8.0"), testing::HasSubstr("overlap"));
+  EXPECT_THAT(with("[recirculation]", "[recirculations]"), testing::HasSubstr("recirculation' is missing"));
+}
+
+TEST(NozzleScene, ScenesHoldTheirVolume) {
+  for (const auto& scene : {jet_impact(), faucet()}) {
+    EXPECT_NEAR(sim::resolution_of(scene, MethodKind::HiRes, 32768).spacing_m, 0.15, 1e-9) << scene.name;
+    EXPECT_EQ(sim::substeps_of(scene, 32 * 1024), 2);
+    EXPECT_EQ(sim::substeps_of(scene, 128 * 1024), 4);
+  }
+}
+
+sim::SimulationOptions small(Backend backend, MethodKind method) {
+  sim::SimulationOptions options;
+  options.backend = backend;
+  options.method = method;
+  options.n_star = 512;
+  return options;
+}
+
+/// A short pulse into a settled pool at n_* = 512.
+void counts_flow_and_walls_hold(Backend backend) {
+  for (auto scene : {jet_impact(), faucet()}) {
+    scene.settle_frames = 20;
+    auto& nozzle = scene.nozzles[0];
+    nozzle.on_frames = 30;
+    nozzle.off_frames = 20;
+    const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
+    for (const auto method : {MethodKind::LoRes, MethodKind::HiRes}) {
+      const auto options = small(backend, method);
+      const auto fluid = sim::make_simulation(scene, options);
+      const auto n = sim::particle_count(method, options.n_star);
+      const double finest = sim::resolution_of(scene, method, options.n_star).finest_spacing_m;
+      for (int frame = 0; frame < 80; ++frame) {
+        fluid->step_frame();
+        ASSERT_EQ(fluid->particle_count(), n);
+        if (frame % 20 == 0) {
+          ASSERT_EQ(fluid_test::outside(fluid->read_state(), scene.tank_size_m, 0), 0) << frame;
+        }
+      }
+      const auto state = fluid->read_state();
+      ASSERT_EQ(static_cast<std::int64_t>(state.size()), n);
+      for (std::size_t i = 0; i < state.size(); ++i) ASSERT_EQ(state[i].id, static_cast<int>(i));
+      const auto report = fluid->report();
+      const double volume = static_cast<double>(report.poured) * std::pow(finest, 3);
+      const double layer = sim::jet_layer(nozzle, fluid->spacing_m()).pitch_m * flow / nozzle.speed_m_s;
+      std::printf("%s %s: poured %.2f m3 of %.2f, a layer is %.2f\n", scene.name.c_str(),
+                  sim::method_name(method).c_str(), volume, flow, layer);
+      EXPECT_NEAR(volume, flow * 1.0, 0.51 * layer);
+      EXPECT_EQ(report.guards.nozzle_waited, 0u);
+      EXPECT_EQ(report.guards.not_finite, 0u);
+    }
+  }
+}
+TEST(Nozzle, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cpu); }
+TEST(NozzleGpu, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cuda); }
+
+bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
+           return p.id == q.id && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&
+                  p.vx_m_s == q.vx_m_s && p.vy_m_s == q.vy_m_s && p.vz_m_s == q.vz_m_s;
+         });
+}
+
+/// Twenty frames across the end of a pulse.
+std::vector<ParticleState> run_on(const sim::Scene& scene, sim::SimulationOptions options,
+                                  std::vector<ParticleState> start, int start_frame) {
+  options.start = std::move(start);
+  options.start_frame = start_frame;
+  const auto fluid = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < 20; ++frame) fluid->step_frame();
+  EXPECT_GT(fluid->report().poured, 0);
+  return fluid->read_state();
+}
+
+void runs_are_bit_equal(Backend backend) {
+  const auto scene = faucet();
+  auto options = small(backend, MethodKind::HiRes);
+  const auto fluid = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < 50; ++frame) fluid->step_frame();
+  const auto middle = fluid->read_state();
+  for (int frame = 0; frame < 20; ++frame) fluid->step_frame();
+  const auto through = fluid->read_state();
+  auto shuffled = middle;
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
+  EXPECT_TRUE(same(through, run_on(scene, options, middle, 50))) << "a run from a checkpoint differs";
+  EXPECT_TRUE(same(through, run_on(scene, options, shuffled, 50))) << "the input's order matters";
+  if (backend != Backend::Cpu) return;
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(threads > 1 ? 1 : 3);
+  EXPECT_TRUE(same(through, run_on(scene, options, middle, 50))) << "the number of threads matters";
+  omp_set_num_threads(threads);
+}
+TEST(Nozzle, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cpu); }
+TEST(NozzleGpu, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cuda); }
+
+TEST(Nozzle, IsAbsentWhereTheSceneHasNone) {
+  const auto options = small(Backend::Cpu, MethodKind::HiRes);
+  auto dam = sim::read_scene("data/scenes/single_dam.toml");
+  dam.settle_frames = 0;
+  const auto without = sim::make_simulation(dam, options);
+  EXPECT_THAT(without->explain(), testing::HasSubstr("-  nozzle              not called for"));
+  auto scene = jet_impact();
+  scene.settle_frames = 0;
+  const auto with = sim::make_simulation(scene, options);
+  EXPECT_THAT(with->explain(), testing::HasSubstr("the scene has a nozzle"));
+  EXPECT_THAT(with->explain(), testing::Not(testing::HasSubstr("-  nozzle")));
+  without->step_frame();
+  for (int frame = 0; frame < 3; ++frame) with->step_frame();  // a layer every 2.6 frames
+  ASSERT_GT(with->report().poured, 0);
+  // The choice of the lowest particles is all that a nozzle allocates: the dam has none of it.
+  auto plain = scene;
+  plain.nozzles.clear();
+  const auto closed = sim::make_simulation(plain, options);
+  closed->step_frame();
+  EXPECT_EQ(without->particle_bytes(), closed->particle_bytes());
+  EXPECT_GT(with->particle_bytes(), closed->particle_bytes());
+}
+
+}  // namespace
