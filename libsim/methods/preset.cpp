@@ -22,7 +22,7 @@ Readings readings_of(Preset preset) {
   Readings out;
   if (preset == Preset::Tuned) return out;
   out.thickness = ThicknessWeight::Max;
-  out.gradient_reach = 2;
+  out.gradient = GradientReach::TwoSupports;
   out.dimensionless = false;
   out.normalisation = Normalisation::MinMax;
   out.graded_targets = false;

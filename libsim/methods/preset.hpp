@@ -14,9 +14,15 @@ enum class Preset { Paper, Tuned };
 Preset parse_preset(std::string_view name);
 std::string preset_name(Preset preset);
 
-/// Eq. 3: how acuity falls beyond the fovea.
-enum class AcuityFalloff { Hyperbolic, Smoothstep };
-/// Eq. 7: min(e^(d/2), 5) or the printed max.
+/// Eq. 3: how acuity falls beyond the fovea's rim at theta_f. Hyperbolic: 1 / (1 + (theta - theta_f) / 2.3
+/// deg), as letter acuity does (Strasburger et al. 2011). Steep: the same with 0.85 deg, from the slope of
+/// the minimum angle of resolution in Guenter et al. 2012. Smoothstep: to 0 at 30 deg.
+enum class AcuityFalloff { Hyperbolic, Steep, Smoothstep };
+/// Eq. 6: reach of the gradients. OneSupport: the solver's neighbours. Smoothed: the same between averages
+/// over the support, averaged again, which reaches as far as two supports. TwoSupports: 2 h_i, as printed;
+/// eight times the neighbours.
+enum class GradientReach { OneSupport, Smoothed, TwoSupports };
+/// Eq. 7: min(e^(d/2), 5), which tells depths up to 3.2 m apart, or the printed max.
 enum class ThicknessWeight { Min, Max };
 /// Eq. 9: from the 1st to the 99th percentile with a moving average, or from the least to the largest value.
 enum class Normalisation { Percentile, MinMax };
@@ -29,9 +35,10 @@ struct Readings {
   double fovea_half_angle_deg = 7.5;
   double image_plane_m = 1;  ///< z_Pi, Eq. 4
   ThicknessWeight thickness = ThicknessWeight::Min;
-  bool hide_manifold_behind = false;  ///< Eq. 5: f_m of covered particles divided by gamma_t
-  /// Eq. 6: differences over this multiple of h: the paper's 2, or 1 (an eighth of the neighbours).
-  double gradient_reach = 1;
+  double attenuation_per_m = 0.5;                    ///< the 1/2 of Eq. 7
+  int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
+  bool hide_manifold_behind = false;                 ///< Eq. 5: f_m of covered particles divided by gamma_t
+  GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6
   /// Eq. 6: differences times h_i, without unit; false leaves 1/m.
   bool dimensionless = true;
   /// Eq. 6: epsilon_v as a share of sqrt(g d_*), epsilon_rho as a share of rho_0; without this floor the
@@ -39,6 +46,8 @@ struct Readings {
   double speed_floor = 0.1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
+  /// How long a lost gaze stays where it was, before it follows the view's axis; a blink lasts 0.1 to 0.4 s.
+  double gaze_hold_s = 0.5;
 
   // Algorithms 1 and 2: levels
   /// Targets of neighbours differ by one level at most.

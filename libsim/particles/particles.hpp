@@ -44,6 +44,7 @@ struct Guards {
   std::uint64_t not_finite;
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
+  std::uint64_t saliency_not_finite;
 };
 
 /// Support radius of each mass level, m: cbrt(2^level) h_* (Eq. 10).

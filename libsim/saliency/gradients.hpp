@@ -1,0 +1,42 @@
+#pragma once
+/// The temporal feature before occlusion (paper Eq. 6): how fast density and velocity change round a
+/// particle.
+
+#include "libsim/methods/preset.hpp"
+#include "libsim/neighbors/neighbour_list.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// What every form of the gradient reads and writes.
+struct GradientFields {
+  const Vec4* position;
+  const Vec4* velocity;
+  const float* density;  ///< rho / rho_0
+  float* out;            ///< f_T gamma_t
+  float density_epsilon;
+  float speed_epsilon;  ///< m/s
+  bool dimensionless;
+};
+
+class TemporalGradients {
+ public:
+  /// Writes f_T gamma_t of n particles. TwoSupports sorts for itself and needs no list; no form changes an
+  /// order.
+  void run(GradientReach reach, const GradientFields& fields, const Neighbours& neighbours, int n,
+           float finest_support);
+  std::size_t bytes() const {
+    return averages_.bytes() + gradients_.bytes() + keys_.bytes() + order_.bytes();
+  }
+
+ private:
+  void run_smoothed(const GradientFields& fields, const Neighbours& neighbours, int n);
+  void run_wide(const GradientFields& fields, int n, float finest_support);
+
+  Array<Vec4> averages_;   // velocity and density
+  Array<Vec4> gradients_;  // three a particle: the axes' (d/dx)(vx, vy, vz, density)
+  Sorter sorter_;
+  Array<std::uint64_t> keys_;
+  Array<int> order_;
+};
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,113 @@
+#include "libsim/saliency/input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "stats/base/error.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+bool finite(const Mat4& m) {
+  return std::all_of(m.begin(), m.end(), [](float value) { return std::isfinite(value); });
+}
+
+void check(const EyeLook& look) {
+  const View& v = look.view;
+  if (!finite(v.view) || !finite(v.projection)) {
+    throw base::Error("look", "the camera of an eye is not finite",
+                      "give each eye a rigid view and a perspective");
+  }
+  if (!look.seen || look.seen->width == 0) return;
+  const GBuffer& g = *look.seen;
+  const auto pixels = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
+  if (g.depth.size() != pixels || g.normal.size() != 3 * pixels) {
+    throw base::Error("look", "the depth or the normals of the G-buffer are not whole", "");
+  }
+  if (!finite(g.view.view) || g.view.projection[0] == 0 || g.view.projection[5] == 0) {
+    throw base::Error("look", "the camera of the G-buffer is not a perspective", "");
+  }
+}
+
+/// The direction with length 1, or 0 when the gaze is lost.
+Vec3d direction_of(const Gaze& gaze) {
+  const double size = std::hypot(gaze.direction[0], gaze.direction[1], gaze.direction[2]);
+  const double place = gaze.origin_m[0] + gaze.origin_m[1] + gaze.origin_m[2];
+  if (!gaze.valid || !std::isfinite(size) || !(size > 0) || !std::isfinite(place)) return {};
+  return {gaze.direction[0] / size, gaze.direction[1] / size, gaze.direction[2] / size};
+}
+
+bool is_zero(const Vec3d& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+Vec3 narrow(const Vec3d& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+EyeSpace eye_space(const Mat4& m) {
+  return {{m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]}};
+}
+
+}  // namespace
+
+void SaliencyInput::look(const Looks& looks) {
+  if (looks.eyes.empty() || looks.eyes.size() > Eyes::most) {
+    throw base::Error("look", std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
+  }
+  for (const auto& look : looks.eyes) check(look);
+  count_ = static_cast<int>(looks.eyes.size());
+  for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
+    const EyeLook& look = looks.eyes[k];
+    OneEye& eye = eyes_[k];
+    eye.gaze = look.gaze;
+    eye.view = look.view;
+    eye.picture = {};
+    if (!look.seen || look.seen->width == 0) continue;
+    const GBuffer& g = *look.seen;
+    eye.depth.from_host(g.depth);
+    eye.normal.from_host(g.normal);
+    eye.picture_view = g.view;
+    eye.picture = {eye.depth.data(), eye.normal.data(), 3, g.width, g.height, g.radius_scale};
+  }
+}
+
+void SaliencyInput::look_by_default(const View& view) { look({{{{}, view, nullptr}}}); }
+
+Eyes SaliencyInput::next_frame(double dt_s, double hold_s) {
+  Eyes out;
+  out.count = count_;
+  for (int k = 0; k < count_; ++k) {
+    OneEye& from = eyes_[static_cast<std::size_t>(k)];
+    const Mat4 pose = rigid_inverse(from.view.view);
+    Vec3d origin{pose[12], pose[13], pose[14]};
+    Vec3d direction = direction_of(from.gaze);
+    if (is_zero(direction)) {
+      ++gaze_lost_;
+      from.lost_s += dt_s;
+      const bool held = !is_zero(from.last_direction) && from.lost_s <= hold_s;
+      direction = held ? from.last_direction : Vec3d{-pose[8], -pose[9], -pose[10]};
+    } else {
+      from.lost_s = 0;
+      from.last_direction = direction;
+      origin = from.gaze.origin_m;
+    }
+    Eye& eye = out.eye[k];
+    eye.viewpoint = narrow(origin);
+    eye.gaze = narrow(direction);
+    eye.now = eye_space(from.view.view);
+    eye.picture = from.picture;
+    if (!from.picture.depth) continue;
+    eye.then = eye_space(from.picture_view.view);
+    eye.rays = pixel_rays(from.picture_view);
+  }
+  return out;
+}
+
+std::size_t SaliencyInput::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& eye : eyes_) sum += eye.depth.bytes() + eye.normal.bytes();
+  return sum;
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,50 @@
+#pragma once
+/// Eyes between frames: their last G-buffers in the back end's memory, and what is done about a lost gaze.
+
+#include <array>
+#include <cstdint>
+
+#include "libsim/saliency/eye.hpp"
+#include "libsim/saliency/looks.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// One eye or two.
+struct Eyes {
+  static constexpr int most = 2;
+  Eye eye[most];
+  int count = 0;
+};
+
+class SaliencyInput {
+ public:
+  /// Takes gazes and cameras and copies the pictures. base::Error: no eye or more than two, a camera that is
+  /// not finite, a G-buffer whose arrays are not whole.
+  void look(const Looks& looks);
+  /// The eye of a program that never calls look().
+  void look_by_default(const View& view);
+
+  /// The eyes for the coming frame of dt_s. A lost gaze stays where it last was for hold_s and then follows
+  /// the view's axis.
+  Eyes next_frame(double dt_s, double hold_s);
+  /// Eye-frames without a valid gaze.
+  std::uint64_t gaze_lost() const { return gaze_lost_; }
+  /// Bytes of the pictures.
+  std::size_t bytes() const;
+
+ private:
+  struct OneEye {
+    Gaze gaze;
+    View view;
+    Vec3d last_direction{};  ///< of the last valid gaze; 0 when there was none
+    double lost_s = 0;       ///< since then
+    View picture_view;
+    GBufferView picture;
+    Array<float> depth, normal;
+  };
+  std::array<OneEye, Eyes::most> eyes_;
+  int count_ = 0;
+  std::uint64_t gaze_lost_ = 0;
+};
+
+}  // namespace sim::SIM_BACKEND

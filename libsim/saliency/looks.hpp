@@ -1,0 +1,44 @@
+#pragma once
+/// Who looks at the fluid, from where and whereto: what a program gives a simulation before a frame. Plain
+/// host data, no back end, no GL.
+
+#include <vector>
+
+#include "libsim/render/camera.hpp"
+#include "libsim/render/gbuffer.hpp"
+
+namespace sim {
+
+/// A ray of sight in the world. `valid` is the tracker's own word; a ray that is not finite or has no
+/// direction counts as lost whatever it says.
+struct Gaze {
+  Vec3d origin_m{};
+  Vec3d direction{};  ///< of any length but 0
+  bool valid = false;
+};
+
+/// One eye at the start of a frame.
+struct EyeLook {
+  Gaze gaze;
+  View view;  ///< the camera of the coming frame
+  /// What this eye saw last; its own camera may be an older one. nullptr: nothing was drawn yet, then no
+  /// particle has a manifold feature and none is hidden. Copied by Simulation::look.
+  const GBuffer* seen = nullptr;
+};
+
+/// One eye or two. Each is evaluated for itself and the larger saliency counts.
+struct Looks {
+  std::vector<EyeLook> eyes;
+};
+
+/// Saliency of one particle as it was evaluated at the start of the last frame (paper 3.2).
+struct ParticleSaliency {
+  float acuity = 0;    ///< f_a, Eq. 3
+  float manifold = 0;  ///< f_m, Eq. 5
+  float temporal = 0;  ///< f_T, Eq. 6
+  float combined = 0;  ///< F, Eq. 1
+  float s = 0;         ///< normalised, [0, 1]
+  int target = 0;      ///< level, Eq. 9
+};
+
+}  // namespace sim

@@ -1,0 +1,47 @@
+#pragma once
+/// From F to s in [0, 1] (paper 3.2.3 is silent on how): the ends of F's range and how they follow it.
+
+#include <cstdint>
+
+#include "libsim/exec/space.hpp"
+#include "libsim/methods/preset.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Values of F that become s = 0 and s = 1.
+struct SaliencyRange {
+  float low, high;
+  int known;   ///< 0 before the first usable frame
+  int usable;  ///< 0: this frame has fewer than two finite values, or all are the same
+};
+
+/// Finds exact percentiles of non-negative values by four rounds of 256-bin histograms over their bits: no
+/// sort, no dependence on an outlier, the same result for any order of the values.
+class SaliencyNormaliser {
+ public:
+  /// Updates the range from values[0 .. n-1]; those that are not finite are left out. Percentile: the ends
+  /// follow the 1st and 99th percentile by 0.1 a frame (the first frame sets them). MinMax: the frame's own
+  /// ends. Nothing is read back.
+  void update(const Array<float>& values, int n, Normalisation reading);
+  /// In the back end's memory; valid after the first update.
+  const SaliencyRange* range() const { return range_.data(); }
+  void forget() { range_ = Array<SaliencyRange>(); }
+
+  /// State of the search between two rounds, for both ends.
+  struct Selection {
+    std::uint32_t prefix[2];
+    int rank[2];
+    int valid;
+  };
+  static constexpr int bins = 256;
+  static constexpr int rounds = 4;
+  /// Histograms that share the particles, so that few threads meet at one counter.
+  static constexpr int copies = 32;
+
+ private:
+  Array<int> histograms_, totals_;
+  Array<Selection> selections_;
+  Array<SaliencyRange> range_;
+};
+
+}  // namespace sim::SIM_BACKEND
