@@ -107,7 +107,8 @@ struct FluidRenderer::State {
   GlProgram thickness_first = compute("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute("smooth_thickness.comp");
   GlProgram composite{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "composite.frag"}};
-  GlBuffer counters, wide_list, no_particles;
+  GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
+  GlBuffer counters, wide_list, no_particles, values;
   GLuint vertex_array = 0;
   std::array<ViewTargets, max_views> targets;
   std::size_t views_drawn = 0;
@@ -302,6 +303,38 @@ void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> 
   }
   s.views_drawn = views.size();
   s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
+  glUseProgram(0);
+}
+
+void FluidRenderer::paint(const Overlay& overlay, unsigned framebuffer) {
+  State& s = *state_;
+  if (s.views_drawn == 0) throw base::Error("overlay", "nothing was drawn", "draw the particles first");
+  if (!(std::isfinite(overlay.low) && std::isfinite(overlay.high) && overlay.low < overlay.high)) {
+    throw base::Error("overlay", "the scale is empty or not finite", "give it low < high");
+  }
+  if (overlay.values.empty()) return;
+  const auto bytes = static_cast<GLsizeiptr>(overlay.values.size_bytes());
+  s.values.reserve(bytes);
+  glNamedBufferSubData(s.values.name(), 0, bytes, overlay.values.data());
+  const GlProgram& program = s.overlay;
+  program.use();
+  glUniform2f(program.uniform("range"), overlay.low, overlay.high);
+  glUniform1i(program.uniform("classes"), overlay.classes);
+  glUniform1ui(program.uniform("value_count"), static_cast<GLuint>(overlay.values.size()));
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glBindVertexArray(s.vertex_array);
+  for (std::size_t i = 0; i < s.views_drawn; ++i) {
+    const ViewTargets& t = s.targets[i];
+    const Viewport& v = t.view.viewport;
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, t.block.name());
+    bind({t.front.name(), s.values.name(), t.normals.name()});
+    glViewport(v.x, v.y, v.width, v.height);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glBindVertexArray(0);
+  glDisable(GL_BLEND);
   glUseProgram(0);
 }
 

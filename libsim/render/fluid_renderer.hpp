@@ -64,6 +64,13 @@ struct RenderCounts {
   std::uint32_t front_missing = 0;   ///< fluid pixels without a front particle: 0 unless the driver is broken
 };
 
+/// Values to paint over the water, one a particle in the order of the particle buffer.
+struct Overlay {
+  std::span<const float> values;  ///< NaN is painted magenta
+  float low = 0, high = 1;        ///< ends of the scale; finite and low < high
+  bool classes = false;           ///< whole numbers 0 to 3, one colour each, instead of a scale
+};
+
 /// Milliseconds of one pass of the last draw, over all its views.
 struct PassTime {
   std::string pass;
@@ -86,6 +93,10 @@ class FluidRenderer {
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
   /// sRGB and nothing outside them. Returns without waiting for the device.
   void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer);
+
+  /// Paints values over the views of the last draw, in the same framebuffer. base::Error when nothing was
+  /// drawn or the range is empty.
+  void paint(const Overlay& overlay, unsigned framebuffer);
 
   /// The G-buffer of a view of the last draw; waits for the device. base::Error when that view was not drawn.
   GBuffer read_gbuffer(std::size_t view = 0) const;
