@@ -1,0 +1,15 @@
+#pragma once
+/// Where a scene's gaze keys say that one looks: the stand-in for an eye tracker in benches and pictures.
+
+#include "libsim/scene/scene.hpp"
+
+namespace sim {
+
+/// Frames that a jump from one key's point to the next takes.
+inline constexpr int gaze_jump_frames = 2;
+
+/// The point of the last key at or before `frame`, reached in gaze_jump_frames from the point before; the
+/// first key's point before it. Without keys, the view's target.
+Vec3d gaze_point(const Scene& scene, int frame);
+
+}  // namespace sim
