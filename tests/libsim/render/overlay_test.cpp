@@ -25,17 +25,17 @@ class OverlayGl : public render_test::RenderGl {
     out.corner_before = colour(target.read(), 3, 3);
     overlay.values = values;
     renderer.paint(overlay, target.framebuffer());
-    const auto image = target.read();
+    const auto painted = target.read();
     const auto rays = sim::pixel_rays(view);
     const int offset = static_cast<int>(0.25 / rays.scale_x);
-    out.left = colour(image, 80 - offset, 60);
-    out.right = colour(image, 80 + offset, 60);
-    out.corner = colour(image, 3, 3);
+    out.left = colour(painted, 80 - offset, 60);
+    out.right = colour(painted, 80 + offset, 60);
+    out.corner = colour(painted, 3, 3);
     return out;
   }
-  static std::array<int, 3> colour(const sim::Image& image, int x, int y) {
-    const auto at = 4 * static_cast<std::size_t>((image.height - 1 - y) * image.width + x);
-    return {image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]};
+  static std::array<int, 3> colour(const sim::Image& of, int x, int y) {
+    const auto at = 4 * static_cast<std::size_t>((of.height - 1 - y) * of.width + x);
+    return {of.rgba[at], of.rgba[at + 1], of.rgba[at + 2]};
   }
 };
 
