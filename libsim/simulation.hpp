@@ -12,6 +12,7 @@
 
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
+#include "libsim/saliency/looks.hpp"
 #include "libsim/scene/scene.hpp"
 
 namespace sim {
@@ -42,6 +43,8 @@ struct SimulationOptions {
   std::int64_t n_star = 32 * 1024;
   Backend backend = Backend::Cpu;
   Readings readings = readings_of(Preset::Tuned);
+  /// Keep what saliency is made of, for read_saliency; a method without saliency has none to keep.
+  bool saliency_parts = false;
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
   int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
   int substeps = 0;          ///< a frame; 0 = by the scene's rule
@@ -74,6 +77,8 @@ struct GuardCounts {
   std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back inside a wall
   std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles
+  std::uint64_t saliency_not_finite = 0;  ///< particle-frames whose saliency was NaN or infinite: s = 0
+  std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
 
 /// State of the fluid after a frame.
@@ -95,6 +100,10 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
+  /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods that
+  /// follow no gaze ignore it; those that do look from the scene's own view along its axis until it is called.
+  /// base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is not whole.
+  virtual void look(const Looks& looks) = 0;
   /// Advances by one frame.
   virtual void step_frame() = 0;
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
@@ -106,6 +115,14 @@ class Simulation {
   virtual double spacing_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
+  /// Saliency behind the levels of the last frame, in the order of read_particles; what a particle became of has
+  /// its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none: another
+  /// method, or no frame yet.
+  virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
+  /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the first
+  /// frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
+  /// read_particles after it.
+  virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// Everything about every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
   /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.

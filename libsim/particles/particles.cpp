@@ -42,7 +42,7 @@ struct GatherOne {
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
       "position", "velocity",   "id",     "level",   "predicted", "predicted_next", "velocity_next", "lambda",
-      "density",  "neighbours", "target", "history", "age"};
+      "density",  "neighbours", "target", "history", "saliency", "saliency_parts", "age"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -67,6 +67,8 @@ void Particles::for_each_column(Self& self, Visit visit) {
   visit(self.density, self.has(Column::Density));
   visit(self.target, self.has(Column::Target));
   visit(self.history, self.has(Column::History));
+  visit(self.saliency, self.has(Column::Saliency));
+  visit(self.saliency_parts, self.has(Column::SaliencyParts));
   visit(self.age, self.has(Column::Age));
 }
 
@@ -74,6 +76,8 @@ template <class Visit>
 void Particles::for_each_lasting_extra(Visit visit) {
   if (has(Column::Target)) visit(target, spare_byte_);
   if (has(Column::History)) visit(history, spare_byte_);
+  if (has(Column::Saliency)) visit(saliency, spare_float_);
+  if (has(Column::SaliencyParts)) visit(saliency_parts, spare_parts_);
   if (has(Column::Age)) visit(age, spare_byte_);
 }
 
@@ -99,7 +103,7 @@ void Particles::resize(int n) {
 
 std::size_t Particles::bytes() const {
   std::size_t sum = spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() +
-                    spare_level_.bytes() + spare_byte_.bytes();
+                    spare_level_.bytes() + spare_byte_.bytes() + spare_float_.bytes() + spare_parts_.bytes();
   for_each_column(*this, [&](const auto& column, bool) { sum += column.bytes(); });
   return sum;
 }

@@ -23,6 +23,8 @@ enum class Column : unsigned {
   Neighbours,     ///< the combined neighbour list (neighbors/neighbour_list.hpp)
   Target,         ///< uint8: level that the particle should have
   History,        ///< uint8: targets of the last four frames, two bits each, the newest lowest
+  Saliency,       ///< float: s in [0, 1], ViP-Fluid 3.2.3
+  SaliencyParts,  ///< f_a, f_m, f_T and F behind it
   Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
   count
 };
@@ -36,6 +38,11 @@ ColumnSet columns(Columns... which) {
 }
 
 const char* column_name(Column column);
+
+/// f_a, f_m, f_T and F (ViP-Fluid Eq. 1-6) of the eye with the larger F.
+struct SaliencyParts {
+  float acuity, manifold, temporal, combined;
+};
 
 /// What the guards met; each field counts one rule (sim::GuardCounts gives them to programs).
 struct Guards {
@@ -71,7 +78,8 @@ class Particles {
   Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
   Array<int> id;
   Array<std::uint8_t> level, target, history, age;
-  Array<float> lambda, density;
+  Array<float> lambda, density, saliency;
+  Array<SaliencyParts> saliency_parts;
 
   /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes
   /// the number of particles. A source may be named more than once (a split) or never (a merge).
@@ -92,6 +100,8 @@ class Particles {
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
   Array<std::uint8_t> spare_level_, spare_byte_;
+  Array<float> spare_float_;
+  Array<SaliencyParts> spare_parts_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -9,11 +9,6 @@
 
 namespace sim::SIM_BACKEND {
 
-/// f_a, f_m, f_T and F of the eye with the larger F.
-struct SaliencyParts {
-  float acuity, manifold, temporal, combined;
-};
-
 /// Numbers of Eq. 1-8 as kernels take them.
 struct FeatureNumbers {
   Acuity acuity;

@@ -22,11 +22,11 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   const auto size = static_cast<std::size_t>(fluid.n);
   state.temporal.resize(size);
   state.combined.resize(size);
-  const Eyes eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
+  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
   const GradientFields fields = gradient_fields(p, fluid, state.temporal.data());
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
-  combine_features(feature_numbers(p), eyes, fluid.position, state.temporal.data(), state.combined.data(),
-                   fluid.parts, fluid.n);
+  combine_features(feature_numbers(p), state.eyes, fluid.position, state.temporal.data(),
+                   state.combined.data(), fluid.parts, fluid.n);
   state.normaliser.update(state.combined, fluid.n, p.normalisation);
   saliency_to_levels(state.combined.data(), state.normaliser.range(), state.levels, fluid.saliency,
                      fluid.target, fluid.guards, fluid.n);
@@ -34,10 +34,10 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
 
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
-  const Eyes eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
+  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
   const float coarsest_support =
       fluid.finest_support * std::cbrt(std::exp2(static_cast<float>(state.levels - 1)));
-  gaze_to_levels(feature_numbers(p).acuity, eyes, fluid.position, coarsest_support, state.levels,
+  gaze_to_levels(feature_numbers(p).acuity, state.eyes, fluid.position, coarsest_support, state.levels,
                  fluid.saliency, fluid.target, fluid.guards, fluid.n);
 }
 

@@ -15,6 +15,7 @@ struct SaliencyState {
   SaliencyInput input;
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
+  Eyes eyes;                        ///< of the last evaluation
   Array<float> temporal, combined;  ///< f_T gamma_t and F of the last evaluation
 
   std::size_t bytes() const {

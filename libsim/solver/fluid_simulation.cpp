@@ -35,7 +35,9 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.parameters = parameters;
   out.nozzles = !scene.nozzles.empty();
   out.levels = method.adaptive();
+  out.gaze_targets = method.target == TargetSource::Gaze;
   out.saliency = method.target == TargetSource::Saliency;
+  out.saliency_parts = options.saliency_parts;
   out.activation = method.temporal;
   return out;
 }
@@ -95,6 +97,16 @@ std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level
   return {least->level, most->level};
 }
 
+/// One entry a particle; `parts` may be empty.
+void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
+                   const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out) {
+  out.resize(s.size());
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const SaliencyParts p = parts.empty() ? SaliencyParts{} : parts[i];
+    out[i] = {p.acuity, p.manifold, p.temporal, p.combined, s[i], target[i]};
+  }
+}
+
 struct PackForDrawing {
   const Vec4* position;
   Vec4* out;
@@ -118,6 +130,9 @@ class FluidSimulation final : public Simulation {
     }
     state_.parameters = solver_parameters(scene, options);
     set_jets();
+    state_.saliency.readings = options.readings;
+    state_.saliency.levels = options.levels;
+    if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
     state_.guards.resize(1);
     state_.guards.zero();
     state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
@@ -128,6 +143,10 @@ class FluidSimulation final : public Simulation {
       open(filled(scene, options, resolution_.level));
       settle();
     }
+  }
+
+  void look(const Looks& looks) override {
+    if (follows_gaze()) state_.saliency.input.look(looks);
   }
 
   void step_frame() override {
@@ -156,6 +175,8 @@ class FluidSimulation final : public Simulation {
     out.guards = {met.speed_limited,      met.coincident_pairs, met.not_finite,
                   met.neighbours_dropped, met.wall_projected,   state_.jets.waited};
     out.poured = (static_cast<std::int64_t>(state_.jets.poured)) << resolution_.level;
+    out.guards.saliency_not_finite = met.saliency_not_finite;
+    out.guards.gaze_lost = state_.saliency.input.gaze_lost();
     return out;
   }
 
@@ -164,7 +185,7 @@ class FluidSimulation final : public Simulation {
   double spacing_m() const override { return resolution_.spacing_m; }
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
-    return state_.particles.bytes() + state_.jets.columns.bytes();
+    return state_.particles.bytes() + state_.jets.columns.bytes() + state_.saliency.bytes();
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
@@ -172,6 +193,25 @@ class FluidSimulation final : public Simulation {
     static_assert(sizeof(RenderParticle) == sizeof(Vec4));
     copy_to_host(out.data(), state_.particles.position.data(), out.size() * sizeof(Vec4));
     for (auto& particle : out) particle.radius_m *= 0.25f;  // h = 4 r
+  }
+
+  void read_saliency(std::vector<ParticleSaliency>& out) const override {
+    const auto& p = state_.particles;
+    out.clear();
+    if (frame_ == 0 || !p.has(Column::Saliency)) return;
+    pack_saliency(p.saliency.to_host(), p.target.to_host(), p.saliency_parts.to_host(), out);
+  }
+
+  void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
+    SaliencyState observer;
+    observer.readings = options_.readings;
+    observer.levels = options_.levels;
+    observer.input.look(looks);
+    Array<float> s;
+    Array<std::uint8_t> target;
+    Array<SaliencyParts> parts;
+    SIM_BACKEND::measure_saliency(state_, observer, s, target, parts);
+    pack_saliency(s.to_host(), target.to_host(), parts.to_host(), out);
   }
 
   std::vector<ParticleState> read_state() const override {
@@ -206,6 +246,8 @@ class FluidSimulation final : public Simulation {
   }
 
  private:
+  bool follows_gaze() const { return traits_of(options_.method).target != TargetSource::None; }
+
   std::string levels_in_words() const {
     if (traits_of(options_.method).adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
@@ -246,6 +288,7 @@ class FluidSimulation final : public Simulation {
     p.velocity.from_host(velocity);
     p.id.from_host(id);
     p.level.from_host(level);
+    if (p.has(Column::Saliency)) p.saliency.zero();
     state_.walls = walls_of(scene_, false);
   }
 

@@ -4,6 +4,7 @@
 #include "libsim/flow/jets.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
+#include "libsim/saliency/saliency.hpp"
 #include "libsim/stages/kernels.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -49,6 +50,7 @@ struct FluidState {
   NeighbourList neighbours;
   CoarseGrid coarse;
   Jets jets;
+  SaliencyState saliency;
   Array<Guards> guards;
 
   Guards* guard() { return guards.data(); }

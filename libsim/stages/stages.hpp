@@ -15,7 +15,9 @@ struct Demand {
   bool nozzles = false;     ///< the scene has one
   bool settling = false;    ///< the gate is closed and the water comes to rest
   bool levels = false;      ///< particles split and merge
-  bool saliency = false;    ///< their targets follow saliency
+  bool gaze_targets = false;    ///< their targets follow the gaze alone
+  bool saliency = false;        ///< their targets follow saliency
+  bool saliency_parts = false;  ///< an output asks for what saliency is made of
   bool activation = false;  ///< temporal acceleration chooses who is solved
 };
 
@@ -33,6 +35,12 @@ struct Stage {
 
 /// Moves the lowest water of the corner columns into the jets.
 Stage nozzle_stage();
+/// Saliency and target levels from the eyes, the last picture and the fluid.
+Stage saliency_stage();
+/// What saliency is made of, for an output.
+Stage saliency_parts_stage();
+/// Target levels from the gaze alone.
+Stage gaze_targets_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
@@ -49,6 +57,11 @@ Stage velocity_stage();
 Stage xsph_stage();
 /// Velocity x 0.9 a frame while the water settles.
 Stage settling_stage();
+
+/// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the columns
+/// and fills the given ones in the new order.
+void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                      Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
 
 /// All stages in the fixed order in which a schedule may call them.
 std::vector<Stage> all_stages();

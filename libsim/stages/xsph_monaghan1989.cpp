@@ -68,9 +68,10 @@ Stage xsph_stage() {
 }
 
 std::vector<Stage> all_stages() {
-  return {nozzle_stage(),  predict_stage(),      neighbours_stage(), coarse_pressure_stage(),
-          density_stage(), displacement_stage(), velocity_stage(),   xsph_stage(),
-          settling_stage()};
+  return {nozzle_stage(),          gaze_targets_stage(), saliency_stage(),
+          saliency_parts_stage(),  predict_stage(),      neighbours_stage(),
+          coarse_pressure_stage(), density_stage(),      displacement_stage(),
+          velocity_stage(),        xsph_stage(),         settling_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

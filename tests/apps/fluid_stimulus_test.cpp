@@ -20,6 +20,7 @@ sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 /// A block of the test bake's particles, one frame further with each step.
 class FakeSimulation final : public sim::Simulation {
  public:
+  void look(const sim::Looks&) override {}
   void step_frame() override { ++frame_; }
   sim::FrameReport report() override { return {}; }
   std::int64_t particle_count() const override { return 960; }
@@ -27,6 +28,8 @@ class FakeSimulation final : public sim::Simulation {
   void read_particles(std::vector<sim::RenderParticle>& out) const override {
     out = bake_test::particles(frame_);
   }
+  void read_saliency(std::vector<sim::ParticleSaliency>& out) const override { out.clear(); }
+  void measure_saliency(const sim::Looks&, std::vector<sim::ParticleSaliency>& out) override { out.clear(); }
   std::vector<sim::ParticleState> read_state() const override { return {}; }
   bool copy_to_gl(unsigned) override { return false; }
   void synchronize() override {}

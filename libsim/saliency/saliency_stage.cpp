@@ -1,0 +1,85 @@
+#include "libsim/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+SaliencyFluid fluid_of(FluidState& state) {
+  auto& p = state.particles;
+  const auto& k = state.parameters;
+  return {p.position.data(), p.velocity.data(),    p.density.data(), state.neighbours.view(),
+          p.size(),          state.finest_support, k.gravity,        k.dt * static_cast<float>(k.substeps),
+          p.saliency.data(), p.target.data(),      nullptr,          state.guard()};
+}
+
+/// Neighbours and densities where the particles are now: those of the last substep belong to other places
+/// and, on the first frame, to nobody.
+void find_surroundings(FluidState& state) {
+  auto& p = state.particles;
+  copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
+  neighbours_stage().run(state);
+  density_stage().run(state);
+}
+
+}  // namespace
+
+void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                      Array<std::uint8_t>& target, Array<SaliencyParts>& parts) {
+  const auto size = static_cast<std::size_t>(state.particles.size());
+  saliency.resize(size);
+  saliency.zero();
+  target.resize(size);
+  target.zero();
+  parts.resize(size);
+  find_surroundings(state);
+  SaliencyFluid fluid = fluid_of(state);
+  fluid.saliency = saliency.data();
+  fluid.target = target.data();
+  fluid.parts = parts.data();
+  evaluate_saliency(observer, fluid);
+}
+
+Stage saliency_stage() {
+  return {
+      "saliency",
+      "ViP-Fluid 3.2, Eq. 1-9",
+      Phase::FrameStart,
+      columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+      columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density, Column::Saliency,
+              Column::Target),
+      [](const Demand& demand) -> std::string { return demand.saliency ? "levels follow what is seen" : ""; },
+      [](FluidState& state) {
+        find_surroundings(state);
+        evaluate_saliency(state.saliency, fluid_of(state));
+      }};
+}
+
+Stage saliency_parts_stage() {
+  return {"saliency parts",
+          "ViP-Fluid 3.2, f_a, f_m, f_T and F",
+          Phase::FrameStart,
+          columns(Column::Position, Column::Saliency),
+          columns(Column::SaliencyParts),
+          [](const Demand& demand) -> std::string {
+            return demand.saliency && demand.saliency_parts ? "an output asks for them" : "";
+          },
+          [](FluidState& state) {
+            auto& p = state.particles;
+            SaliencyState& s = state.saliency;
+            combine_features(feature_numbers(s.readings), s.eyes, p.position.data(), s.temporal.data(),
+                             s.combined.data(), p.saliency_parts.data(), p.size());
+          }};
+}
+
+Stage gaze_targets_stage() {
+  return {
+      "gaze targets",
+      "FovFluid-like: fovea, band, periphery",
+      Phase::FrameStart,
+      columns(Column::Position),
+      columns(Column::Saliency, Column::Target),
+      [](const Demand& demand) -> std::string { return demand.gaze_targets ? "levels follow the gaze" : ""; },
+      [](FluidState& state) { evaluate_gaze(state.saliency, fluid_of(state)); }};
+}
+
+}  // namespace sim::SIM_BACKEND
