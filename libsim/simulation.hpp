@@ -38,6 +38,14 @@ struct ParticleState {
   float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
 };
 
+/// Targets for tests, in place of the method's own: one level inside a sphere, another outside.
+struct TargetRegion {
+  Vec3d centre_m{};
+  double radius_m = 0;
+  int inside = 0;  ///< level 0 .. 3, at most N - 1
+  int outside = 0;
+};
+
 struct SimulationOptions {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 32 * 1024;
@@ -45,6 +53,8 @@ struct SimulationOptions {
   Readings readings = readings_of(Preset::Tuned);
   /// Keep what saliency is made of, for read_saliency; a method without saliency has none to keep.
   bool saliency_parts = false;
+  std::optional<TargetRegion> forced_targets;  ///< methods that split and merge only
+  std::int64_t particle_capacity = 0;          ///< of these methods; 0 = 8 n_*
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
   int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
   int substeps = 0;          ///< a frame; 0 = by the scene's rule
@@ -81,6 +91,20 @@ struct GuardCounts {
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
 
+/// Splits and merges since the simulation was made. particles = particles at the start + born - merges.
+struct LevelEvents {
+  std::uint64_t splits = 0;
+  std::uint64_t born = 0;            ///< particles that splits added: 2^k - 1 each
+  std::uint64_t merges = 0;          ///< pairs that became one
+  std::uint64_t split_deferred = 0;  ///< particle-frames in which the throttle made a split wait
+  std::uint64_t split_at_wall = 0;   ///< particle-frames in which no children fitted between the walls
+  std::uint64_t split_no_room = 0;   ///< particle-frames in which the capacity refused a split
+  std::uint64_t merge_overlap =
+      0;                         ///< particle-frames whose every partner would have overlapped a larger one
+  std::uint64_t merge_step = 0;  ///< particle-frames in which a finer neighbour forbade a merge
+  double energy_lost_j = 0;      ///< kinetic energy lost in merges
+};
+
 /// State of the fluid after a frame.
 struct FrameReport {
   int frame = 0;  ///< frames since the gate opened
@@ -88,9 +112,11 @@ struct FrameReport {
   std::int64_t particles = 0;
   std::vector<std::int64_t> particles_by_level;  ///< up to the coarsest level that is present
   std::int64_t mass_units = 0;                   ///< total mass in m_*: the sum of 2^level, exact
-  double density_error_mean = 0;                 ///< mean of max(rho / rho_0 - 1, 0)
-  double density_max = 0;                        ///< max of rho / rho_0
-  double neighbours_mean = 0;                    ///< without self, within h
+  LevelEvents levels;
+  double jump_share = 0;          ///< share of the pairs within h whose levels differ by more than one
+  double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
+  double density_max = 0;         ///< max of rho / rho_0
+  double neighbours_mean = 0;     ///< without self, within h
   double speed_max_m_s = 0;
   std::int64_t poured = 0;  ///< by nozzles since the simulation was made, in units of m_*
   GuardCounts guards;
@@ -106,6 +132,8 @@ class Simulation {
   virtual void look(const Looks& looks) = 0;
   /// Advances by one frame.
   virtual void step_frame() = 0;
+  /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
+  virtual void force_targets(const TargetRegion&) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;

@@ -25,6 +25,7 @@ enum class Column : unsigned {
   History,        ///< uint8: targets of the last four frames, two bits each, the newest lowest
   Saliency,       ///< float: s in [0, 1], ViP-Fluid 3.2.3
   SaliencyParts,  ///< f_a, f_m, f_T and F behind it
+  Waiting,        ///< uint8: frames in a row that it has been ready to merge
   Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
   count
 };
@@ -77,7 +78,7 @@ class Particles {
 
   Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
   Array<int> id;
-  Array<std::uint8_t> level, target, history, age;
+  Array<std::uint8_t> level, target, history, waiting, age;
   Array<float> lambda, density, saliency;
   Array<SaliencyParts> saliency_parts;
 

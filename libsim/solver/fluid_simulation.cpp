@@ -29,14 +29,29 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   return out;
 }
 
+LevelRules level_rules(const SimulationOptions& options) {
+  const Readings& from = options.readings;
+  LevelRules out;
+  out.coarsest = options.levels - 1;
+  out.graded = from.graded_targets;
+  for (int k = 0; k < 3; ++k) out.split_offset[k] = static_cast<float>(from.split_offset[k]);
+  out.split_share = static_cast<float>(from.split_share);
+  out.merge_same_target = from.merge_same_target;
+  out.merge_reach = static_cast<float>(from.merge_reach);
+  out.merge_overlap = static_cast<float>(from.merge_overlap);
+  out.merge_keeps_steps = from.merge_keeps_steps;
+  return out;
+}
+
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters) {
   const MethodTraits& method = traits_of(options.method);
   Demand out;
   out.parameters = parameters;
   out.nozzles = !scene.nozzles.empty();
   out.levels = method.adaptive();
-  out.gaze_targets = method.target == TargetSource::Gaze;
-  out.saliency = method.target == TargetSource::Saliency;
+  out.forced_targets = options.forced_targets.has_value();
+  out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;
+  out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
   out.saliency_parts = options.saliency_parts;
   out.activation = method.temporal;
   return out;
@@ -77,6 +92,7 @@ std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& o
 
 /// Refuses what the solver could not hold.
 void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive) {
+  std::vector<bool> taken(adaptive ? static_cast<std::size_t>(capacity) : 0);
   for (const auto& particle : start) {
     const std::string who = "start, particle " + std::to_string(particle.id);
     if (particle.level < 0 || particle.level >= most_levels) {
@@ -86,6 +102,10 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
       throw base::Error(who, "has an id outside 0 .. " + std::to_string(capacity - 1),
                         "number the particles from 0");
     }
+    if (!adaptive) continue;
+    const auto id = static_cast<std::size_t>(particle.id);
+    if (taken[id]) throw base::Error(who, "shares its id with another", "number the particles from 0");
+    taken[id] = true;
   }
 }
 
@@ -105,6 +125,23 @@ void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>&
     const SaliencyParts p = parts.empty() ? SaliencyParts{} : parts[i];
     out[i] = {p.acuity, p.manifold, p.temporal, p.combined, s[i], target[i]};
   }
+}
+
+TargetSphere sphere_of(const TargetRegion& region) {
+  if (std::min(region.inside, region.outside) < 0 || std::max(region.inside, region.outside) >= most_levels) {
+    throw base::Error("forced targets", "name a level that does not exist", "use levels 0 to 3");
+  }
+  const auto f = [](double value) { return static_cast<float>(value); };
+  return {{f(region.centre_m[0]), f(region.centre_m[1]), f(region.centre_m[2])},
+          f(region.radius_m),
+          region.inside,
+          region.outside};
+}
+
+LevelEvents events_of(const LevelCounts& counts) {
+  return {counts.splits,         counts.born,          counts.merges,
+          counts.split_deferred, counts.split_at_wall, counts.split_no_room,
+          counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
 }
 
 struct PackForDrawing {
@@ -133,6 +170,8 @@ class FluidSimulation final : public Simulation {
     state_.saliency.readings = options.readings;
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
+    state_.levels.rules = level_rules(options);
+    if (options.forced_targets) force_targets(*options.forced_targets);
     state_.guards.resize(1);
     state_.guards.zero();
     state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
@@ -156,6 +195,14 @@ class FluidSimulation final : public Simulation {
     ++frame_;
   }
 
+  void force_targets(const TargetRegion& region) override {
+    if (!options_.forced_targets) {
+      throw base::Error("forced targets", "were not asked for when the run was made",
+                        "set SimulationOptions::forced_targets");
+    }
+    state_.levels.forced = sphere_of(region);
+  }
+
   FrameReport report() override {
     const Measured measured = measure(state_);
     const Guards met = state_.guards.to_host()[0];
@@ -168,6 +215,8 @@ class FluidSimulation final : public Simulation {
       ++out.particles_by_level[level];
       out.mass_units += std::int64_t{1} << level;
     }
+    if (adaptive()) out.levels = events_of(state_.levels.counts.to_host()[0]);
+    out.jump_share = measured.jump_share;
     out.density_error_mean = measured.density_error_mean;
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
@@ -247,10 +296,18 @@ class FluidSimulation final : public Simulation {
 
  private:
   bool follows_gaze() const { return traits_of(options_.method).target != TargetSource::None; }
+  bool adaptive() const { return traits_of(options_.method).adaptive(); }
 
   std::string levels_in_words() const {
-    if (traits_of(options_.method).adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
+    if (adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
+  }
+
+  /// Methods that split have room for 8 n_* particles, which all of their water makes at level 0.
+  int capacity_for(std::size_t start) const {
+    const std::int64_t room =
+        options_.particle_capacity > 0 ? options_.particle_capacity : 8 * options_.n_star;
+    return static_cast<int>(std::max<std::int64_t>(static_cast<std::int64_t>(start), adaptive() ? room : 0));
   }
 
   void open(const std::vector<ParticleState>& start) {
@@ -258,18 +315,16 @@ class FluidSimulation final : public Simulation {
     if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::rows_per_cell) {
       throw base::Error("particles", "are too many", "use a smaller --n-star");
     }
-    const bool adaptive = traits_of(options_.method).adaptive();
-    const int capacity = static_cast<int>(
-        std::max<std::int64_t>(static_cast<std::int64_t>(start.size()), adaptive ? 8 * options_.n_star : 0));
-    check_start(start, capacity, adaptive);
+    const int capacity = capacity_for(start.size());
+    check_start(start, capacity, adaptive());
     schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
     auto& p = state_.particles;
     p.allocate(schedule_.columns, static_cast<int>(start.size()), capacity);
     const auto [finest, coarsest] = levels_of(start, resolution_.level);
-    state_.one_level = !adaptive && finest == coarsest;
+    state_.one_level = !adaptive() && finest == coarsest;
     state_.supports = level_supports(2 * resolution_.finest_spacing_m);
     state_.finest_support = state_.supports.h[0];
-    state_.lightest_support = state_.supports.h[adaptive ? 0 : finest];
+    state_.lightest_support = state_.supports.h[adaptive() ? 0 : finest];
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
@@ -289,6 +344,7 @@ class FluidSimulation final : public Simulation {
     p.id.from_host(id);
     p.level.from_host(level);
     if (p.has(Column::Saliency)) p.saliency.zero();
+    if (adaptive()) state_.levels.begin(p);
     state_.walls = walls_of(scene_, false);
   }
 
@@ -307,6 +363,7 @@ class FluidSimulation final : public Simulation {
     Demand demand;
     demand.parameters = state_.parameters;
     demand.settling = true;
+    state_.one_level = true;
     const Schedule settling = compile_schedule(demand);
     state_.walls = walls_of(scene_, scene_.gate);
     for (int frame = 0; frame < scene_.settle_frames; ++frame) {
@@ -315,6 +372,7 @@ class FluidSimulation final : public Simulation {
       if (options_.settling) options_.settling(frame + 1, scene_.settle_frames);
     }
     state_.walls = walls_of(scene_, false);
+    state_.one_level = !adaptive();
     // What was met on the way to rest is not part of the run.
     state_.guards.zero();
   }

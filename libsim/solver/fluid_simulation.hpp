@@ -12,6 +12,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
+/// How the method's levels split and merge.
+LevelRules level_rules(const SimulationOptions& options);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
@@ -23,6 +25,7 @@ struct Measured {
   double density_max = 0;
   double neighbours_mean = 0;  ///< within h, without self
   double speed_max_m_s = 0;
+  double jump_share = 0;  ///< share of the pairs within h whose levels differ by more than one
 };
 Measured measure(FluidState& state);
 

@@ -4,6 +4,27 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+struct MeasureJumps {
+  const Vec4* position;
+  const std::uint8_t* level;
+  Neighbours neighbours;
+  float* jumps;
+  SIM_FN void operator()(int i) const {
+    const Vec4 self = position[i];
+    int far = 0;
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int j = neighbours(i, k);
+      const int step = level[i] - level[j];
+      if (step >= -1 && step <= 1) continue;
+      const Vec4 other = position[j];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float h = 0.5f * (self.w + other.w);
+      far += dot(offset, offset) < h * h;
+    }
+    jumps[i] = static_cast<float>(far);
+  }
+};
+
 struct MeasureOne {
   const Vec4* position;
   const Vec4* velocity;
@@ -45,7 +66,13 @@ Measured measure(FluidState& state) {
            MeasureOne{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
                       excess.data(), near.data(), speed.data()});
   out.density_error_mean = fixed_order_sum(excess, n) / n;
-  out.neighbours_mean = fixed_order_sum(near, n) / n;
+  const double pairs = fixed_order_sum(near, n);
+  out.neighbours_mean = pairs / n;
+  if (!state.one_level && pairs > 0) {
+    for_each("measure jumps", n,
+             MeasureJumps{p.position.data(), p.level.data(), state.neighbours.view(), near.data()});
+    out.jump_share = fixed_order_sum(near, n) / pairs;
+  }
   out.density_max = static_cast<double>(maximum(p.density, n));
   out.speed_max_m_s = static_cast<double>(maximum(speed, n));
   return out;

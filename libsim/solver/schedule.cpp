@@ -67,7 +67,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   Schedule out;
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
-  ColumnSet written = out.columns;
+  // Set when a particle is made.
+  ColumnSet written = out.columns | columns(Column::Target, Column::History, Column::Waiting, Column::Age);
   for (const auto& stage : stages) {
     const std::string reason = stage.called_for(demand);
     if (reason.empty()) {

@@ -2,6 +2,7 @@
 /// Everything a stage may touch.
 
 #include "libsim/flow/jets.hpp"
+#include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/saliency/saliency.hpp"
@@ -51,6 +52,7 @@ struct FluidState {
   CoarseGrid coarse;
   Jets jets;
   SaliencyState saliency;
+  LevelState levels;
   Array<Guards> guards;
 
   Guards* guard() { return guards.data(); }

@@ -123,10 +123,10 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
-  /// True where x lies inside every wall.
-  SIM_FN bool holds(Vec3 x) const {
+  /// True where x lies at least `gap` inside every wall.
+  SIM_FN bool holds(Vec3 x, float gap = 0) const {
     for (int k = 0; k < count; ++k) {
-      if (dot(planes[k].normal, x) < planes[k].offset) return false;
+      if (dot(planes[k].normal, x) < planes[k].offset + gap) return false;
     }
     return true;
   }

@@ -12,13 +12,14 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the wanted outputs call for.
 struct Demand {
   SolverParameters parameters;
-  bool nozzles = false;     ///< the scene has one
-  bool settling = false;    ///< the gate is closed and the water comes to rest
-  bool levels = false;      ///< particles split and merge
+  bool nozzles = false;         ///< the scene has one
+  bool settling = false;        ///< the gate is closed and the water comes to rest
+  bool levels = false;          ///< particles split and merge
+  bool forced_targets = false;  ///< a test gives their targets
   bool gaze_targets = false;    ///< their targets follow the gaze alone
   bool saliency = false;        ///< their targets follow saliency
   bool saliency_parts = false;  ///< an output asks for what saliency is made of
-  bool activation = false;  ///< temporal acceleration chooses who is solved
+  bool activation = false;      ///< temporal acceleration chooses who is solved
 };
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
@@ -41,6 +42,14 @@ Stage saliency_stage();
 Stage saliency_parts_stage();
 /// Target levels from the gaze alone.
 Stage gaze_targets_stage();
+/// Neighbour list at the frame's start, for what looks at the fluid before it moves.
+Stage frame_neighbours_stage();
+/// Targets of tests (LevelState::forced).
+Stage forced_targets_stage();
+/// Targets of neighbours differ by one level at most.
+Stage graded_targets_stage();
+/// Algorithms 1 and 2; changes the number of particles and makes the neighbour list stale.
+Stage split_and_merge_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
@@ -55,11 +64,13 @@ Stage displacement_stage();
 Stage velocity_stage();
 /// XSPH viscosity.
 Stage xsph_stage();
+/// The same for methods that split and merge: fresh particles come to rest among their neighbours.
+Stage xsph_of_levels_stage();
 /// Velocity x 0.9 a frame while the water settles.
 Stage settling_stage();
 
-/// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the columns
-/// and fills the given ones in the new order.
+/// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
+/// columns and fills the given ones in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                       Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
 

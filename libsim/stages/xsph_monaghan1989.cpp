@@ -4,8 +4,22 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v_i += c sum_j 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
-template <bool OneLevel>
+/// Which pairs have the strong viscosity: those with a particle just made by a split or a merge. Its place is
+/// a guess, and what the projections correct there is no motion of the fluid.
+struct NoFresh {
+  SIM_FN float operator()(int, int, float viscosity) const { return viscosity; }
+};
+struct FreshPairs {
+  const std::uint8_t* age;
+  float strong;
+  int frames;
+  SIM_FN float operator()(int i, int j, float viscosity) const {
+    return age[i] < frames || age[j] < frames ? strong : viscosity;
+  }
+};
+
+/// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
+template <bool OneLevel, class Fresh>
 struct Xsph {
   const Vec4* position;
   const Vec4* velocity;
@@ -13,6 +27,7 @@ struct Xsph {
   Neighbours neighbours;
   Vec4* next;
   float viscosity;
+  Fresh fresh;
 
   SIM_FN void operator()(int i) const {
     const Vec4 self = position[i];
@@ -31,25 +46,26 @@ struct Xsph {
       const float dx = self.x - other.x;
       const float dy = self.y - other.y;
       const float dz = self.z - other.z;
-      const float weight =
-          pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      const float weight = fresh(i, j, viscosity) * pair.mass_ratio(other.w) *
+                           kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
       const Vec4 v = velocity[j];
       vx += weight * (v.x - own.x);
       vy += weight * (v.y - own.y);
       vz += weight * (v.z - own.z);
     }
     // Volume m_i / rho_0; densities are relative to rho_0.
-    const float scale = viscosity * 2 * mass_of(self.w, 1);
+    const float scale = 2 * mass_of(self.w, 1);
     next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
   }
 };
 
-template <bool OneLevel>
-void launch(FluidState& state) {
+template <bool OneLevel, class Fresh>
+void launch(FluidState& state, Fresh fresh) {
   auto& p = state.particles;
-  for_each("xsph", p.size(),
-           Xsph<OneLevel>{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
-                          p.velocity_next.data(), state.parameters.viscosity});
+  for_each(
+      "xsph", p.size(),
+      Xsph<OneLevel, Fresh>{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
+                            p.velocity_next.data(), state.parameters.viscosity, fresh});
   p.velocity.swap(p.velocity_next);
 }
 
@@ -62,16 +78,35 @@ Stage xsph_stage() {
           columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
           columns(Column::VelocityNext, Column::Velocity),
           [](const Demand& demand) -> std::string {
-            return demand.parameters.viscosity > 0 ? "viscosity c > 0" : "";
+            return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
           },
-          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+          [](FluidState& state) {
+            state.one_level ? launch<true>(state, NoFresh{}) : launch<false>(state, NoFresh{});
+          }};
+}
+
+Stage xsph_of_levels_stage() {
+  return {
+      "xsph of levels",
+      "Monaghan 1989, stronger round fresh particles",
+      Phase::SubstepEnd,
+      columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours, Column::Age),
+      columns(Column::VelocityNext, Column::Velocity),
+      [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
+      [](FluidState& state) {
+        const auto& rules = state.levels.rules;
+        launch<false>(state,
+                      FreshPairs{state.particles.age.data(), rules.fresh_viscosity, rules.fresh_frames});
+      }};
 }
 
 std::vector<Stage> all_stages() {
-  return {nozzle_stage(),          gaze_targets_stage(), saliency_stage(),
-          saliency_parts_stage(),  predict_stage(),      neighbours_stage(),
-          coarse_pressure_stage(), density_stage(),      displacement_stage(),
-          velocity_stage(),        xsph_stage(),         settling_stage()};
+  return {nozzle_stage(),         frame_neighbours_stage(), gaze_targets_stage(),
+          saliency_stage(),       saliency_parts_stage(),   forced_targets_stage(),
+          graded_targets_stage(), split_and_merge_stage(),  predict_stage(),
+          neighbours_stage(),     coarse_pressure_stage(),  density_stage(),
+          displacement_stage(),   velocity_stage(),         xsph_stage(),
+          xsph_of_levels_stage(), settling_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

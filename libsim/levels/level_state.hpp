@@ -1,0 +1,85 @@
+#pragma once
+/// What splitting and merging keep between frames, and their rules as kernels see them (paper 3.3).
+
+#include <cstdint>
+
+#include "libsim/exec/vec.hpp"
+#include "libsim/particles/particles.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Rules of Algorithms 1 and 2; sim::Readings explains each.
+struct LevelRules {
+  int coarsest = 3;  ///< N - 1
+  bool graded = true;
+  float split_offset[3] = {0.794f, 1.09f, 0.866f};
+  float split_share = 0.05f;
+  bool merge_same_target = false;
+  float merge_reach = 1;
+  float merge_overlap = 0.8f;
+  bool merge_keeps_steps = true;
+  float fresh_viscosity = 0.7f;  ///< XSPH c of pairs with a particle made in the last fresh_frames
+  int fresh_frames = 2;
+};
+
+/// What happened, counted on the device since the simulation was made.
+struct LevelCounts {
+  std::uint64_t splits;          ///< particles that split
+  std::uint64_t born;            ///< particles that this added: 2^k - 1 each
+  std::uint64_t merges;          ///< pairs that became one particle: as many are gone
+  std::uint64_t split_deferred;  ///< particle-frames in which the throttle made a split wait
+  std::uint64_t split_at_wall;   ///< particle-frames in which no children fitted between the walls
+  std::uint64_t split_no_room;   ///< particle-frames in which the capacity refused a split
+  std::uint64_t merge_overlap;   ///< particle-frames whose every partner would have overlapped a larger one
+  std::uint64_t merge_step;      ///< particle-frames in which a finer neighbour forbade a merge
+  std::uint64_t energy_lost_uj;  ///< kinetic energy lost in merges, 1e-6 J
+};
+
+/// A sphere in which particles want one level and outside which they want another: targets for tests.
+struct TargetSphere {
+  Vec3 centre{};
+  float radius = 0;
+  int inside = 0, outside = 0;
+};
+
+struct LevelState {
+  LevelRules rules;
+  TargetSphere forced;
+  std::uint32_t frame = 0;  ///< a counter of the random numbers
+  Array<LevelCounts> counts;
+  /// Target, History, Age and Waiting of fresh particles; called once when a run begins.
+  void begin(Particles& particles);
+
+  // Scratch of one frame; lives on to keep its memory.
+  Scanner scanner;
+  Sorter sorter;
+  Array<std::uint8_t> status, status_next, split_code, wish, graded, gone;
+  Array<int> partner, births, places, order, child, flags, sums, free_ids;
+  Array<std::uint64_t> keys;
+};
+
+/// Two bits a frame, the newest lowest: a particle that has wanted `level` for four frames.
+SIM_FN std::uint8_t steady_history(int level) { return static_cast<std::uint8_t>(0x55 * level); }
+
+/// The least of the last four targets.
+SIM_FN int least_of_history(std::uint8_t history) {
+  int least = 3;
+  for (int back = 0; back < 4; ++back) {
+    const int level = history >> (2 * back) & 3;
+    least = level < least ? level : least;
+  }
+  return least;
+}
+
+/// 32 random bits that depend on nothing but their arguments (lowbias32 rounds, C. Wellons).
+SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  std::uint32_t x = a * 0x9e3779b9u + b;
+  x = (x ^ (x >> 16)) * 0x7feb352du;
+  x = (x ^ (x >> 15)) * 0x846ca68bu;
+  x = (x ^ (x >> 16)) + c * 0x85ebca6bu;
+  x = (x ^ (x >> 16)) * 0x7feb352du;
+  x = (x ^ (x >> 15)) * 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,231 @@
+#include "libsim/levels/split_merge.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
+/// hold their neighbours back: after most have merged, a few are left without a partner in reach.
+constexpr int looks_farther = 8;
+constexpr int lags = 16;
+/// Neighbours from which a particle counts as inside the fluid: sheets and drops never merge from afar.
+constexpr int inside_count = 24;
+
+/// Steps ages and histories, and finds who wants to be coarser and has wanted it for four frames.
+struct Remember {
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const std::uint8_t* split_code;
+  std::uint8_t* history;
+  std::uint8_t* age;
+  std::uint8_t* waiting;
+  std::uint8_t* wish;
+  std::uint8_t* gone;
+  SIM_FN void operator()(int i) const {
+    history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
+    age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255);
+    gone[i] = 0;
+    wish[i] = !split_code[i] && least_of_history(history[i]) > level[i];
+    waiting[i] = static_cast<std::uint8_t>(!wish[i] ? 0 : waiting[i] < 255 ? waiting[i] + 1 : 255);
+  }
+};
+
+/// Drops the wish where a merge would leave a neighbour two levels finer, now or soon.
+struct KeepSteps {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const std::uint8_t* waiting;
+  const std::uint8_t* wish;
+  Neighbours neighbours;
+  std::uint8_t* out;
+  LevelCounts* counts;
+  SIM_FN void operator()(int i) const {
+    out[i] = wish[i];
+    if (!wish[i] || level[i] == 0) return;
+    const Vec4 self = position[i];
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int j = neighbours(i, k);
+      const bool finer = level[j] < level[i] && waiting[j] < lags;
+      if (!finer && target[j] >= level[i]) continue;
+      const Vec4 other = position[j];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float h = 0.5f * (self.w + other.w);
+      if (dot(offset, offset) >= h * h) continue;
+      out[i] = 0;
+      atomic_add(&counts->merge_step, std::uint64_t{1});
+      return;
+    }
+  }
+};
+
+/// A pair in the order in which pairs are preferred: the nearer, then by chance; the same from both sides.
+struct PairKey {
+  float distance2;
+  std::uint32_t chance;
+  SIM_FN bool before(const PairKey& other) const {
+    return distance2 < other.distance2 || (distance2 == other.distance2 && chance < other.chance);
+  }
+};
+SIM_FN PairKey pair_key(Vec4 a, Vec4 b, int id_a, int id_b) {
+  const Vec3 offset = xyz(a) - xyz(b);
+  const auto low = static_cast<std::uint32_t>(id_a < id_b ? id_a : id_b);
+  const auto high = static_cast<std::uint32_t>(id_a < id_b ? id_b : id_a);
+  return {dot(offset, offset), random_bits(low, high, 0)};
+}
+SIM_FN Vec3 middle(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
+
+/// Each wishing particle names the nearest partner of its level with which it may merge.
+struct Propose {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const std::uint8_t* waiting;
+  const std::uint8_t* wish;
+  const int* id;
+  Neighbours neighbours;
+  int* partner;
+  LevelCounts* counts;
+  LevelRules rules;
+  LevelSupports supports;
+
+  SIM_FN void operator()(int i) const {
+    partner[i] = -1;
+    if (!wish[i]) return;
+    const Vec4 self = position[i];
+    PairKey best{3.4e38f, 0};
+    bool overlapped = false;
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int j = neighbours(i, k);
+      if (!wish[j] || level[j] != level[i]) continue;
+      if (rules.merge_same_target && target[j] != target[i]) continue;
+      const PairKey key = pair_key(self, position[j], id[i], id[j]);
+      if (!key.before(best) || !in_reach(i, j, key.distance2)) continue;
+      if (overlaps(i, j)) {
+        overlapped = true;
+        continue;
+      }
+      best = key;
+      partner[i] = j;
+    }
+    if (overlapped && partner[i] < 0) atomic_add(&counts->merge_overlap, std::uint64_t{1});
+  }
+
+  /// Members lie at most merge_reach radii of the new particle from its centre.
+  SIM_FN bool in_reach(int i, int j, float distance2) const {
+    const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
+    if (distance2 <= reach * reach) return true;
+    return (waiting[i] >= looks_farther || waiting[j] >= looks_farther) &&
+           neighbours.size(i) >= inside_count && neighbours.size(j) >= inside_count;
+  }
+
+  /// Would the new particle overlap another of its size or larger? (Fig. 5 d2)
+  SIM_FN bool overlaps(int i, int j) const {
+    const Vec3 centre = middle(position[i], position[j]);
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int other = neighbours(i, k);
+      if (level[other] <= level[i]) continue;
+      const Vec4 at = position[other];
+      const Vec3 offset = xyz(at) - centre;
+      const float least = rules.merge_overlap * (at.w + supports.h[level[i] + 1]) / 4;
+      if (dot(offset, offset) < least * least) return true;
+    }
+    return false;
+  }
+};
+
+/// Of mutual proposals whose new particles would overlap each other, the first is kept.
+struct KeepApart {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const int* id;
+  const int* partner;
+  Neighbours neighbours;
+  int* out;
+  LevelRules rules;
+  LevelSupports supports;
+
+  SIM_FN bool mutual(int i) const { return partner[i] >= 0 && partner[partner[i]] == i; }
+  SIM_FN void operator()(int i) const {
+    out[i] = -1;
+    if (!mutual(i) || id[i] > id[partner[i]]) return;
+    const int j = partner[i];
+    if (free_beside(i, j, i) && free_beside(i, j, j)) out[i] = j;
+  }
+  SIM_FN bool free_beside(int i, int j, int member) const {
+    const PairKey own = pair_key(position[i], position[j], id[i], id[j]);
+    const Vec3 centre = middle(position[i], position[j]);
+    for (int k = 0; k < neighbours.size(member); ++k) {
+      const int a = neighbours(member, k);
+      if (a == i || a == j || !mutual(a)) continue;
+      const int b = partner[a];
+      const Vec3 offset = middle(position[a], position[b]) - centre;
+      const float least = rules.merge_overlap * (supports.h[level[a] + 1] + supports.h[level[i] + 1]) / 4;
+      if (dot(offset, offset) >= least * least) continue;
+      if (pair_key(position[a], position[b], id[a], id[b]).before(own)) return false;
+    }
+    return true;
+  }
+};
+
+/// Mass, momentum and centre of mass stay; kinetic energy can only fall.
+struct Merge {
+  Vec4* position;
+  Vec4* velocity;
+  std::uint8_t* level;
+  std::uint8_t* history;
+  std::uint8_t* age;
+  std::uint8_t* waiting;
+  const int* partner;
+  std::uint8_t* gone;
+  LevelCounts* counts;
+  LevelSupports supports;
+  float rest_density;
+
+  SIM_FN void operator()(int i) const {
+    const int j = partner[i];
+    if (j < 0) return;
+    const Vec3 difference = xyz(velocity[i]) - xyz(velocity[j]);
+    const float lost = 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
+    const int coarser = level[i] + 1;
+    position[i] = with_w(middle(position[i], position[j]), supports.h[coarser]);
+    velocity[i] = with_w(0.5f * (xyz(velocity[i]) + xyz(velocity[j])), 0);
+    level[i] = static_cast<std::uint8_t>(coarser);
+    history[i] = steady_history(coarser);
+    age[i] = 0;
+    waiting[i] = 0;
+    gone[j] = 1;
+    atomic_add(&counts->merges, std::uint64_t{1});
+    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
+  }
+};
+
+}  // namespace
+
+void merge_pairs(FluidState& state) {
+  auto& p = state.particles;
+  auto& l = state.levels;
+  const int n = p.size();
+  const Neighbours neighbours = state.neighbours.view();
+  for_each("remember levels", n,
+           Remember{p.level.data(), p.target.data(), l.split_code.data(), p.history.data(), p.age.data(),
+                    p.waiting.data(), l.wish.data(), l.gone.data()});
+  if (l.rules.merge_keeps_steps) {
+    for_each("keep steps", n,
+             KeepSteps{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
+                       neighbours, l.status.data(), l.counts.data()});
+    l.wish.swap(l.status);
+  }
+  for_each("propose merges", n,
+           Propose{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
+                   p.id.data(), neighbours, l.partner.data(), l.counts.data(), l.rules, state.supports});
+  for_each("keep merges apart", n,
+           KeepApart{p.position.data(), p.level.data(), p.id.data(), l.partner.data(), neighbours,
+                     l.places.data(), l.rules, state.supports});
+  for_each("merge", n,
+           Merge{p.position.data(), p.velocity.data(), p.level.data(), p.history.data(), p.age.data(),
+                 p.waiting.data(), l.places.data(), l.gone.data(), l.counts.data(), state.supports,
+                 state.parameters.rest_density});
+}
+
+}  // namespace sim::SIM_BACKEND

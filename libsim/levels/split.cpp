@@ -1,0 +1,193 @@
+#include "libsim/levels/split_merge.hpp"
+
+#include <algorithm>
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+enum Status : std::uint8_t { keeps, wants, splits };
+
+/// Who splits first: those with the most levels to go, which the most salient ones have; then by chance,
+/// newly drawn each frame.
+SIM_FN std::uint64_t priority(int k, int id, std::uint32_t frame) {
+  const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id), frame, 0x5b1u);
+  return static_cast<std::uint64_t>(k) << 62 | static_cast<std::uint64_t>(chance >> 2) << 32 |
+         static_cast<std::uint32_t>(id);
+}
+
+struct MarkSplits {
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  std::uint8_t* status;
+  bool throttled;
+  SIM_FN void operator()(int i) const {
+    status[i] = level[i] <= target[i] ? keeps : throttled ? wants : splits;
+  }
+};
+
+/// One round of choosing particles so that no two within one spacing split: those that come before all others
+/// within it. What a round leaves undecided the next may choose.
+struct ChooseApart {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const int* id;
+  const std::uint8_t* status;
+  Neighbours neighbours;
+  std::uint8_t* out;
+  std::uint32_t frame;
+
+  SIM_FN void operator()(int i) const { out[i] = status[i] == wants ? decide(i) : status[i]; }
+  SIM_FN std::uint8_t decide(int i) const {
+    const Vec4 self = position[i];
+    const std::uint64_t own = priority(level[i] - target[i], id[i], frame);
+    std::uint8_t result = splits;
+    for (int k = 0; k < neighbours.size(i); ++k) {
+      const int j = neighbours(i, k);
+      if (status[j] == keeps) continue;
+      const Vec4 other = position[j];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float spacing = 0.25f * (self.w + other.w);  // h = 2 d
+      if (dot(offset, offset) >= spacing * spacing) continue;
+      if (status[j] == splits) return keeps;
+      if (priority(level[j] - target[j], id[j], frame) > own) result = wants;
+    }
+    return result;
+  }
+};
+
+constexpr int rounds = 3;
+
+/// Finds a rotation that keeps all children inside the walls, for k as wished or, failing that, smaller.
+struct FitChildren {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const int* id;
+  const std::uint8_t* status;
+  std::uint8_t* code;
+  int* flags;
+  Walls walls;
+  LevelRules rules;
+  LevelSupports supports;
+  LevelCounts* counts;
+  std::uint32_t frame;
+  float wall_gap;
+
+  SIM_FN void operator()(int i) const {
+    code[i] = 0;
+    flags[i] = 0;
+    if (level[i] <= target[i]) return;
+    if (status[i] != splits) {
+      atomic_add(&counts->split_deferred, std::uint64_t{1});
+      return;
+    }
+    for (int k = level[i] - target[i]; k > 0; --k) {
+      for (int attempt = 0; attempt < SplitCode::attempts; ++attempt) {
+        const SplitCode wish{k, attempt};
+        if (!fits(i, wish)) continue;
+        code[i] = wish.packed();
+        flags[i] = 1;
+        return;
+      }
+    }
+    atomic_add(&counts->split_at_wall, std::uint64_t{1});
+  }
+  SIM_FN bool fits(int i, SplitCode wish) const {
+    const Vec4 self = position[i];
+    const Turn turn = random_turn(id[i], frame, wish.attempt);
+    const float gap = wall_gap * supports.h[level[i] - wish.k] / 2;
+    for (int c = 0; c < 1 << wish.k; ++c) {
+      if (!walls.holds(xyz(self) + child_offset(turn, rules, wish, self.w / 4, c), gap)) return false;
+    }
+    return true;
+  }
+};
+
+struct ListSplits {
+  const int* flags;
+  const int* sums;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  const int* id;
+  std::uint64_t* keys;
+  int* order;
+  std::uint32_t frame;
+  SIM_FN void operator()(int i) const {
+    if (!flags[i]) return;
+    keys[sums[i] - 1] = ~priority(level[i] - target[i], id[i], frame);
+    order[sums[i] - 1] = i;
+  }
+};
+
+struct CountChildren {
+  const int* order;
+  const std::uint8_t* code;
+  int* extra;
+  SIM_FN void operator()(int rank) const {
+    extra[rank] = (1 << SplitCode::unpacked(code[order[rank]]).k) - 1;
+  }
+};
+
+/// Refuses those beyond the frame's share, and those whose children would find no room.
+struct Refuse {
+  const int* order;
+  const int* extra_sums;
+  std::uint8_t* code;
+  LevelCounts* counts;
+  int most, room;
+  SIM_FN void operator()(int rank) const {
+    const bool late = rank >= most;
+    if (!late && extra_sums[rank] <= room) return;
+    code[order[rank]] = 0;
+    atomic_add(late ? &counts->split_deferred : &counts->split_no_room, std::uint64_t{1});
+  }
+};
+
+/// Keeps the first `most` by priority, as far as there is room.
+void limit(FluidState& state, int chosen, int most, int room) {
+  auto& p = state.particles;
+  auto& l = state.levels;
+  l.keys.resize(static_cast<std::size_t>(chosen));
+  l.order.resize(static_cast<std::size_t>(chosen));
+  for_each("list splits", p.size(),
+           ListSplits{l.flags.data(), l.sums.data(), p.level.data(), p.target.data(), p.id.data(),
+                      l.keys.data(), l.order.data(), l.frame});
+  l.sorter.sort(l.keys, l.order);
+  l.flags.resize(static_cast<std::size_t>(chosen));
+  for_each("count children", chosen, CountChildren{l.order.data(), l.split_code.data(), l.flags.data()});
+  l.scanner.inclusive_sum(l.flags, l.sums);
+  for_each("refuse splits", chosen,
+           Refuse{l.order.data(), l.sums.data(), l.split_code.data(), l.counts.data(), most, room});
+}
+
+}  // namespace
+
+bool choose_splits(FluidState& state) {
+  auto& p = state.particles;
+  auto& l = state.levels;
+  const int n = p.size();
+  const bool throttled = l.rules.split_share < 1;
+  for_each("mark splits", n, MarkSplits{p.level.data(), p.target.data(), l.status.data(), throttled});
+  for (int round = 0; round < rounds && throttled; ++round) {
+    for_each("choose splits", n,
+             ChooseApart{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),
+                         state.neighbours.view(), l.status_next.data(), l.frame});
+    l.status.swap(l.status_next);
+  }
+  for_each("fit children", n,
+           FitChildren{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),
+                       l.split_code.data(), l.flags.data(), state.walls, l.rules, state.supports,
+                       l.counts.data(), l.frame, state.parameters.wall_gap});
+  l.scanner.inclusive_sum(l.flags, l.sums);
+  const int chosen = last_of(l.sums);
+  if (chosen == 0) return false;
+  const int most = throttled ? std::max(1, static_cast<int>(l.rules.split_share * static_cast<float>(n))) : n;
+  const int room = p.capacity() - n;
+  constexpr int most_extra = 7;
+  if (chosen > most || chosen > room / most_extra) limit(state, chosen, most, room);
+  return true;
+}
+
+}  // namespace sim::SIM_BACKEND

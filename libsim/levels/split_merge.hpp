@@ -1,0 +1,23 @@
+#pragma once
+/// The parts of the pass that splits and merges.
+
+#include "libsim/levels/split_pattern.hpp"
+#include "libsim/stages/fluid_state.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Fills split_code (0 = stays). False when nobody splits.
+bool choose_splits(FluidState& state);
+/// Merges pairs in place: the particle with the lower id becomes the pair, the other is marked in `gone`.
+void merge_pairs(FluidState& state);
+/// Makes the children and closes the gaps: the number of particles changes.
+void compact(FluidState& state, bool any_split);
+
+/// The last value, read back from the device; 0 when there is none.
+inline int last_of(const Array<int>& values) {
+  int out = 0;
+  if (values.size()) copy_to_host(&out, values.data() + values.size() - 1, sizeof out);
+  return out;
+}
+
+}  // namespace sim::SIM_BACKEND
