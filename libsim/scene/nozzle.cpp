@@ -8,9 +8,17 @@ namespace sim {
 
 namespace {
 
-std::int64_t frames_open(const Nozzle& nozzle, std::int64_t frame) {
+/// Length of the jet that an open mouth has let through before a frame.
+double length_before(const Nozzle& nozzle, std::int64_t frame, double frame_dt_s) {
   const std::int64_t cycle = nozzle.on_frames + nozzle.off_frames;
-  return frame / cycle * nozzle.on_frames + std::min<std::int64_t>(frame % cycle, nozzle.on_frames);
+  const std::int64_t open =
+      frame / cycle * nozzle.on_frames + std::min<std::int64_t>(frame % cycle, nozzle.on_frames);
+  return static_cast<double>(open) * frame_dt_s * nozzle.speed_m_s;
+}
+
+/// Layers k = 0, 1, ... with (k + 1/2) pitch < length.
+std::int64_t layers_within(double length, double pitch) {
+  return static_cast<std::int64_t>(std::max(0.0, std::ceil(length / pitch - 0.5)));
 }
 
 }  // namespace
@@ -23,19 +31,21 @@ JetLayer jet_layer(const Nozzle& nozzle, double spacing_m) {
   return out;
 }
 
-LayersDue layers_due(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s) {
-  const double interval = jet_layer(nozzle, spacing_m).pitch_m / nozzle.speed_m_s;
-  // Layers k with (k + 1/2) interval < t, for the open time t at a frame's start.
-  const auto passed = [&](std::int64_t at) {
-    const double open = static_cast<double>(frames_open(nozzle, at)) * frame_dt_s;
-    return static_cast<std::int64_t>(std::ceil(open / interval - 0.5));
-  };
+Poured poured_before(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s) {
+  const double pitch = jet_layer(nozzle, spacing_m).pitch_m;
+  const std::int64_t layers = layers_within(length_before(nozzle, frame, frame_dt_s), pitch);
+  return {static_cast<double>(layers) * pitch, layers};
+}
+
+LayersDue layers_due(const Nozzle& nozzle, double spacing_m, const Poured& before, int frame,
+                     double frame_dt_s) {
+  const double pitch = jet_layer(nozzle, spacing_m).pitch_m;
+  const double begin = length_before(nozzle, frame, frame_dt_s);
+  const double end = length_before(nozzle, frame + std::int64_t{1}, frame_dt_s);
   LayersDue out;
-  out.first = passed(frame);
-  out.count = static_cast<int>(passed(frame + std::int64_t{1}) - out.first);
-  const double open = static_cast<double>(frames_open(nozzle, frame)) * frame_dt_s;
-  out.first_time_s = (static_cast<double>(out.first) + 0.5) * interval - open;
-  out.interval_s = interval;
+  out.interval_s = pitch / nozzle.speed_m_s;
+  if (end > begin) out.count = static_cast<int>(layers_within(end - before.length_m, pitch));
+  out.first_time_s = (before.length_m + pitch / 2 - begin) / nozzle.speed_m_s;
   return out;
 }
 

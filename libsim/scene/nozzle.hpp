@@ -1,6 +1,5 @@
 #pragma once
-/// A nozzle that pours downwards in pulses, and the timetable of its layers. Pure functions of the frame
-/// number: a run that starts from a checkpoint pours as the run that made it.
+/// A nozzle that pours downwards in pulses, and the timetable of its layers.
 
 #include <array>
 #include <cstdint>
@@ -24,16 +23,25 @@ struct JetLayer {
 };
 JetLayer jet_layer(const Nozzle& nozzle, double spacing_m);
 
+/// How much of the jet has been poured.
+struct Poured {
+  double length_m = 0;
+  std::int64_t layers = 0;
+};
+/// What a nozzle has poured before `frame` with one spacing throughout; a pure function of the frame, so that
+/// a run from a checkpoint pours as the run that made it.
+Poured poured_before(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s);
+
 /// Layers whose turn comes within one frame.
 struct LayersDue {
-  std::int64_t first = 0;  ///< number of the first of them since frame 0; it turns the layer
   int count = 0;
   double first_time_s = 0;  ///< from the frame's start to the moment when the first passes the mouth
   double interval_s = 0;    ///< from layer to layer
 };
 
-/// Layer k passes the mouth when the nozzle has been open for (k + 1/2) pitch / speed; pulses share one
-/// count. Frames are counted from 0; `frame_dt_s` > 0.
-LayersDue layers_due(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s);
+/// The next layer passes the mouth when the nozzle has been open for (length + pitch / 2) / speed; pulses
+/// share one count. Frames are counted from 0; `frame_dt_s` > 0.
+LayersDue layers_due(const Nozzle& nozzle, double spacing_m, const Poured& before, int frame,
+                     double frame_dt_s);
 
 }  // namespace sim

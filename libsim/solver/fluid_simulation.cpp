@@ -166,7 +166,6 @@ class FluidSimulation final : public Simulation {
           "use 1 to 4 levels");
     }
     state_.parameters = solver_parameters(scene, options);
-    set_jets();
     state_.saliency.readings = options.readings;
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
@@ -223,7 +222,8 @@ class FluidSimulation final : public Simulation {
     out.speed_max_m_s = measured.speed_max_m_s;
     out.guards = {met.speed_limited,      met.coincident_pairs, met.not_finite,
                   met.neighbours_dropped, met.wall_projected,   state_.jets.waited};
-    out.poured = (static_cast<std::int64_t>(state_.jets.poured)) << resolution_.level;
+    out.poured = state_.jets.poured;
+    out.reservoir = state_.jets.reservoir;
     out.guards.saliency_not_finite = met.saliency_not_finite;
     out.guards.gaze_lost = state_.saliency.input.gaze_lost();
     return out;
@@ -234,7 +234,8 @@ class FluidSimulation final : public Simulation {
   double spacing_m() const override { return resolution_.spacing_m; }
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
-    return state_.particles.bytes() + state_.jets.columns.bytes() + state_.saliency.bytes();
+    return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
+           state_.saliency.bytes();
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
@@ -346,14 +347,20 @@ class FluidSimulation final : public Simulation {
     if (p.has(Column::Saliency)) p.saliency.zero();
     if (adaptive()) state_.levels.begin(p);
     state_.walls = walls_of(scene_, false);
+    set_jets();
   }
 
   void set_jets() {
     const auto f = [](double value) { return static_cast<float>(value); };
     auto& jets = state_.jets;
     jets.nozzles = scene_.nozzles;
-    jets.spacing_m = resolution_.spacing_m;
+    jets.finest_spacing_m = resolution_.finest_spacing_m;
     jets.frame_dt_s = options_.frame_dt_s > 0 ? options_.frame_dt_s : scene_.frame_dt_s;
+    jets.level = resolution_.level;
+    jets.by_target = state_.particles.has(Column::Target);
+    jets.before.clear();
+    for (const auto& nozzle : jets.nozzles)
+      jets.before.push_back(poured_before(nozzle, resolution_.spacing_m, frame_, jets.frame_dt_s));
     jets.corners = {
         {0, 0, 0}, {f(scene_.tank_size_m[0]), 0, f(scene_.tank_size_m[2])}, f(scene_.recirculation_corner_m)};
   }

@@ -8,10 +8,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Moves particles into the layers whose turn comes within the frame. A layer that passes the mouth `lead`
+/// Places particles in the layers whose turn comes within the frame. A layer that passes the mouth `lead`
 /// seconds after the frame's start begins it u lead - g lead^2 / 2 above the mouth at the speed u - g lead.
 struct Pour {
-  const int* taken;
+  const int* which;  ///< the particles; null: those from `first` on
+  int first;
   Vec4* position;
   Vec4* velocity;
   Vec3 mouth;
@@ -31,19 +32,20 @@ struct Pour {
     const float r = radius * sqrtf((static_cast<float>(site) + 0.5f) / static_cast<float>(sites));
     const auto lead = static_cast<float>(first_lead + layer * interval);
     const float above = lead * (speed - 0.5f * gravity * lead);
-    const int i = taken[k];
+    const int i = which ? which[k] : first + k;
     position[i] = with_w(mouth + Vec3{r * cosf(angle), above, r * sinf(angle)}, position[i].w);
     velocity[i] = {0, gravity * lead - speed, 0, 0};
   }
 };
 
-void pour(FluidState& state, const Nozzle& nozzle, const LayersDue& due, const int* taken, int layers) {
+void pour(FluidState& state, const Nozzle& nozzle, const LayersDue& due, std::int64_t number, int sites,
+          int layers, const int* which, int first) {
   auto& p = state.particles;
   const auto f = [](double value) { return static_cast<float>(value); };
-  const int sites = jet_layer(nozzle, state.jets.spacing_m).sites;
-  const double turns = static_cast<double>(due.first) / (2 * std::numbers::pi);
+  const double turns = static_cast<double>(number) / (2 * std::numbers::pi);
   for_each("pour", layers * sites,
-           Pour{taken,
+           Pour{which,
+                first,
                 p.position.data(),
                 p.velocity.data(),
                 {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
@@ -56,22 +58,79 @@ void pour(FluidState& state, const Nozzle& nozzle, const LayersDue& due, const i
                 turns - std::floor(turns)});
 }
 
+/// Adds up the mass that wants each level within a sphere.
+struct CountTargets {
+  const Vec4* position;
+  const std::uint8_t* level;
+  const std::uint8_t* target;
+  Vec3 centre;
+  float radius;
+  int* mass;
+  SIM_FN void operator()(int i) const {
+    const Vec3 offset = xyz(position[i]) - centre;
+    if (!(dot(offset, offset) < radius * radius)) return;
+    atomic_add(&mass[target[i] & 3], 1 << level[i]);
+  }
+};
+
+/// Median target, by mass, of the water within one diameter of the mouth; where there is none, the level of
+/// before.
+int median_target(FluidState& state, const Nozzle& nozzle) {
+  auto& p = state.particles;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  Array<int> mass(4);
+  mass.zero();
+  for_each("targets at nozzle", p.size(),
+           CountTargets{p.position.data(),
+                        p.level.data(),
+                        p.target.data(),
+                        {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
+                        f(nozzle.diameter_m),
+                        mass.data()});
+  const auto sums = mass.to_host();
+  const std::int64_t all = std::int64_t{sums[0]} + sums[1] + sums[2] + sums[3];
+  if (all == 0) return state.jets.level;
+  int level = 0;
+  for (std::int64_t below = sums[0]; 2 * below < all; below += sums[static_cast<std::size_t>(level)]) ++level;
+  return level;
+}
+
+/// One nozzle's layers of this frame.
+void run_nozzle(FluidState& state, const Nozzle& nozzle, Poured& before) {
+  auto& jets = state.jets;
+  const double frame_dt = jets.frame_dt_s;
+  const auto spacing = [&] { return std::cbrt(1 << jets.level) * jets.finest_spacing_m; };
+  if (layers_due(nozzle, spacing(), before, jets.frame, frame_dt).count == 0) return;
+  if (jets.by_target) jets.level = median_target(state, nozzle);
+  const LayersDue due = layers_due(nozzle, spacing(), before, jets.frame, frame_dt);
+  const JetLayer layer = jet_layer(nozzle, spacing());
+  const int found = jets.columns.find(state.particles, jets.corners);
+  int layers = 0;
+  if (state.one_level) {
+    layers = std::min(due.count, found / layer.sites);
+    pour(state, nozzle, due, before.layers, layer.sites, layers, jets.columns.lowest_first(), 0);
+  } else {
+    layers = jets.exchange.run(state.particles, state.supports, jets.columns.lowest_first(), found,
+                               layer.sites, due.count, jets.level, jets.reservoir);
+    pour(state, nozzle, due, before.layers, layer.sites, layers, nullptr,
+         state.particles.size() - layers * layer.sites);
+  }
+  jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
+  jets.waited += static_cast<std::uint64_t>(due.count - layers);
+  // Layers that waited are left out of the jet.
+  before.length_m += due.count * layer.pitch_m;
+  before.layers += due.count;
+}
+
 void run(FluidState& state) {
   auto& jets = state.jets;
-  std::vector<LayersDue> due;
-  for (const auto& nozzle : jets.nozzles)
-    due.push_back(layers_due(nozzle, jets.spacing_m, jets.frame, jets.frame_dt_s));
-  if (std::all_of(due.begin(), due.end(), [](const LayersDue& one) { return one.count == 0; })) return;
-  const int found = jets.columns.find(state.particles, jets.corners);
-  int taken = 0;
-  for (std::size_t k = 0; k < due.size(); ++k) {
-    const int sites = jet_layer(jets.nozzles[k], jets.spacing_m).sites;
-    const int layers = std::min(due[k].count, (found - taken) / sites);
-    pour(state, jets.nozzles[k], due[k], jets.columns.lowest_first() + taken, layers);
-    taken += layers * sites;
-    jets.waited += static_cast<std::uint64_t>(due[k].count - layers);
+  for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
+    // At one level the timetable is a pure function of the frame.
+    if (!jets.by_target)
+      jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
+                                     jets.frame, jets.frame_dt_s);
+    run_nozzle(state, jets.nozzles[k], jets.before[k]);
   }
-  jets.poured += static_cast<std::uint64_t>(taken);
 }
 
 }  // namespace
@@ -80,8 +139,8 @@ Stage nozzle_stage() {
   return {"nozzle",
           "scenes: Vogel layers of the lowest corner water",
           Phase::FrameStart,
-          columns(Column::Position, Column::Velocity, Column::Id),
-          columns(Column::Position, Column::Velocity),
+          columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+          columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
           [](const Demand& demand) -> std::string {
             return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
           },

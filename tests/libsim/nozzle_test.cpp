@@ -39,29 +39,49 @@ TEST(LayersDue, PourTheSameVolumeAtEverySpacing) {
     const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
     for (const double spacing : {0.0945, 0.15, 0.3, 0.6}) {
       const double layer = sim::jet_layer(nozzle, spacing).sites * spacing * spacing * spacing;
-      std::int64_t layers = 0;
+      sim::Poured poured;
       const int frames = 5 * (nozzle.on_frames + nozzle.off_frames);
       for (int frame = 0; frame < frames; ++frame) {
-        const auto due = sim::layers_due(nozzle, spacing, frame, 1.0 / 60);
-        ASSERT_EQ(due.first, layers) << "no layer is skipped or poured twice";
-        layers += due.count;
+        const auto before = sim::poured_before(nozzle, spacing, frame, 1.0 / 60);
+        ASSERT_EQ(before.layers, poured.layers) << "no layer is skipped or poured twice";
+        const auto due = sim::layers_due(nozzle, spacing, before, frame, 1.0 / 60);
+        poured.layers += due.count;
         if (due.count) {
           ASSERT_GE(due.first_time_s, -1e-12);
           ASSERT_LT(due.first_time_s + (due.count - 1) * due.interval_s, 1.0 / 60);
         }
       }
       const double open_s = 5 * nozzle.on_frames / 60.0;
-      EXPECT_NEAR(static_cast<double>(layers) * layer, flow * open_s, 0.51 * layer) << spacing;
+      EXPECT_NEAR(static_cast<double>(poured.layers) * layer, flow * open_s, 0.51 * layer) << spacing;
     }
   }
   EXPECT_NEAR(pi / 4 * 9 * 12, 84.8, 0.05);
+}
+
+TEST(LayersDue, KeepTheFlowWhenTheSpacingChangesFromFrameToFrame) {
+  const auto nozzle = jet_impact().nozzles[0];
+  const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
+  std::mt19937 random(1);
+  sim::Poured poured;
+  double volume = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    const double spacing = 0.15 * std::cbrt(1 << random() % 4);
+    const auto layer = sim::jet_layer(nozzle, spacing);
+    const auto due = sim::layers_due(nozzle, spacing, poured, frame, 1.0 / 60);
+    volume += due.count * layer.sites * std::pow(spacing, 3);
+    poured.length_m += due.count * layer.pitch_m;
+    const double open_s = (frame / 200 * 80 + std::min(frame % 200 + 1, 80)) / 60.0;
+    // Half of the coarsest layer at most, 8.5 m3 thick times half.
+    ASSERT_NEAR(volume, flow * open_s, 0.51 * 0.31 * flow / nozzle.speed_m_s) << frame;
+  }
 }
 
 TEST(LayersDue, NothingComesWhileTheNozzleRests) {
   const auto nozzle = faucet().nozzles[0];
   for (int frame = 0; frame < 240; ++frame) {
     const bool open = frame % 120 < 60;
-    const auto due = sim::layers_due(nozzle, 0.15, frame, 1.0 / 60);
+    const auto before = sim::poured_before(nozzle, 0.15, frame, 1.0 / 60);
+    const auto due = sim::layers_due(nozzle, 0.15, before, frame, 1.0 / 60);
     EXPECT_EQ(due.count > 0, open) << frame;  // 1.78 layers a frame: never none while open
   }
 }

@@ -50,8 +50,11 @@ FluidState state_of(const Start& start) {
   p.position.from_host(start.position);
   p.id.from_host(start.id);
   p.velocity.zero();
+  p.level.zero();
+  state.supports = level_supports(0.3);
   state.jets.nozzles = {nozzle()};
-  state.jets.spacing_m = 0.15;
+  state.jets.before.resize(1);
+  state.jets.finest_spacing_m = 0.15;
   state.jets.frame_dt_s = 1.0 / 60;
   state.jets.corners = {{0, 0, 0}, {tank, 0, tank}, edge};
   return state;
@@ -90,12 +93,12 @@ SIM_TEST(NozzleStage, TakesTheLowestCornerWaterTiesById) {
   const Start start = pool(20'000);
   FluidState state = state_of(start);
   nozzle_stage().run(state);
-  const auto due = layers_due(nozzle(), 0.15, 0, 1.0 / 60);
+  const auto due = layers_due(nozzle(), 0.15, {}, 0, 1.0 / 60);
   ASSERT_EQ(due.count, 2);
   const auto sites = static_cast<std::size_t>(jet_layer(nozzle(), 0.15).sites);
   EXPECT_EQ(sites, 113u);
   EXPECT_EQ(moved(state), lowest(start, 2 * sites));
-  EXPECT_EQ(state.jets.poured, 2 * sites);
+  EXPECT_EQ(state.jets.poured, static_cast<std::int64_t>(2 * sites));
   EXPECT_EQ(state.jets.waited, 0u);
 }
 
@@ -125,7 +128,7 @@ SIM_TEST(NozzleStage, ChoiceAndPlacesDoNotDependOnTheOrderInMemory) {
 SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {
   FluidState state = state_of(pool(20'000));
   nozzle_stage().run(state);
-  const auto due = layers_due(nozzle(), 0.15, 0, 1.0 / 60);
+  const auto due = layers_due(nozzle(), 0.15, {}, 0, 1.0 / 60);
   const auto position = state.particles.position.to_host();
   const auto velocity = state.particles.velocity.to_host();
   std::vector<int> of_layer(2);
@@ -154,12 +157,12 @@ SIM_TEST(NozzleStage, WaitsWhenTheCornersHoldTooFew) {
   }
   FluidState state = state_of(start);
   nozzle_stage().run(state);
-  EXPECT_EQ(state.jets.poured, 113u);
+  EXPECT_EQ(state.jets.poured, 113);
   EXPECT_EQ(state.jets.waited, 1u);
   for (auto& p : start.position) p.x = p.z = 5;
   FluidState dry = state_of(start);
   nozzle_stage().run(dry);
-  EXPECT_EQ(dry.jets.poured, 0u);
+  EXPECT_EQ(dry.jets.poured, 0);
   EXPECT_EQ(dry.jets.waited, 2u);
   FluidState empty = state_of({});
   nozzle_stage().run(empty);
@@ -180,6 +183,85 @@ SIM_TEST(NozzleStage, RestsBetweenPulsesWithoutAnyMemory) {
   nozzle_stage().run(state);
   EXPECT_TRUE(moved(state).empty());
   EXPECT_EQ(state.jets.columns.bytes(), 0u);
+}
+
+/// A pool of mixed levels whose particles want `target`, with room for eight times as many.
+FluidState mixed_pool(int n, int target, std::int64_t& mass) {
+  Start start = pool(n);
+  FluidState state;
+  auto& p = state.particles;
+  p.allocate(ColumnSet().set(), n, 8 * n);
+  state.supports = level_supports(0.3);
+  std::vector<std::uint8_t> level(start.id.size());
+  mass = 0;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    level[i] = static_cast<std::uint8_t>(i % 4);
+    start.position[i].w = state.supports.h[i % 4];
+    mass += 1 << (i % 4);
+  }
+  // Water round the mouth that says what is wanted.
+  start.position[0] = {5, 4.4f, 5, state.supports.h[0]};
+  p.position.from_host(start.position);
+  p.id.from_host(start.id);
+  p.level.from_host(level);
+  p.target.from_host(std::vector<std::uint8_t>(start.id.size(), static_cast<std::uint8_t>(target)));
+  p.velocity.zero();
+  state.one_level = false;
+  state.jets.nozzles = {nozzle()};
+  state.jets.before.resize(1);
+  state.jets.finest_spacing_m = 0.15;
+  state.jets.frame_dt_s = 1.0 / 60;
+  state.jets.corners = {{0, 0, 0}, {tank, 0, tank}, edge};
+  state.jets.by_target = true;
+  return state;
+}
+
+SIM_TEST(NozzleStage, PoursTheMedianTargetAndKeepsTheMassExactly) {
+  for (int target = 0; target < 4; ++target) {
+    std::int64_t mass = 0;
+    FluidState state = mixed_pool(8'000, target, mass);
+    const auto before = moved(state).size();
+    ASSERT_EQ(before, 0u);
+    for (int frame = 0; frame < 2; ++frame) {
+      state.jets.frame = frame;
+      nozzle_stage().run(state);
+      const auto level = state.particles.level.to_host();
+      const auto position = state.particles.position.to_host();
+      const auto velocity = state.particles.velocity.to_host();
+      auto id = state.particles.id.to_host();
+      std::int64_t domain = 0;
+      std::int64_t poured = 0;
+      for (std::size_t i = 0; i < level.size(); ++i) {
+        domain += 1 << level[i];
+        ASSERT_EQ(position[i].w, state.supports.h[level[i]]);
+        if (velocity[i].y == 0) continue;
+        ASSERT_EQ(level[i], target);
+        poured += 1 << level[i];
+      }
+      EXPECT_EQ(domain + state.jets.reservoir, mass);
+      EXPECT_GE(state.jets.reservoir, 0);
+      EXPECT_LT(state.jets.reservoir, 8);
+      EXPECT_EQ(poured, state.jets.poured);
+      EXPECT_GT(poured, 0);
+      std::sort(id.begin(), id.end());
+      EXPECT_EQ(std::adjacent_find(id.begin(), id.end()), id.end()) << "ids are unique";
+      EXPECT_LT(id.back(), state.particles.capacity());
+    }
+    EXPECT_EQ(state.jets.waited, 0u);
+  }
+}
+
+SIM_TEST(NozzleStage, WaitsWhenTheCapacityIsReached) {
+  // Corners full of the coarsest particles, layers of the finest, and room for none.
+  Start start = pool(4'000);
+  FluidState state = state_of(start);
+  state.one_level = false;
+  state.particles.level.from_host(std::vector<std::uint8_t>(start.id.size(), 3));
+  nozzle_stage().run(state);
+  EXPECT_EQ(state.jets.waited, 2u);
+  EXPECT_EQ(state.jets.poured, 0);
+  EXPECT_EQ(state.jets.reservoir, 0);
+  EXPECT_EQ(state.particles.size(), 4'000);
 }
 
 }  // namespace

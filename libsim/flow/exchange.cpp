@@ -1,0 +1,174 @@
+#include "libsim/flow/exchange.hpp"
+
+#include <algorithm>
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct Weigh {
+  const int* taken;
+  const std::uint8_t* level;
+  int* mass;
+  SIM_FN void operator()(int k) const { mass[k] = 1 << level[taken[k]]; }
+};
+
+/// Writes where the sum first reaches `need` > 0: at one k only.
+template <class Cut>
+struct FindCut {
+  const int* mass;
+  const int* sum;
+  Cut* cut;
+  std::int64_t need;
+  SIM_FN void operator()(int k) const {
+    if (sum[k] >= need && sum[k] - mass[k] < need) *cut = {k + 1, sum[k]};
+  }
+};
+
+struct SetAll {
+  int* values;
+  int value;
+  SIM_FN void operator()(int i) const { values[i] = value; }
+};
+
+/// Taken particles leave; their ids come first in the list of the new ones.
+struct Leave {
+  const int* taken;
+  const int* id;
+  int* kept;
+  int* ids;
+  int made;
+  SIM_FN void operator()(int k) const {
+    kept[taken[k]] = 0;
+    if (k < made) ids[k] = id[taken[k]];
+  }
+};
+
+struct Stay {
+  const int* kept;
+  const int* kept_sum;
+  int* order;
+  SIM_FN void operator()(int i) const {
+    if (kept[i]) order[kept_sum[i] - 1] = i;
+  }
+};
+
+/// Ids of the living and of those just taken are not free. Ids beyond the capacity have no place in the list.
+struct MarkUsed {
+  const int* id;
+  int* free;
+  int capacity;
+  SIM_FN void operator()(int i) const {
+    if (id[i] >= 0 && id[i] < capacity) free[id[i]] = 0;
+  }
+};
+
+struct TakeFree {
+  const int* free;
+  const int* free_sum;
+  int* ids;
+  int taken, made;
+  SIM_FN void operator()(int id) const {
+    const int place = taken + free_sum[id] - 1;
+    if (free[id] && place < made) ids[place] = id;
+  }
+};
+
+/// The new ones, as settled members of their level.
+struct Make {
+  const int* ids;
+  Vec4* position;
+  int* id;
+  std::uint8_t* level;
+  std::uint8_t* target;
+  std::uint8_t* history;
+  std::uint8_t* age;
+  int first;
+  float support;
+  std::uint8_t new_level;
+  SIM_FN void operator()(int k) const {
+    const int i = first + k;
+    position[i].w = support;
+    id[i] = ids[k];
+    level[i] = new_level;
+    if (target) target[i] = new_level;
+    if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
+    if (age) age[i] = 0;
+  }
+};
+
+int last_of(const Array<int>& values) {
+  int out = 0;
+  if (values.size()) copy_to_host(&out, values.data() + (values.size() - 1), sizeof out);
+  return out;
+}
+
+}  // namespace
+
+std::size_t Exchange::bytes() const {
+  std::size_t sum = cut_.bytes();
+  for (const auto* column : {&mass_, &mass_sum_, &kept_, &kept_sum_, &order_, &id_, &free_, &free_sum_})
+    sum += column->bytes();
+  return sum;
+}
+
+Exchange::Cut Exchange::cut_at(std::int64_t need) {
+  if (need <= 0) return {0, 0};
+  cut_.resize(1);
+  for_each("cut", static_cast<int>(mass_.size()),
+           FindCut<Cut>{mass_.data(), mass_sum_.data(), cut_.data(), need});
+  return cut_.to_host()[0];
+}
+
+void Exchange::list_free_ids(const Particles& particles, int taken) {
+  const int capacity = particles.capacity();
+  const int made = static_cast<int>(id_.size());
+  free_.resize(static_cast<std::size_t>(capacity));
+  for_each("free ids", capacity, SetAll{free_.data(), 1});
+  for_each("used ids", particles.size(), MarkUsed{particles.id.data(), free_.data(), capacity});
+  scanner_.inclusive_sum(free_, free_sum_);
+  for_each("take ids", capacity, TakeFree{free_.data(), free_sum_.data(), id_.data(), taken, made});
+}
+
+int Exchange::run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found,
+                  int sites, int layers, int level, std::int64_t& reservoir) {
+  auto& p = particles;
+  const int n = p.size();
+  mass_.resize(static_cast<std::size_t>(found));
+  for_each("weigh", found, Weigh{lowest_first, p.level.data(), mass_.data()});
+  scanner_.inclusive_sum(mass_, mass_sum_);
+  const std::int64_t layer_mass = static_cast<std::int64_t>(sites) << level;
+  layers = static_cast<int>(std::min<std::int64_t>(layers, (reservoir + last_of(mass_sum_)) / layer_mass));
+  Cut cut{};
+  int made = 0;
+  for (; layers > 0; --layers) {
+    cut = cut_at(layers * layer_mass - reservoir);
+    made = layers * sites;
+    if (n > 0 && n - cut.taken + made <= p.capacity()) break;
+  }
+  if (layers <= 0) return 0;
+
+  // Those who stay, then room for the new ones: copies of somebody, to be overwritten.
+  kept_.resize(static_cast<std::size_t>(n));
+  id_.resize(static_cast<std::size_t>(made));
+  for_each("keep", n, SetAll{kept_.data(), 1});
+  for_each("leave", cut.taken, Leave{lowest_first, p.id.data(), kept_.data(), id_.data(), made});
+  if (made > cut.taken) list_free_ids(p, cut.taken);
+  scanner_.inclusive_sum(kept_, kept_sum_);
+  const int staying = n - cut.taken;
+  order_.resize(static_cast<std::size_t>(staying + made));
+  for_each("room", made, SetAll{order_.data() + staying, 0});
+  for_each("stay", n, Stay{kept_.data(), kept_sum_.data(), order_.data()});
+  p.reorder(order_);
+  const auto if_there = [&](Column column, Array<std::uint8_t>& values) {
+    return p.has(column) ? values.data() : nullptr;
+  };
+  for_each("make", made,
+           Make{id_.data(), p.position.data(), p.id.data(), p.level.data(),
+                if_there(Column::Target, p.target), if_there(Column::History, p.history),
+                if_there(Column::Age, p.age), staying, supports.h[level], static_cast<std::uint8_t>(level)});
+  reservoir += cut.mass - layers * layer_mass;
+  return layers;
+}
+
+}  // namespace sim::SIM_BACKEND

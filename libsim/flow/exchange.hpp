@@ -1,0 +1,34 @@
+#pragma once
+/// Particles of any levels for particles of one level, at equal mass in units of m_*.
+
+#include "libsim/particles/particles.hpp"
+
+namespace sim::SIM_BACKEND {
+
+class Exchange {
+ public:
+  /// Takes the first particles of `lowest_first` (`found` of them) until they and the reservoir outweigh a
+  /// whole number of layers, at most `layers` of `sites` particles of `level`; removes them, appends the
+  /// layers' particles and keeps the rest of their mass, less than the heaviest particle's, in the reservoir.
+  /// New particles take over the ids that were freed, then the lowest that are free below the capacity; their
+  /// places and velocities are the caller's to fill. Returns the layers made: fewer than asked for where the
+  /// mass or the capacity does not suffice.
+  int run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found, int sites,
+          int layers, int level, std::int64_t& reservoir);
+  std::size_t bytes() const;
+
+ private:
+  struct Cut {
+    int taken;
+    int mass;
+  };
+  Cut cut_at(std::int64_t need);
+  /// Gives ids to the new particles beyond the first `taken`.
+  void list_free_ids(const Particles& particles, int taken);
+
+  Scanner scanner_;
+  Array<int> mass_, mass_sum_, kept_, kept_sum_, order_, id_, free_, free_sum_;
+  Array<Cut> cut_;
+};
+
+}  // namespace sim::SIM_BACKEND
