@@ -14,11 +14,10 @@ struct Weigh {
 };
 
 /// Writes where the sum first reaches `need` > 0: at one k only.
-template <class Cut>
 struct FindCut {
   const int* mass;
   const int* sum;
-  Cut* cut;
+  Exchange::Cut* cut;
   std::int64_t need;
   SIM_FN void operator()(int k) const {
     if (sum[k] >= need && sum[k] - mass[k] < need) *cut = {k + 1, sum[k]};
@@ -115,8 +114,7 @@ std::size_t Exchange::bytes() const {
 Exchange::Cut Exchange::cut_at(std::int64_t need) {
   if (need <= 0) return {0, 0};
   cut_.resize(1);
-  for_each("cut", static_cast<int>(mass_.size()),
-           FindCut<Cut>{mass_.data(), mass_sum_.data(), cut_.data(), need});
+  for_each("cut", static_cast<int>(mass_.size()), FindCut{mass_.data(), mass_sum_.data(), cut_.data(), need});
   return cut_.to_host()[0];
 }
 

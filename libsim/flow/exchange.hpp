@@ -7,6 +7,12 @@ namespace sim::SIM_BACKEND {
 
 class Exchange {
  public:
+  /// Where the taken end.
+  struct Cut {
+    int taken;
+    int mass;  ///< of the taken, m_*
+  };
+
   /// Takes the first particles of `lowest_first` (`found` of them) until they and the reservoir outweigh a
   /// whole number of layers, at most `layers` of `sites` particles of `level`; removes them, appends the
   /// layers' particles and keeps the rest of their mass, less than the heaviest particle's, in the reservoir.
@@ -18,10 +24,6 @@ class Exchange {
   std::size_t bytes() const;
 
  private:
-  struct Cut {
-    int taken;
-    int mass;
-  };
   Cut cut_at(std::int64_t need);
   /// Gives ids to the new particles beyond the first `taken`.
   void list_free_ids(const Particles& particles, int taken);
