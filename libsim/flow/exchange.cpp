@@ -82,6 +82,7 @@ struct Make {
   std::uint8_t* target;
   std::uint8_t* history;
   std::uint8_t* age;
+  std::uint8_t* waiting;
   int first;
   float support;
   std::uint8_t new_level;
@@ -93,6 +94,7 @@ struct Make {
     if (target) target[i] = new_level;
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
     if (age) age[i] = 0;
+    if (waiting) waiting[i] = 0;
   }
 };
 
@@ -164,7 +166,8 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   for_each("make", made,
            Make{id_.data(), p.position.data(), p.id.data(), p.level.data(),
                 if_there(Column::Target, p.target), if_there(Column::History, p.history),
-                if_there(Column::Age, p.age), staying, supports.h[level], static_cast<std::uint8_t>(level)});
+                if_there(Column::Age, p.age), if_there(Column::Waiting, p.waiting), staying,
+                supports.h[level], static_cast<std::uint8_t>(level)});
   reservoir += cut.mass - layers * layer_mass;
   return layers;
 }

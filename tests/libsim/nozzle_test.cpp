@@ -212,6 +212,46 @@ void runs_are_bit_equal(Backend backend) {
 TEST(Nozzle, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cpu); }
 TEST(NozzleGpu, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cuda); }
 
+/// Domain and reservoir together hold the scene's mass, whatever splits, merges and is poured.
+void ledger_closes(Backend backend) {
+  auto scene = faucet();
+  scene.settle_frames = 20;
+  auto& nozzle = scene.nozzles[0];
+  nozzle.on_frames = 40;
+  nozzle.off_frames = 10;
+  const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
+  for (const auto method : {MethodKind::FovFluid, MethodKind::Ours, MethodKind::OursTsp}) {
+    const auto options = small(backend, method);
+    const auto fluid = sim::make_simulation(scene, options);
+    std::size_t levels = 0;
+    for (int frame = 1; frame <= 70; ++frame) {
+      fluid->step_frame();
+      if (frame % 10) continue;
+      const auto report = fluid->report();
+      ASSERT_EQ(report.mass_units + report.reservoir, 8 * options.n_star) << frame;
+      ASSERT_LT(report.reservoir, 8);
+      ASSERT_EQ(report.guards.nozzle_waited, 0u);
+      levels = std::max(levels, report.particles_by_level.size());
+      ASSERT_EQ(fluid_test::outside(fluid->read_state(), scene.tank_size_m, 0), 0) << frame;
+    }
+    EXPECT_GT(levels, 1u) << "the test must see mixed levels";
+    const auto state = fluid->read_state();
+    for (std::size_t i = 1; i < state.size(); ++i) ASSERT_LT(state[i - 1].id, state[i].id);
+    const double finest = sim::resolution_of(scene, method, options.n_star).finest_spacing_m;
+    const double volume = static_cast<double>(fluid->report().poured) * std::pow(finest, 3);
+    const auto report = fluid->report();
+    std::printf("%s: poured %.2f m3 of %.2f, %lld particles for %lld m_*, reservoir %lld, max density %.3f\n",
+                sim::method_name(method).c_str(), volume, flow, static_cast<long long>(report.particles),
+                static_cast<long long>(report.mass_units), static_cast<long long>(report.reservoir),
+                report.density_max);
+    // Half a layer of the coarsest level at most: 60 open frames.
+    const double coarsest = sim::jet_layer(nozzle, 2 * finest).pitch_m * flow / nozzle.speed_m_s;
+    EXPECT_NEAR(volume, flow, 0.51 * coarsest);
+  }
+}
+TEST(Nozzle, LedgerOfDomainAndReservoirCloses) { ledger_closes(Backend::Cpu); }
+TEST(NozzleGpu, LedgerOfDomainAndReservoirCloses) { ledger_closes(Backend::Cuda); }
+
 TEST(Nozzle, IsAbsentWhereTheSceneHasNone) {
   const auto options = small(Backend::Cpu, MethodKind::HiRes);
   auto dam = sim::read_scene("data/scenes/single_dam.toml");
