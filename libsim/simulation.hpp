@@ -14,6 +14,7 @@
 #include "libsim/methods/preset.hpp"
 #include "libsim/saliency/looks.hpp"
 #include "libsim/scene/scene.hpp"
+#include "stats/ptpe.hpp"
 
 namespace sim {
 
@@ -46,6 +47,14 @@ struct TargetRegion {
   int outside = 0;
 };
 
+/// What tau temporal acceleration goes by (ViP-Fluid, Algorithm 3); for methods that have it.
+struct TemporalOptions {
+  std::optional<double> fixed_tau;  ///< frames/s; none = measured from Simulation::frame_time
+  stats::PtpeModel model;           ///< of tau and beta, Eq. 11
+  std::uint32_t seed = 1;           ///< of the choice of active particles
+  bool always = false;              ///< also for methods without it, in tests and comparisons
+};
+
 struct SimulationOptions {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 32 * 1024;
@@ -59,6 +68,7 @@ struct SimulationOptions {
   int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
   int substeps = 0;          ///< a frame; 0 = by the scene's rule
   double frame_dt_s = 0;     ///< 0 = the scene's
+  TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
   std::optional<std::vector<ParticleState>> start;
@@ -105,6 +115,13 @@ struct LevelEvents {
   double energy_lost_j = 0;      ///< kinetic energy lost in merges
 };
 
+/// What temporal acceleration did in the last frame.
+struct TemporalReport {
+  double tau = 0;   ///< frames/s, Eq. 11
+  double beta = 1;  ///< lowest probability of being solved
+  std::int64_t active = 0;
+};
+
 /// State of the fluid after a frame.
 struct FrameReport {
   int frame = 0;  ///< frames since the gate opened
@@ -121,6 +138,7 @@ struct FrameReport {
   std::int64_t poured = 0;     ///< by nozzles since the simulation was made, in units of m_*
   std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured; mass_units + reservoir is constant
   GuardCounts guards;
+  TemporalReport temporal;
 };
 
 class Simulation {
@@ -135,6 +153,8 @@ class Simulation {
   virtual void step_frame() = 0;
   /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
   virtual void force_targets(const TargetRegion&) {}
+  /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
+  virtual void frame_time(double ms) = 0;
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;

@@ -16,6 +16,7 @@ struct Remember {
   const std::uint8_t* level;
   const std::uint8_t* target;
   const std::uint8_t* split_code;
+  const std::uint8_t* active;  ///< nullptr when everyone was solved
   std::uint8_t* history;
   std::uint8_t* age;
   std::uint8_t* waiting;
@@ -25,7 +26,9 @@ struct Remember {
     history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
     age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255);
     gone[i] = 0;
-    wish[i] = !split_code[i] && least_of_history(history[i]) > level[i];
+    const bool paused = active && !active[i];
+    wish[i] = !split_code[i] && !paused && least_of_history(history[i]) > level[i];
+    if (paused) return;
     waiting[i] = static_cast<std::uint8_t>(!wish[i] ? 0 : waiting[i] < 255 ? waiting[i] + 1 : 255);
   }
 };
@@ -208,8 +211,8 @@ void merge_pairs(FluidState& state) {
   const int n = p.size();
   const Neighbours neighbours = state.neighbours.view();
   for_each("remember levels", n,
-           Remember{p.level.data(), p.target.data(), l.split_code.data(), p.history.data(), p.age.data(),
-                    p.waiting.data(), l.wish.data(), l.gone.data()});
+           Remember{p.level.data(), p.target.data(), l.split_code.data(), state.last_active(),
+                    p.history.data(), p.age.data(), p.waiting.data(), l.wish.data(), l.gone.data()});
   if (l.rules.merge_keeps_steps) {
     for_each("keep steps", n,
              KeepSteps{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),

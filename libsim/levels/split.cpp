@@ -6,7 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-enum Status : std::uint8_t { keeps, wants, splits };
+/// Those that the last frame did not solve are paused (Alg. 3 line 16).
+enum Status : std::uint8_t { keeps, paused, wants, splits };
 
 /// Who splits first: those with the most levels to go, which the most salient ones have; then by chance,
 /// newly drawn each frame.
@@ -19,10 +20,11 @@ SIM_FN std::uint64_t priority(int k, int id, std::uint32_t frame) {
 struct MarkSplits {
   const std::uint8_t* level;
   const std::uint8_t* target;
+  const std::uint8_t* active;
   std::uint8_t* status;
   bool throttled;
   SIM_FN void operator()(int i) const {
-    status[i] = level[i] <= target[i] ? keeps : throttled ? wants : splits;
+    status[i] = level[i] <= target[i] ? keeps : active && !active[i] ? paused : throttled ? wants : splits;
   }
 };
 
@@ -45,7 +47,7 @@ struct ChooseApart {
     std::uint8_t result = splits;
     for (int k = 0; k < neighbours.size(i); ++k) {
       const int j = neighbours(i, k);
-      if (status[j] == keeps) continue;
+      if (status[j] < wants) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
       const float spacing = 0.25f * (self.w + other.w);  // h = 2 d
@@ -78,7 +80,7 @@ struct FitChildren {
   SIM_FN void operator()(int i) const {
     code[i] = 0;
     flags[i] = 0;
-    if (level[i] <= target[i]) return;
+    if (level[i] <= target[i] || status[i] == paused) return;
     if (status[i] != splits) {
       atomic_add(&counts->split_deferred, std::uint64_t{1});
       return;
@@ -169,7 +171,8 @@ bool choose_splits(FluidState& state) {
   auto& l = state.levels;
   const int n = p.size();
   const bool throttled = l.rules.split_share < 1;
-  for_each("mark splits", n, MarkSplits{p.level.data(), p.target.data(), l.status.data(), throttled});
+  for_each("mark splits", n,
+           MarkSplits{p.level.data(), p.target.data(), state.last_active(), l.status.data(), throttled});
   for (int round = 0; round < rounds && throttled; ++round) {
     for_each("choose splits", n,
              ChooseApart{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),

@@ -33,6 +33,8 @@ Readings readings_of(Preset preset) {
   out.merge_overlap = 1;
   out.merge_keeps_steps = false;
   out.dimensionless_levels = false;
+  out.inherit_change = false;
+  out.inactive_yield = false;
   out.longest_rest_frames = 0;
   out.keep_fragile_active = false;
   return out;

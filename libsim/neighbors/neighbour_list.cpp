@@ -27,8 +27,9 @@ struct MixedRows {
   }
 };
 
-template <class Rows>
+template <class Rows, class Selection>
 struct ListNeighbours {
+  Selection select;
   const Vec4* predicted;
   const int* cell_of;
   Rows rows;
@@ -42,7 +43,7 @@ struct ListNeighbours {
   /// Takes the near ones of a run.
   struct Take {
     const ListNeighbours& task;
-    int i;
+    int slot, i;
     Vec4 self;
     int& found;
     SIM_FN void operator()(IndexRange range) const {
@@ -51,31 +52,35 @@ struct ListNeighbours {
         const Vec3 offset = xyz(self) - xyz(other);
         const float radius = task.margin * 0.5f * (self.w + other.w);
         const bool near = dot(offset, offset) < radius * radius && j != i;
-        task.append(i, found, j, near);
+        task.append(slot, found, j, near);
       }
     }
   };
 
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
     int found = 0;
-    rows(cell_of[i], Take{*this, i, predicted[i], found});
+    rows(cell_of[i], Take{*this, slot, i, predicted[i], found});
     // The last slot only takes what is not kept.
     const int kept = list.capacity - 1;
     if (found > kept) {
       atomic_add(dropped, static_cast<std::uint64_t>(found - kept));
       atomic_max(longest, found);
     }
-    count[i] = found < kept ? found : kept;
+    count[slot] = found < kept ? found : kept;
   }
 
-  SIM_FN void append(int i, int& found, int j, bool near) const {
+  SIM_FN void append(int slot, int& found, int j, bool near) const {
 #ifdef SIM_CUDA
     if (!near) return;
-    if (found < list.capacity) entry[list.place(i, found)] = j;
+    if (found < list.capacity) entry[list.place(slot, found)] = j;
     ++found;
 #else
     // Stored in any case and kept by the count: a branch here is mispredicted every third time.
-    entry[list.place(i, found < list.capacity ? found : list.capacity - 1)] = j;
+    entry[list.place(slot, found < list.capacity ? found : list.capacity - 1)] = j;
     found += near;
 #endif
   }
@@ -83,8 +88,9 @@ struct ListNeighbours {
 
 }  // namespace
 
-template <class Rows>
-void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows, std::uint64_t* dropped) {
+template <class Rows, class Selection>
+void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows, Selection select,
+                         std::uint64_t* dropped) {
   const auto n = static_cast<std::size_t>(particles.size());
   const auto room = static_cast<std::size_t>(particles.capacity());
   const auto entries = [&](std::size_t size) {
@@ -100,17 +106,29 @@ void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows
     longest_.zero();
   }
   for_each("list neighbours", particles.size(),
-           ListNeighbours<Rows>{particles.predicted.data(), grid.cell_of_particle(), rows, view(),
-                                entry_.data(), count_.data(), longest_.data(), dropped, margin});
+           ListNeighbours<Rows, Selection>{select, particles.predicted.data(), grid.cell_of_particle(), rows,
+                                           view(), entry_.data(), count_.data(), longest_.data(), dropped,
+                                           margin});
 }
 
 void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
-  list(particles, grid, OneLevelRows{grid.rows()}, dropped);
+  list(particles, grid, OneLevelRows{grid.rows()}, AllParticles{}, dropped);
+}
+
+void NeighbourList::build(const Particles& particles, const Grid& grid, ActiveParticles active,
+                          std::uint64_t* dropped) {
+  list(particles, grid, OneLevelRows{grid.rows()}, active, dropped);
 }
 
 void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
   capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, dropped);
+  list(particles, grid, MixedRows{grid.level_rows()}, AllParticles{}, dropped);
+}
+
+void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, ActiveParticles active,
+                                std::uint64_t* dropped) {
+  capacity_ = std::max(capacity_, mixed_capacity);
+  list(particles, grid, MixedRows{grid.level_rows()}, active, dropped);
 }
 
 void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {

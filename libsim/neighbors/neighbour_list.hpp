@@ -3,6 +3,7 @@
 /// walk the grid.
 
 #include "libsim/neighbors/grid.hpp"
+#include "libsim/stages/selection.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -13,7 +14,8 @@ constexpr int list_interleave = 32;
 constexpr int list_interleave = 1;
 #endif
 
-/// The list as kernels see it.
+/// The list as kernels see it. i is a slot of the pass that reads it (stages/selection.hpp): the particle
+/// itself while everyone is solved.
 struct Neighbours {
   const int* count;
   const int* entry;
@@ -38,8 +40,12 @@ class NeighbourList {
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond
   /// the capacity are left out and counted in `dropped`.
   void build(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  /// For the active particles only, a list for each of their slots.
+  void build(const Particles& particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
   /// The same for mixed levels.
   void build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  void build_mixed(const Particles& particles, const Grid& grid, ActiveParticles active,
+                   std::uint64_t* dropped);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
@@ -54,8 +60,9 @@ class NeighbourList {
   /// A coarse particle among the finest has 113 within the support, some 150 within the margin.
   static constexpr int mixed_capacity = 192;
 
-  template <class Rows>
-  void list(const Particles& particles, const Grid& grid, Rows rows, std::uint64_t* dropped);
+  template <class Rows, class Selection>
+  void list(const Particles& particles, const Grid& grid, Rows rows, Selection select,
+            std::uint64_t* dropped);
 
   int capacity_ = 80;
   Array<int> count_, entry_, longest_;

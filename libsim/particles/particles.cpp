@@ -41,8 +41,9 @@ struct GatherOne {
 
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position", "velocity",   "id",     "level",   "predicted", "predicted_next", "velocity_next", "lambda",
-      "density",  "neighbours", "target", "history", "saliency",  "saliency_parts", "waiting",       "age"};
+      "position", "velocity", "id",         "level",  "predicted", "predicted_next", "velocity_next",
+      "lambda",   "density",  "neighbours", "target", "history",   "saliency",       "saliency_parts",
+      "waiting",  "age",      "active",     "rest",   "start_cell"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -71,6 +72,9 @@ void Particles::for_each_column(Self& self, Visit visit) {
   visit(self.saliency_parts, self.has(Column::SaliencyParts));
   visit(self.waiting, self.has(Column::Waiting));
   visit(self.age, self.has(Column::Age));
+  visit(self.active, self.has(Column::Active));
+  visit(self.rest, self.has(Column::Rest));
+  visit(self.start_cell, self.has(Column::StartCell));
 }
 
 template <class Visit>
@@ -81,6 +85,9 @@ void Particles::for_each_lasting_extra(Visit visit) {
   if (has(Column::SaliencyParts)) visit(saliency_parts, spare_parts_);
   if (has(Column::Waiting)) visit(waiting, spare_byte_);
   if (has(Column::Age)) visit(age, spare_byte_);
+  if (has(Column::Active)) visit(active, spare_byte_);
+  if (has(Column::Rest)) visit(rest, spare_byte_);
+  if (has(Column::StartCell)) visit(start_cell, spare_id_);
 }
 
 void Particles::allocate(ColumnSet set, int n, int capacity) {

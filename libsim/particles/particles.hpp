@@ -27,6 +27,9 @@ enum class Column : unsigned {
   SaliencyParts,  ///< f_a, f_m, f_T and F behind it
   Waiting,        ///< uint8: frames in a row that it has been ready to merge
   Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
+  Active,         ///< uint8: 1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
+  Rest,           ///< uint8: why and how long it was not solved (activation/activation.hpp)
+  StartCell,      ///< int: where in the velocity grid the particle was when the frame began
   count
 };
 using ColumnSet = std::bitset<static_cast<std::size_t>(Column::count)>;
@@ -78,7 +81,8 @@ class Particles {
 
   Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
   Array<int> id;
-  Array<std::uint8_t> level, target, history, waiting, age;
+  Array<std::uint8_t> level, target, history, waiting, age, active, rest;
+  Array<int> start_cell;
   Array<float> lambda, density, saliency;
   Array<SaliencyParts> saliency_parts;
 

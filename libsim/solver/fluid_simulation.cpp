@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "libsim/exec/gl_sharing.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/fill.hpp"
 #include "stats/base/error.hpp"
 
@@ -53,7 +54,20 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;
   out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
   out.saliency_parts = options.saliency_parts;
-  out.activation = method.temporal;
+  out.activation = method.temporal || options.temporal.always;
+  return out;
+}
+
+ActivationRules activation_rules(const Readings& readings) {
+  ActivationRules out;
+  out.relative_level_change = readings.dimensionless_levels;
+  out.robust_range = readings.normalisation == Normalisation::Percentile;
+  out.inherit_change = readings.inherit_change;
+  out.damping = static_cast<float>(readings.inactive_damping);
+  out.others_yield = readings.inactive_yield;
+  out.keep_fragile_active = readings.keep_fragile_active;
+  out.longest_rest = readings.longest_rest_frames;
+  out.speed_floor = static_cast<float>(readings.speed_floor);
   return out;
 }
 
@@ -157,6 +171,7 @@ class FluidSimulation final : public Simulation {
       : scene_(scene),
         options_(options),
         resolution_(resolution_of(scene, options.method, options.n_star)),
+        tolerance_(options.temporal.model, options.temporal.fixed_tau),
         frame_(options.start_frame) {
     if (options.levels < 1 || options.levels > most_levels) {
       throw base::Error(
@@ -171,6 +186,8 @@ class FluidSimulation final : public Simulation {
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
     state_.levels.rules = level_rules(options);
     if (options.forced_targets) force_targets(*options.forced_targets);
+    state_.activation.rules = activation_rules(options.readings);
+    state_.activation.seed = options.temporal.seed;
     state_.guards.resize(1);
     state_.guards.zero();
     state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
@@ -189,6 +206,8 @@ class FluidSimulation final : public Simulation {
 
   void step_frame() override {
     state_.jets.frame = frame_;
+    state_.activation.beta = static_cast<float>(tolerance_.beta());
+    state_.activation.frame = static_cast<std::uint32_t>(frame_);
     run_frame(schedule_, state_);
     state_.neighbours.grow();
     ++frame_;
@@ -202,7 +221,10 @@ class FluidSimulation final : public Simulation {
     state_.levels.forced = sphere_of(region);
   }
 
+  void frame_time(double ms) override { tolerance_.frame_time(ms); }
+
   FrameReport report() override {
+    const TemporalReport temporal = temporal_report();
     const Measured measured = measure(state_);
     const Guards met = state_.guards.to_host()[0];
     FrameReport out;
@@ -226,6 +248,7 @@ class FluidSimulation final : public Simulation {
     out.reservoir = state_.jets.reservoir;
     out.guards.saliency_not_finite = met.saliency_not_finite;
     out.guards.gaze_lost = state_.saliency.input.gaze_lost();
+    out.temporal = temporal;
     return out;
   }
 
@@ -298,6 +321,14 @@ class FluidSimulation final : public Simulation {
  private:
   bool follows_gaze() const { return traits_of(options_.method).target != TargetSource::None; }
   bool adaptive() const { return traits_of(options_.method).adaptive(); }
+
+  TemporalReport temporal_report() const {
+    TemporalReport out{tolerance_.tau(), tolerance_.beta(), particle_count()};
+    if (!state_.activation.columns_set || state_.activation.all_marked) return out;
+    out.active = 0;
+    for (const auto active : state_.particles.active.to_host()) out.active += active;
+    return out;
+  }
 
   std::string levels_in_words() const {
     if (adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
@@ -389,6 +420,7 @@ class FluidSimulation final : public Simulation {
   Resolution resolution_;
   FluidState state_;
   Schedule schedule_;
+  ToleranceSwitch tolerance_;
   GlSharing gl_;
   int frame_;
 };

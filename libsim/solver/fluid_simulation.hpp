@@ -16,6 +16,8 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
 LevelRules level_rules(const SimulationOptions& options);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
+/// Readings of temporal acceleration.
+ActivationRules activation_rules(const Readings& readings);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
 Walls walls_of(const Scene& scene, bool gate_closed);
 

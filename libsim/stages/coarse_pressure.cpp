@@ -8,8 +8,11 @@ constexpr float fixed_point = 1 << 20;
 /// More than this is not compression but particles on top of each other, which the projections part.
 constexpr float most_excess = 0.5f;
 
-/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume.
+/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. A particle
+/// that is not solved brings a trace: it marks its cell as fluid and leaves the mean to the others.
+template <class Selection>
 struct Gather {
+  Selection select;
   const Vec4* predicted;
   const float* density;
   CellFrame frame;
@@ -25,11 +28,14 @@ struct Gather {
     const int z = static_cast<int>(floorf(at.z));
     if (!block.holds(x, y, z)) return;
     CellSum& sum = sums[block.index(x, y, z)];
-    const float volume = mass_of(p.w, 1) / unit_volume;
+    float volume = mass_of(p.w, 1) / unit_volume;
     const float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
     };
+    if constexpr (!Selection::everyone) {
+      if (select.moves(i) == 0) volume = 2 / fixed_point;
+    }
     atomic_add(&sum.volume, fixed(volume));
     atomic_add(&sum.excess, fixed(volume * excess));
   }
@@ -66,7 +72,9 @@ struct Classify {
 };
 
 /// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be.
+template <class Selection>
 struct Shift {
+  Selection select;
   Vec4* predicted;
   CellFrame frame;
   GridView grid;
@@ -74,7 +82,11 @@ struct Shift {
   Guards* guards;
   float wall_gap;
 
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
     const Vec4 p = predicted[i];
     const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
     Vec3 x = xyz(p);
@@ -109,7 +121,8 @@ struct Shift {
   }
 };
 
-void run(FluidState& state) {
+template <class Selection>
+void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   auto& coarse = state.coarse;
   density_stage().run(state);
@@ -117,14 +130,18 @@ void run(FluidState& state) {
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),
-           Gather{p.predicted.data(), p.density.data(), coarse.frame, grid.block, coarse.sums.data(),
-                  mass_of(state.lightest_support, 1)});
+           Gather<Selection>{select, p.predicted.data(), p.density.data(), coarse.frame, grid.block,
+                             coarse.sums.data(), mass_of(state.lightest_support, 1)});
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);
-  for_each(
-      "shift", p.size(),
-      Shift{p.predicted.data(), coarse.frame, grid, state.walls, state.guard(), state.parameters.wall_gap});
+  for_each("shift", p.size(),
+           Shift<Selection>{select, p.predicted.data(), coarse.frame, grid, state.walls, state.guard(),
+                            state.parameters.wall_gap});
+}
+
+void run(FluidState& state) {
+  state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
 }
 
 }  // namespace

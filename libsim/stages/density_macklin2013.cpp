@@ -7,8 +7,11 @@ namespace {
 /// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
 /// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
 /// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
-template <bool OneLevel>
+/// A particle that is not solved has lambda = 0; unless the others yield, it has no share in the sum over j,
+/// as if its mass were infinite.
+template <bool OneLevel, bool OthersYield, class Selection>
 struct Density {
+  Selection select;
   const Vec4* predicted;
   Neighbours neighbours;
   Walls walls;
@@ -17,7 +20,11 @@ struct Density {
   Guards* guards;
   float rest_density, relaxation;
 
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
     const Vec4 self = predicted[i];
     const PairKernel<OneLevel> pair(self.w);
     float rho = Kernel(self.w).density(0);
@@ -26,10 +33,11 @@ struct Density {
     float gz = 0;
     float squares = 0;
     int zero = 0;
-    const int count = neighbours.size(i);
+    const int count = neighbours.size(slot);
     SIM_LANES(rho, gx, gy, gz, squares, zero)
     for (int k = 0; k < count; ++k) {
-      const Vec4 other = predicted[neighbours(i, k)];
+      const int j = neighbours(slot, k);
+      const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const float ratio = pair.mass_ratio(other.w);
       const float dx = self.x - other.x;
@@ -45,7 +53,11 @@ struct Density {
       gx -= along * dx;
       gy -= along * dy;
       gz -= along * dz;
-      squares += ratio * slope * slope;
+      if constexpr (OthersYield) {
+        squares += ratio * slope * slope;
+      } else {
+        squares += select.moves(j) * ratio * slope * slope;
+      }
     }
     // A pair is met twice, once from either side.
     if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
@@ -62,13 +74,28 @@ struct Density {
   }
 };
 
-template <bool OneLevel>
-void launch(FluidState& state) {
+template <bool OneLevel, bool OthersYield, class Selection>
+void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   for_each("density", p.size(),
-           Density<OneLevel>{p.predicted.data(), state.neighbours.view(), state.walls, p.lambda.data(),
-                             p.density.data(), state.guard(), state.parameters.rest_density,
-                             state.parameters.relaxation});
+           Density<OneLevel, OthersYield, Selection>{
+               select, p.predicted.data(), state.neighbours.view(), state.walls, p.lambda.data(),
+               p.density.data(), state.guard(), state.parameters.rest_density, state.parameters.relaxation});
+}
+
+template <bool OthersYield, class Selection>
+void launch(FluidState& state, Selection select) {
+  state.one_level ? launch<true, OthersYield>(state, select) : launch<false, OthersYield>(state, select);
+}
+
+void run(FluidState& state) {
+  if (state.all_active) {
+    launch<true>(state, AllParticles{});
+  } else if (state.activation.rules.others_yield) {
+    launch<true>(state, state.active());
+  } else {
+    launch<false>(state, state.active());
+  }
 }
 
 }  // namespace
@@ -80,7 +107,7 @@ Stage density_stage() {
           columns(Column::Predicted, Column::Neighbours),
           columns(Column::Lambda, Column::Density),
           [](const Demand&) -> std::string { return "every method keeps the density"; },
-          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+          run};
 }
 
 }  // namespace sim::SIM_BACKEND

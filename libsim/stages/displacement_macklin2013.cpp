@@ -6,8 +6,9 @@ namespace {
 
 /// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
 /// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls.
-template <bool OneLevel, bool Tensile>
+template <bool OneLevel, bool Tensile, class Selection>
 struct Displace {
+  Selection select;
   const Vec4* predicted;
   const float* lambda;
   const int* id;
@@ -17,7 +18,11 @@ struct Displace {
   Guards* guards;
   float rest_density, tensile, wall_gap, momentum;
 
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
     const Vec4 self = predicted[i];
     const PairKernel<OneLevel> pair(self.w);
     const float own = lambda[i];
@@ -25,10 +30,10 @@ struct Displace {
     float py = 0;
     float pz = 0;
     int zero = 0;
-    const int count = neighbours.size(i);
+    const int count = neighbours.size(slot);
     SIM_LANES(px, py, pz, zero)
     for (int k = 0; k < count; ++k) {
-      const int j = neighbours(i, k);
+      const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const float dx = self.x - other.x;
@@ -49,7 +54,7 @@ struct Displace {
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
     Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
-    if (zero) x += parted(i, self, own);
+    if (zero) x += parted(slot, self, own);
     // `next` still holds the positions before the last projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
     if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
@@ -68,11 +73,11 @@ struct Displace {
   /// The loop gives coincident pairs no direction; here they get one from their ids, and a small step even
   /// where the density alone would let them stay together. Steps are weighted so that the pair's centre of
   /// mass rests.
-  SIM_FN Vec3 parted(int i, Vec4 self, float own) const {
+  SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);
     Vec3 step{0, 0, 0};
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    for (int k = 0; k < neighbours.size(slot); ++k) {
+      const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const Vec3 offset = xyz(self) - xyz(other);
@@ -81,27 +86,37 @@ struct Displace {
       const float ratio = pair.mass_ratio(other.w);
       const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
       const float apart = 0.05f * kernel.h * 2 * ratio / (1 + ratio);
-      step += (pressed + apart) * parting_direction(id[i], id[j]);
+      step += (pressed + apart) * parting_direction(id[select(slot)], id[j]);
     }
     return step;
   }
 };
 
-template <bool OneLevel, bool Tensile>
-void launch(FluidState& state) {
+template <bool OneLevel, bool Tensile, class Selection>
+void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   const auto& k = state.parameters;
-  for_each(
-      "displacement", p.size(),
-      Displace<OneLevel, Tensile>{p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(),
-                                  state.walls, p.predicted_next.data(), state.guard(), k.rest_density,
-                                  k.tensile, k.wall_gap, state.iteration > 0 ? k.momentum : 0.0f});
+  for_each("displacement", p.size(),
+           Displace<OneLevel, Tensile, Selection>{
+               select, p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(), state.walls,
+               p.predicted_next.data(), state.guard(), k.rest_density, k.tensile, k.wall_gap,
+               state.iteration > 0 ? k.momentum : 0.0f});
   p.predicted.swap(p.predicted_next);
 }
 
-template <bool OneLevel>
-void launch(FluidState& state) {
-  state.parameters.tensile > 0 ? launch<OneLevel, true>(state) : launch<OneLevel, false>(state);
+template <bool OneLevel, class Selection>
+void launch(FluidState& state, Selection select) {
+  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, select)
+                               : launch<OneLevel, false>(state, select);
+}
+
+template <class Selection>
+void launch(FluidState& state, Selection select) {
+  state.one_level ? launch<true>(state, select) : launch<false>(state, select);
+}
+
+void run(FluidState& state) {
+  state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
 }
 
 }  // namespace
@@ -113,7 +128,7 @@ Stage displacement_stage() {
           columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
           columns(Column::PredictedNext, Column::Predicted),
           [](const Demand&) -> std::string { return "every method keeps the density"; },
-          [](FluidState& state) { state.one_level ? launch<true>(state) : launch<false>(state); }};
+          run};
 }
 
 }  // namespace sim::SIM_BACKEND

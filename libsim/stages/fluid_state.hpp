@@ -1,6 +1,7 @@
 #pragma once
 /// Everything a stage may touch.
 
+#include "libsim/activation/activation.hpp"
 #include "libsim/flow/jets.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -53,8 +54,17 @@ struct FluidState {
   Jets jets;
   SaliencyState saliency;
   LevelState levels;
+  /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong
+  /// to slots. True between frames.
+  bool all_active = true;
+  Activation activation;
   Array<Guards> guards;
 
+  /// Who was solved in the last frame; nullptr when everyone was.
+  const std::uint8_t* last_active() const {
+    return activation.columns_set && !activation.all_marked ? particles.active.data() : nullptr;
+  }
+  ActiveParticles active() { return {activation.slots.data(), particles.active.data()}; }
   Guards* guard() { return guards.data(); }
 };
 

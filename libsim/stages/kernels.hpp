@@ -123,6 +123,13 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
+  /// Signed distance to the nearest wall's plane, m.
+  SIM_FN float nearest(Vec3 x) const {
+    float least = 3e38f;
+    for (int k = 0; k < count; ++k) least = fminf(least, dot(planes[k].normal, x) - planes[k].offset);
+    return least;
+  }
+
   /// True where x lies at least `gap` inside every wall.
   SIM_FN bool holds(Vec3 x, float gap = 0) const {
     for (int k = 0; k < count; ++k) {

@@ -4,7 +4,10 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// A particle that is not solved flies at the velocity it was given: gravity and pressure are both in it.
+template <class Selection>
 struct Predict {
+  Selection select;
   Vec4* position;
   Vec4* velocity;
   Vec4* predicted;
@@ -19,7 +22,11 @@ struct Predict {
     Vec3 v = xyz(velocity[i]);
     quarantine(x, v);
     position[i] = with_w(x, h);
-    v.y -= gravity * dt;
+    if constexpr (Selection::everyone) {
+      v.y -= gravity * dt;
+    } else {
+      v.y -= select.moves(i) * gravity * dt;
+    }
     v = limited(v, longest_step * h / dt, guards);
     velocity[i] = with_w(v, 0);
     x = fused(x, dt, v);
@@ -38,6 +45,37 @@ struct Predict {
   }
 };
 
+template <class Selection>
+void launch(FluidState& state, Selection select) {
+  auto& p = state.particles;
+  const auto& k = state.parameters;
+  for_each("predict", p.size(),
+           Predict<Selection>{select, p.position.data(), p.velocity.data(), p.predicted.data(), state.walls,
+                              state.refuge, state.guard(), k.gravity, k.dt, k.longest_step, k.wall_gap});
+}
+
+void build_neighbours(FluidState& state) {
+  auto* dropped = &state.guard()->neighbours_dropped;
+  auto& p = state.particles;
+  if (state.one_level) {
+    state.grid.build(p, NeighbourList::margin);
+  } else {
+    state.grid.build(p, NeighbourList::margin, state.supports);
+  }
+  if (state.all_active) {
+    state.one_level ? state.neighbours.build(p, state.grid, dropped)
+                    : state.neighbours.build_mixed(p, state.grid, dropped);
+  } else {
+    state.activation.list_active(p);
+    state.one_level ? state.neighbours.build(p, state.grid, state.active(), dropped)
+                    : state.neighbours.build_mixed(p, state.grid, state.active(), dropped);
+  }
+}
+
+void run(FluidState& state) {
+  state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
+}
+
 }  // namespace
 
 Stage predict_stage() {
@@ -47,13 +85,7 @@ Stage predict_stage() {
           columns(Column::Position, Column::Velocity),
           columns(Column::Predicted, Column::Position, Column::Velocity),
           [](const Demand&) -> std::string { return "every method moves its particles"; },
-          [](FluidState& state) {
-            auto& p = state.particles;
-            const auto& k = state.parameters;
-            for_each("predict", p.size(),
-                     Predict{p.position.data(), p.velocity.data(), p.predicted.data(), state.walls,
-                             state.refuge, state.guard(), k.gravity, k.dt, k.longest_step, k.wall_gap});
-          }};
+          run};
 }
 
 Stage neighbours_stage() {
@@ -63,16 +95,7 @@ Stage neighbours_stage() {
           columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id, Column::Level),
           columns(Column::Neighbours),
           [](const Demand&) -> std::string { return "the density constraint needs neighbours"; },
-          [](FluidState& state) {
-            auto* dropped = &state.guard()->neighbours_dropped;
-            if (state.one_level) {
-              state.grid.build(state.particles, NeighbourList::margin);
-              state.neighbours.build(state.particles, state.grid, dropped);
-            } else {
-              state.grid.build(state.particles, NeighbourList::margin, state.supports);
-              state.neighbours.build_mixed(state.particles, state.grid, dropped);
-            }
-          }};
+          build_neighbours};
 }
 
 }  // namespace sim::SIM_BACKEND

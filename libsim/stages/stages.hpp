@@ -69,6 +69,11 @@ Stage xsph_of_levels_stage();
 /// Velocity x 0.9 a frame while the water settles.
 Stage settling_stage();
 
+/// Which particles the frame solves.
+Stage activation_stage();
+/// Velocity and energy grids; what was not solved inherits from them.
+Stage velocity_grid_stage();
+
 /// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
 /// columns and fills the given ones in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,

@@ -19,8 +19,10 @@ struct FreshPairs {
 };
 
 /// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
-template <bool OneLevel, class Fresh>
+/// Particles that are not solved keep their velocity and count as at the rest density.
+template <bool OneLevel, class Fresh, class Selection>
 struct Xsph {
+  Selection select;
   const Vec4* position;
   const Vec4* velocity;
   const float* density;
@@ -29,7 +31,14 @@ struct Xsph {
   float viscosity;
   Fresh fresh;
 
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        next[~i] = velocity[~i];
+        return;
+      }
+    }
     const Vec4 self = position[i];
     const PairKernel<OneLevel> pair(self.w);
     const Vec4 own = velocity[i];
@@ -37,10 +46,10 @@ struct Xsph {
     float vx = 0;
     float vy = 0;
     float vz = 0;
-    const int count = neighbours.size(i);
+    const int count = neighbours.size(slot);
     SIM_LANES(vx, vy, vz)
     for (int k = 0; k < count; ++k) {
-      const int j = neighbours(i, k);
+      const int j = neighbours(slot, k);
       const Vec4 other = position[j];
       const Kernel kernel = pair.with(other.w);
       const float dx = self.x - other.x;
@@ -59,14 +68,20 @@ struct Xsph {
   }
 };
 
+template <bool OneLevel, class Fresh, class Selection>
+void launch(FluidState& state, Fresh fresh, Selection select) {
+  auto& p = state.particles;
+  for_each("xsph", p.size(),
+           Xsph<OneLevel, Fresh, Selection>{select, p.position.data(), p.velocity.data(), p.density.data(),
+                                            state.neighbours.view(), p.velocity_next.data(),
+                                            state.parameters.viscosity, fresh});
+  p.velocity.swap(p.velocity_next);
+}
+
 template <bool OneLevel, class Fresh>
 void launch(FluidState& state, Fresh fresh) {
-  auto& p = state.particles;
-  for_each(
-      "xsph", p.size(),
-      Xsph<OneLevel, Fresh>{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
-                            p.velocity_next.data(), state.parameters.viscosity, fresh});
-  p.velocity.swap(p.velocity_next);
+  state.all_active ? launch<OneLevel>(state, fresh, AllParticles{})
+                   : launch<OneLevel>(state, fresh, state.active());
 }
 
 }  // namespace
@@ -101,12 +116,11 @@ Stage xsph_of_levels_stage() {
 }
 
 std::vector<Stage> all_stages() {
-  return {nozzle_stage(),         frame_neighbours_stage(), gaze_targets_stage(),
-          saliency_stage(),       saliency_parts_stage(),   forced_targets_stage(),
-          graded_targets_stage(), split_and_merge_stage(),  predict_stage(),
-          neighbours_stage(),     coarse_pressure_stage(),  density_stage(),
-          displacement_stage(),   velocity_stage(),         xsph_stage(),
-          xsph_of_levels_stage(), settling_stage()};
+  return {nozzle_stage(),         frame_neighbours_stage(), gaze_targets_stage(),   saliency_stage(),
+          saliency_parts_stage(), forced_targets_stage(),   graded_targets_stage(), split_and_merge_stage(),
+          activation_stage(),     predict_stage(),          neighbours_stage(),     coarse_pressure_stage(),
+          density_stage(),        displacement_stage(),     velocity_stage(),       xsph_stage(),
+          xsph_of_levels_stage(), velocity_grid_stage(),    settling_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

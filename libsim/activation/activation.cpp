@@ -1,0 +1,57 @@
+#include "libsim/activation/activation.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct CopyFlags {
+  const std::uint8_t* active;
+  int* flags;
+  SIM_FN void operator()(int i) const { flags[i] = active[i] != 0; }
+};
+
+struct PlaceInSlots {
+  const int* flags;
+  const int* ranks;
+  int* slots;
+  const Vec4* predicted;
+  Vec4* predicted_next;
+  float* lambda;
+  float* density;
+  int n;
+
+  SIM_FN void operator()(int i) const {
+    if (flags[i]) {
+      slots[ranks[i] - 1] = i;
+      return;
+    }
+    slots[n - 1 - (i - ranks[i])] = ~i;
+    lambda[i] = 0;
+    density[i] = 1;
+    predicted_next[i] = predicted[i];
+  }
+};
+
+}  // namespace
+
+void Activation::list_active(Particles& p) {
+  const int n = p.size();
+  const auto size = static_cast<std::size_t>(n);
+  flags.resize(size);
+  ranks.resize(size);
+  slots.resize(size);
+  if (n == 0) return;
+  for_each("active flags", n, CopyFlags{p.active.data(), flags.data()});
+  scanner.inclusive_sum(flags, ranks);
+  for_each("active slots", n,
+           PlaceInSlots{flags.data(), ranks.data(), slots.data(), p.predicted.data(), p.predicted_next.data(),
+                        p.lambda.data(), p.density.data(), n});
+}
+
+std::size_t Activation::bytes() const {
+  return grid.bytes() + importance.bytes() + probability.bytes() + slope_x.bytes() + slope_y.bytes() +
+         slope_z.bytes() + across_levels.bytes() + total.bytes() + energy_slope.bytes() + before.bytes() +
+         after.bytes() + change.bytes() + flags.bytes() + ranks.bytes() + slots.bytes();
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,13 @@
+#pragma once
+/// Physical importance F_pim of particles (ViP-Fluid Eq. 12-14).
+
+#include "libsim/activation/activation.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Writes activation.importance from V^n and E^n, and Rest's rest_nowhere. saliency: s in [0, 1] of each
+/// particle; nullptr counts as 0. speed_floor: epsilon_v, m/s.
+void measure_importance(Activation& activation, Particles& particles, const float* saliency,
+                        float speed_floor);
+
+}  // namespace sim::SIM_BACKEND

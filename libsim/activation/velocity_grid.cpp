@@ -1,0 +1,180 @@
+#include "libsim/activation/velocity_grid.hpp"
+
+#include <algorithm>
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Particles that one thread adds up before it goes to memory: neighbours in memory share a cell.
+constexpr int run_length = 16;
+int runs_of(int n) { return (n + run_length - 1) / run_length; }
+
+/// Beyond this speed, m/s, a particle counts with this speed: sums of 2^63 stay out of reach.
+constexpr float fastest = 1000;
+
+SIM_FN std::uint64_t fixed(float value) {
+  return static_cast<std::uint64_t>(
+      static_cast<std::int64_t>(fminf(fmaxf(value, -fastest), fastest) * 1048576.0f));
+}
+
+struct AddMomentum {
+  const Vec4* position;
+  const Vec4* velocity;
+  const std::uint8_t* level;
+  const std::uint8_t* active;
+  const int* cell_of;
+  GridFrame grid;
+  MomentumSum* sums;
+  int n;
+
+  SIM_FN void operator()(int run) const {
+    const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
+    int place = -1;
+    MomentumSum sum{};
+    for (int i = run * run_length; i < end; ++i) {
+      if (active && !active[i]) continue;
+      const Vec3 v = xyz(velocity[i]);
+      const Vec3 x = xyz(position[i]);
+      if (!all_finite(v) || !all_finite(x)) continue;
+      const int cell = cell_of ? cell_of[i] : grid.cell_of(x);
+      const int here = level[i] * grid.cells() + cell;
+      if (here != place) {
+        flush(place, sum);
+        place = here;
+        sum = {};
+      }
+      const std::uint64_t mass = std::uint64_t{1} << level[i];
+      sum.mass += mass;
+      sum.x += mass * fixed(v.x);
+      sum.y += mass * fixed(v.y);
+      sum.z += mass * fixed(v.z);
+    }
+    flush(place, sum);
+  }
+
+  SIM_FN void flush(int place, const MomentumSum& sum) const {
+    if (place < 0) return;
+    atomic_add(&sums[place].mass, sum.mass);
+    atomic_add(&sums[place].x, sum.x);
+    atomic_add(&sums[place].y, sum.y);
+    atomic_add(&sums[place].z, sum.z);
+  }
+};
+
+struct AddEnergy {
+  const Vec4* position;
+  const Vec4* velocity;
+  const std::uint8_t* level;
+  GridFrame grid;
+  std::uint64_t* sums;
+  int n;
+
+  SIM_FN void operator()(int run) const {
+    const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
+    int place = -1;
+    std::uint64_t sum = 0;
+    for (int i = run * run_length; i < end; ++i) {
+      const Vec3 v = xyz(velocity[i]);
+      const Vec3 x = xyz(position[i]);
+      if (!all_finite(v) || !all_finite(x)) continue;
+      const int here = grid.cell_of(x);
+      if (here != place) {
+        if (place >= 0) atomic_add(&sums[place], sum);
+        place = here;
+        sum = 0;
+      }
+      const float specific = fminf(0.5f * dot(v, v), 0.5f * fastest * fastest);
+      sum += (std::uint64_t{1} << level[i]) * static_cast<std::uint64_t>(specific * 65536.0f);
+    }
+    if (place >= 0) atomic_add(&sums[place], sum);
+  }
+};
+
+/// Turns sums into means and fills what is empty.
+struct FinishVelocity {
+  const MomentumSum* sums;
+  Vec4* velocity;
+  int cells;
+
+  SIM_FN void operator()(int i) const {
+    if (sums[i].mass > 0) {
+      velocity[i] = with_w(mean_velocity(sums[i]), value_measured);
+      return;
+    }
+    if (velocity[i].w == value_measured) {
+      velocity[i].w = value_borrowed;
+      return;
+    }
+    MomentumSum all{};
+    for (int level = 0; level < grid_levels; ++level) {
+      const MomentumSum& other = sums[level * cells + i % cells];
+      all = {all.mass + other.mass, all.x + other.x, all.y + other.y, all.z + other.z};
+    }
+    velocity[i] = all.mass > 0 ? with_w(mean_velocity(all), value_borrowed) : Vec4{0, 0, 0, value_unknown};
+  }
+};
+
+struct FinishEnergy {
+  const std::uint64_t* sums;
+  float* energy;
+  SIM_FN void operator()(int i) const {
+    energy[i] = static_cast<float>(static_cast<double>(sums[i]) / 65536.0);
+  }
+};
+
+}  // namespace
+
+void add_momentum(const Particles& particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
+                  Array<MomentumSum>& sums) {
+  sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
+  sums.zero();
+  const int n = particles.size();
+  for_each("add momentum", runs_of(n),
+           AddMomentum{particles.position.data(), particles.velocity.data(), particles.level.data(), active,
+                       cell_of, grid, sums.data(), n});
+}
+
+void VelocityGrid::fit(const Domain& domain, float edge) {
+  const Vec3 size = domain.high - domain.low;
+  const double wish = static_cast<double>(size.x) * static_cast<double>(size.y) *
+                      static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
+  constexpr double most = 1 << 22;
+  if (wish > most) edge *= static_cast<float>(std::cbrt(wish / most));
+  // A tank of ten edges has ten cells, whatever its size has lost to rounding.
+  const auto count = [&](float length) {
+    return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));
+  };
+  const CellBlock block{count(size.x), count(size.y), count(size.z)};
+  const bool same = velocity_.size() && block.nx == block_.nx && block.ny == block_.ny &&
+                    block.nz == block_.nz && edge == frame_.edge;
+  if (same) return;
+  block_ = block;
+  frame_ = {domain.low, edge};
+  const auto cells = static_cast<std::size_t>(block.size());
+  velocity_.resize(grid_levels * cells);
+  velocity_.zero();
+  energy_.resize(cells);
+  energy_.zero();
+  energy_sums_.resize(cells);
+}
+
+void VelocityGrid::update_velocity(const Particles& particles, const std::uint8_t* active) {
+  add_momentum(particles, active, nullptr, frame(), sums_);
+  for_each("mean velocity", grid_levels * cells(), FinishVelocity{sums_.data(), velocity_.data(), cells()});
+}
+
+void VelocityGrid::update_energy(const Particles& particles) {
+  energy_sums_.zero();
+  const int n = particles.size();
+  for_each("add energy", runs_of(n),
+           AddEnergy{particles.position.data(), particles.velocity.data(), particles.level.data(), frame(),
+                     energy_sums_.data(), n});
+  for_each("energy", cells(), FinishEnergy{energy_sums_.data(), energy_.data()});
+}
+
+std::size_t VelocityGrid::bytes() const {
+  return sums_.bytes() + energy_sums_.bytes() + velocity_.bytes() + energy_.bytes();
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,43 @@
+#include "libsim/ptpe/tolerance_switch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/base/error.hpp"
+
+namespace sim {
+
+ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<double> fixed_tau)
+    : model_(model), fixed_(fixed_tau.has_value()) {
+  if (!fixed_tau) return;
+  if (!std::isfinite(*fixed_tau)) throw base::Error("tau", "is not finite", "give frames per second");
+  set(*fixed_tau);
+}
+
+void ToleranceSwitch::frame_time(double ms) {
+  if (fixed_) return;
+  if (!(ms > 0) || !std::isfinite(ms)) {
+    ++left_out_;
+    return;
+  }
+  window_.push(1e-3 * ms);
+  const stats::FpsMoments known = window_.moments();
+  const double tau = stats::ptpe_tolerance(model_, known.mean, known.sd);
+  if (known.frames < window_frames) {
+    tau_ = tau;
+  } else {
+    set(tau);
+  }
+}
+
+double ToleranceSwitch::beta() const {
+  return on_ ? std::min(1.0, stats::activation_floor(model_, tau_)) : 1;
+}
+
+void ToleranceSwitch::set(double tau) {
+  tau_ = tau;
+  if (tau < 0) on_ = true;
+  if (tau > off_above) on_ = false;
+}
+
+}  // namespace sim

@@ -1,0 +1,46 @@
+#pragma once
+/// When temporal acceleration runs and how far it goes (paper sections 4.1 and 4.3, Eq. 11, Algorithm 3).
+
+#include <cstdint>
+#include <optional>
+
+#include "stats/fps_window.hpp"
+#include "stats/ptpe.hpp"
+
+namespace sim {
+
+/// tau over the last 30 frames, with two thresholds so that noise does not switch back and forth: on below 0,
+/// off above +1 frames/s. A tau from outside (tests, benches) stands in for the measured one and goes the
+/// same way.
+class ToleranceSwitch {
+ public:
+  static constexpr std::size_t window_frames = 30;
+  static constexpr double off_above = 1;  ///< frames/s
+
+  explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {});
+
+  /// Takes the time of a whole frame, ms. A time that is not positive and finite is left out and counted;
+  /// with a fixed tau the call changes nothing. The switch waits for a full window: few frames do not tell
+  /// delta.
+  void frame_time(double ms);
+
+  /// tau = mu - a exp(b delta), frames/s; 0 before the first frame.
+  double tau() const { return tau_; }
+  bool on() const { return on_; }
+  /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability of a
+  /// particle to be solved. Never above 1, whatever the sign of a fitted b.
+  double beta() const;
+  std::uint64_t left_out() const { return left_out_; }
+
+ private:
+  void set(double tau);
+
+  stats::PtpeModel model_;
+  stats::FpsWindow window_{window_frames};
+  bool fixed_ = false;
+  bool on_ = false;
+  double tau_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace sim

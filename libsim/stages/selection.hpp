@@ -1,0 +1,29 @@
+#pragma once
+/// Which particles a pass solves for, chosen before the launch: everyone, or the active ones of temporal
+/// acceleration (ViP-Fluid, Algorithm 3). A pass runs over slots 0 .. n-1 and asks for the particle of each.
+
+#include <cstdint>
+
+#include "libsim/exec/space.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Slot = particle. Everything here folds away.
+struct AllParticles {
+  static constexpr bool everyone = true;
+  SIM_FN int operator()(int slot) const { return slot; }
+  SIM_FN float moves(int) const { return 1; }
+};
+
+/// The first slots hold the active particles in the grid's order, the last ones the others as ~particle, a
+/// negative number: whole warps are either at work or gone.
+struct ActiveParticles {
+  static constexpr bool everyone = false;
+  const int* slots;
+  const std::uint8_t* active;
+  SIM_FN int operator()(int slot) const { return slots[slot]; }
+  /// 1 for a particle that is solved, 0 for one that only its grid moves.
+  SIM_FN float moves(int i) const { return active[i] ? 1.0f : 0.0f; }
+};
+
+}  // namespace sim::SIM_BACKEND
