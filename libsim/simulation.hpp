@@ -154,7 +154,7 @@ class Simulation {
   /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
   virtual void force_targets(const TargetRegion&) {}
   /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
-  virtual void frame_time(double ms) = 0;
+  virtual void frame_time(double) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
