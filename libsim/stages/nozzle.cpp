@@ -78,7 +78,8 @@ struct CountTargets {
 int median_target(FluidState& state, const Nozzle& nozzle) {
   auto& p = state.particles;
   const auto f = [](double value) { return static_cast<float>(value); };
-  Array<int> mass(4);
+  Array<int>& mass = state.jets.mass_by_target;
+  mass.resize(4);
   mass.zero();
   for_each("targets at nozzle", p.size(),
            CountTargets{p.position.data(),
