@@ -76,6 +76,7 @@ struct SimulationOptions {
   int start_frame = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
+  bool time_parts = false;  ///< see Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
   // Numbers of the solver; a negative value keeps the measured default (libsim/stages/fluid_state.hpp).
@@ -120,6 +121,14 @@ struct TemporalReport {
   double tau = 0;   ///< frames/s, Eq. 11
   double beta = 1;  ///< lowest probability of being solved
   std::int64_t active = 0;
+};
+
+/// Milliseconds of the last frame's parts, as the paper's Table 2 splits them.
+struct PartTimes {
+  double saliency_ms = 0;    ///< Eq. 1-9
+  double levels_ms = 0;      ///< grading, splitting, merging
+  double activation_ms = 0;  ///< Eq. 12-14 and the velocity grid
+  double solve_ms = 0;       ///< everything else
 };
 
 /// State of the fluid after a frame.
@@ -178,6 +187,8 @@ class Simulation {
   /// False when this back end cannot (the CPU, or a context on another device): read_particles and upload
   /// instead.
   virtual bool copy_to_gl(unsigned buffer) = 0;
+  /// All zero unless SimulationOptions::time_parts.
+  virtual PartTimes part_times() const = 0;
   /// Waits for all launched work.
   virtual void synchronize() = 0;
   /// Bytes of memory that particles and their choice for the nozzles hold.

@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps {
@@ -31,6 +32,15 @@ void wait_passively(char** argv) {
 }
 
 }  // namespace
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw base::Error(folder.string(), "cannot be made a folder: " + error.message(),
+                      "choose another folder");
+  }
+}
 
 CLI::Validator number_in(double low, double high) {
   const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 namespace apps {
@@ -14,6 +15,9 @@ int run_program(CLI::App& app, int argc, char** argv);
 
 /// Accepts finite numbers from low to high (CLI::Range lets NaN through).
 CLI::Validator number_in(double low, double high);
+
+/// Makes a folder and its parents unless it is there; base::Error when that fails.
+void make_folder(const std::filesystem::path& folder);
 
 /// A line on stderr that shows how far a long step is. Drawn at most ten times a second; a plain line a tenth
 /// when stderr is not a terminal. Nothing is shown for steps that end within two seconds.

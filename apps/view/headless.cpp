@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "apps/common/program.hpp"
-#include "apps/view/fluid_picture.hpp"
+#include "apps/common/fluid_picture.hpp"
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
@@ -18,15 +18,6 @@ namespace {
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw base::Error(folder.string(), "cannot be made a folder: " + error.message(),
-                      "choose another --png folder");
-  }
 }
 
 std::filesystem::path picture_path(const std::string& folder, int frame) {

@@ -181,6 +181,7 @@ class FluidSimulation final : public Simulation {
           "use 1 to 4 levels");
     }
     state_.parameters = solver_parameters(scene, options);
+    if (options.time_parts) state_.clock.switch_on();
     state_.saliency.readings = options.readings;
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
@@ -252,6 +253,7 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
+  PartTimes part_times() const override { return state_.clock.times(); }
   std::int64_t particle_count() const override { return state_.particles.size(); }
   std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }

@@ -58,7 +58,10 @@ void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
 }
 
 void run_all(const std::vector<Stage>& passes, FluidState& state) {
-  for (const auto& pass : passes) pass.run(state);
+  for (const auto& pass : passes) {
+    state.clock.enter(pass.part);
+    pass.run(state);
+  }
 }
 
 }  // namespace
@@ -92,6 +95,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 }
 
 void run_frame(const Schedule& schedule, FluidState& state) {
+  state.clock.start_frame();
   run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
     state.iteration = 0;
@@ -103,6 +107,7 @@ void run_frame(const Schedule& schedule, FluidState& state) {
     run_all(schedule.substep_end, state);
   }
   run_all(schedule.frame_end, state);
+  state.clock.end_frame();
 }
 
 }  // namespace sim::SIM_BACKEND

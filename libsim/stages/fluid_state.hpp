@@ -7,6 +7,7 @@
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/saliency/saliency.hpp"
+#include "libsim/solver/part_clock.hpp"
 #include "libsim/stages/kernels.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -59,6 +60,7 @@ struct FluidState {
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
+  PartClock clock;
 
   /// Who was solved in the last frame; nullptr when everyone was.
   const std::uint8_t* last_active() const {

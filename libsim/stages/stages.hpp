@@ -32,6 +32,7 @@ struct Stage {
   /// Empty when nothing calls for the stage; otherwise the reason.
   std::string (*called_for)(const Demand&);
   void (*run)(FluidState&);
+  Part part = Part::Solve;
 };
 
 /// Moves the lowest water of the corner columns into the jets.

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "apps/view/fluid_picture.hpp"
+#include "apps/common/fluid_picture.hpp"
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"

@@ -1,9 +1,10 @@
 #pragma once
-/// The present state of a simulation, drawn.
+/// The present state of a simulation, drawn, and what its viewer tells it before the next frame.
 
 #include <vector>
 
 #include "libsim/render/fluid_renderer.hpp"
+#include "libsim/saliency/looks.hpp"
 #include "libsim/simulation.hpp"
 
 namespace apps {
@@ -16,6 +17,10 @@ class FluidPicture {
 
   /// Takes the particles, on the device where the back end shares memory with GL, and draws them.
   void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer);
+  /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
+  /// the last one. The picture takes a way through the host.
+  void look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze);
+  sim::FluidRenderer& renderer() { return renderer_; }
   const sim::FluidRenderer& renderer() const { return renderer_; }
   /// Whether the last particles went a way through the host.
   bool uploaded() const { return uploaded_; }
@@ -23,8 +28,13 @@ class FluidPicture {
  private:
   sim::FluidRenderer renderer_;
   sim::ParticleBuffer buffer_;
+  sim::GBuffer seen_;
+  bool drawn_ = false;
   std::vector<sim::RenderParticle> particles_;
   bool uploaded_ = false;
 };
+
+/// A gaze from a camera's eye to a point.
+sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m);
 
 }  // namespace apps

@@ -1,0 +1,124 @@
+#include "apps/bench/cells.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct NamedScene {
+  const char* name;
+  const char* file;
+};
+constexpr NamedScene named_scenes[] = {{"SingleDam", "data/scenes/single_dam.toml"},
+                                       {"JetImpact", "data/scenes/jet_impact.toml"},
+                                       {"Faucet", "data/scenes/faucet.toml"}};
+
+std::vector<std::string> split(const std::string& words, char by) {
+  std::vector<std::string> out;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, by);) out.push_back(word);
+  return out;
+}
+
+bool read_number(const std::string& text, double& value) {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && rest == end && std::isfinite(value);
+}
+
+/// tau of the paper's Table 2 for a cell.
+double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
+  const auto path = base::resource("data/paper/table2_performance.csv");
+  const auto lines = split(base::read_file(path, 1 << 16), '\n');
+  for (const auto& line : lines) {
+    const auto cell = split(line, ',');
+    double tau = 0;
+    if (cell.size() < 8 || cell[0] != scene || cell[1] + "k" != n_star || cell[2] != sim::method_name(method))
+      continue;
+    if (read_number(cell[7], tau)) return tau;
+  }
+  throw base::Error(
+      "--tau table2",
+      "the paper's table holds no tau for " + scene + ", " + n_star + ", " + sim::method_name(method),
+      "use --tau fixed:-6, or n_* 16k or 32k");
+}
+
+}  // namespace
+
+void add_table_options(CLI::App& command, TableOptions& options) {
+  command.add_option("--scene", options.scene, "all, SingleDam, JetImpact or Faucet")->capture_default_str();
+  command.add_option("--n-star", options.n_star, "Particles when all are coarsest; several with commas")
+      ->capture_default_str();
+  command.add_option("--preset", options.preset, "tuned, paper or both")->capture_default_str();
+  command.add_option("--tau", options.tau, "live, fixed:X (frames/s) or table2 (the paper's)")
+      ->capture_default_str();
+  command.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
+  command.add_option("--csv", options.csv, "File for the rows");
+  command.add_option("--markdown", options.markdown, "File for the same as a table");
+  command.add_option("--svg", options.svg_folder, "Folder for figures; made when missing");
+}
+
+std::vector<CellScene> scenes_of(const std::string& word) {
+  std::vector<CellScene> out;
+  for (const auto& [name, file] : named_scenes) {
+    if (word == "all" || word == name) out.push_back({name, sim::read_scene(file)});
+  }
+  if (out.empty()) {
+    throw base::Error("--scene " + word, "is not a scene of the tables",
+                      "use all, SingleDam, JetImpact or Faucet");
+  }
+  return out;
+}
+
+std::vector<CellSize> sizes_of(const std::string& words) {
+  std::vector<CellSize> out;
+  for (const auto& word : split(words, ',')) out.push_back({word, sim::parse_n_star(word)});
+  if (out.empty()) throw base::Error("--n-star", "names no size", "write for example 16k,32k");
+  return out;
+}
+
+std::vector<sim::Preset> presets_of(const std::string& word) {
+  if (word == "both") return {sim::Preset::Paper, sim::Preset::Tuned};
+  return {sim::parse_preset(word)};
+}
+
+std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
+                             sim::MethodKind method) {
+  if (word == "live") return {};
+  if (word == "table2") return paper_tau(scene, n_star, method);
+  double tau = 0;
+  if (word.rfind("fixed:", 0) == 0 && read_number(word.substr(6), tau)) return tau;
+  throw base::Error("--tau " + word, "is not known", "use live, fixed:-6 or table2");
+}
+
+std::string to_csv(const TextTable& table) {
+  std::string out;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + cells[i];
+    out += "\n";
+  };
+  line(table.head);
+  for (const auto& row : table.rows) line(row);
+  return out;
+}
+
+std::string to_markdown(const TextTable& table) {
+  std::string out;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (const auto& cell : cells) out += "| " + cell + " ";
+    out += "|\n";
+  };
+  line(table.head);
+  line(std::vector<std::string>(table.head.size(), "---"));
+  for (const auto& row : table.rows) line(row);
+  return out;
+}
+
+}  // namespace apps

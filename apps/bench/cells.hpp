@@ -1,0 +1,54 @@
+#pragma once
+/// What the two tables share: which cells they hold and what runs in one.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libsim/methods/preset.hpp"
+#include "libsim/simulation.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace apps {
+
+/// Options of both tables as they were typed.
+struct TableOptions {
+  std::string scene = "all";
+  std::string n_star = "32k";    ///< one or several, separated by commas
+  std::string preset = "tuned";  ///< tuned, paper or both
+  std::string tau = "fixed:-6";  ///< live, fixed:X or table2
+  std::string backend = "auto";
+  std::string csv, markdown, svg_folder;
+};
+void add_table_options(CLI::App& command, TableOptions& options);
+
+struct CellScene {
+  std::string name;  ///< as in the paper's tables
+  sim::Scene scene;
+};
+/// base::Error naming the known scenes.
+std::vector<CellScene> scenes_of(const std::string& word);
+
+struct CellSize {
+  std::string word;
+  std::int64_t n_star = 0;
+};
+std::vector<CellSize> sizes_of(const std::string& words);
+std::vector<sim::Preset> presets_of(const std::string& word);
+
+/// The tau that temporal acceleration goes by: nothing = measured live.
+std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
+                             sim::MethodKind method);
+
+/// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
+struct TextTable {
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;
+};
+std::string to_csv(const TextTable& table);
+std::string to_markdown(const TextTable& table);
+
+}  // namespace apps
