@@ -150,6 +150,13 @@ struct FrameReport {
   TemporalReport temporal;
 };
 
+/// A value of each particle, for pictures.
+enum class ParticleField {
+  Speed,         ///< m/s
+  DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included
+  Active         ///< 1 = solved in the last frame, 0 = moved by the velocity grid
+};
+
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -181,6 +188,8 @@ class Simulation {
   /// frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
   /// read_particles after it.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
+  /// One value a particle in the order of read_particles.
+  virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;
   /// Everything about every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
   /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "apps/common/tau_option.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -91,11 +92,8 @@ std::vector<sim::Preset> presets_of(const std::string& word) {
 
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method) {
-  if (word == "live") return {};
   if (word == "table2") return paper_tau(scene, n_star, method);
-  double tau = 0;
-  if (word.rfind("fixed:", 0) == 0 && read_number(word.substr(6), tau)) return tau;
-  throw base::Error("--tau " + word, "is not known", "use live, fixed:-6 or table2");
+  return parse_tau(word, ", or table2");
 }
 
 std::string to_csv(const TextTable& table) {

@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/common/program.hpp"
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
+#include "apps/view/overlay.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libsim/scene/gaze.hpp"
 #include "stats/base/error.hpp"
 #include "stats/fps_window.hpp"
 
@@ -69,9 +71,15 @@ void run_headless(const ViewOptions& options) {
   FluidPicture picture(prepared.scene);
   const sim::View view = sim::make_view(prepared.camera, options.width_px, options.height_px);
 
+  const OverlayKind overlay = parse_overlay(options.overlay);
+  OverlayPainter painter(prepared.finest_spacing_m);
   Timing timing;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
   for (int frame = 0; frame < options.frames; ++frame) {
+    if (frame > 0) {
+      const sim::Vec3d at = sim::gaze_point(prepared.scene, frame);
+      picture.look(*prepared.fluid, view, gaze_at(prepared.camera, at));
+    }
     const double start = seconds_now();
     if (frame > 0) {
       prepared.fluid->step_frame();
@@ -80,14 +88,16 @@ void run_headless(const ViewOptions& options) {
     }
     const double stepped = seconds_now();
     const bool kept = !options.png_folder.empty() && frame % options.every == 0;
-    // tau speaks of frames that are shown, so --ptpe draws them all.
-    if (kept || prepared.ptpe || options.png_folder.empty()) {
+    // tau speaks of frames that are shown, so --ptpe draws them all; saliency reads each picture.
+    if (kept || prepared.ptpe || prepared.follows_picture || options.png_folder.empty()) {
       picture.draw(*prepared.fluid, view, target.framebuffer());
+      if (kept) painter.paint(overlay, *prepared.fluid, picture, target.framebuffer());
       glFinish();
       ++timing.draws;
     }
     const double drawn = seconds_now();
     if (frame > 0) {
+      prepared.fluid->frame_time(1e3 * (drawn - start));
       timing.window.push(drawn - start);
       timing.step_s += stepped - start;
     }
@@ -99,6 +109,7 @@ void run_headless(const ViewOptions& options) {
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   print_timing(timing);
+  if (!painter.legend().empty()) std::printf("paint  %s\n", painter.legend().c_str());
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
   if (timing.pictures) {

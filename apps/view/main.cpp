@@ -2,7 +2,18 @@
 
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
+#include "apps/view/overlay.hpp"
 #include "libsim/methods/method.hpp"
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
@@ -12,6 +23,13 @@ int main(int argc, char** argv) {
   app.add_flag("--headless", options.headless, "No window: run the frames and write pictures");
   app.add_option("--method", options.method, sim::method_names())->capture_default_str();
   app.add_option("--n-star", options.n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
+  app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")->capture_default_str();
+  app.add_option("--levels", options.levels, "N: levels of methods that split and merge (1 to 4)")
+      ->capture_default_str();
+  app.add_option("--overlay", options.overlay, "Painted over the water: " + joined(apps::overlay_names()))
+      ->capture_default_str();
+  app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
       ->capture_default_str();
   app.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
   app.add_option("--frames", options.frames, "Frames to run (headless)")

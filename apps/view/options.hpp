@@ -15,9 +15,13 @@ struct ViewOptions {
   std::string method = "HiRes";
   std::string n_star = "16k";
   std::string backend = "auto";
-  std::string camera = "view";  ///< view | overview
-  std::string ptpe;             ///< fitted.toml; empty = none
-  std::string png_folder;       ///< empty = no pictures
+  std::string preset = "tuned";
+  std::string overlay = "none";  ///< what is painted over the water
+  std::string tau = "live";      ///< live or fixed:X
+  int levels = 4;                ///< N
+  std::string camera = "view";   ///< view | overview
+  std::string ptpe;              ///< fitted.toml; empty = none
+  std::string png_folder;        ///< empty = no pictures
   int width_px = 1280, height_px = 720;
   int frames = 100;
   int every = 1;  ///< a picture every so many frames
@@ -34,6 +38,8 @@ struct PreparedFluid {
   sim::Camera camera;
   std::optional<sim::PtpeFile> ptpe;
   std::unique_ptr<sim::Simulation> fluid;
+  double finest_spacing_m = 0;   ///< 2 r_*
+  bool follows_picture = false;  ///< levels come from what was drawn last
 };
 PreparedFluid prepare_fluid(const ViewOptions& options);
 

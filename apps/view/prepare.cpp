@@ -2,7 +2,10 @@
 #include <cstdio>
 
 #include "apps/common/program.hpp"
+#include "apps/common/tau_option.hpp"
 #include "apps/view/options.hpp"
+#include "apps/view/overlay.hpp"
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -30,6 +33,14 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
   choice.cache = sim::default_cache_folder();
   choice.method = sim::parse_method(options.method);
   choice.n_star = sim::parse_n_star(options.n_star);
+  choice.readings = sim::readings_of(sim::parse_preset(options.preset));
+  choice.levels = options.levels;
+  choice.saliency_parts = parse_overlay(options.overlay) != OverlayKind::None;
+  choice.temporal.fixed_tau = parse_tau(options.tau);
+  if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
+  prepared.finest_spacing_m =
+      sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
+  prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
   choice.backend = sim::choose_backend(options.backend);
   {
     Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));

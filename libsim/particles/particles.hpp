@@ -109,4 +109,7 @@ class Particles {
   Array<SaliencyParts> spare_parts_;
 };
 
+/// sim::ParticleField on the host, in the particles' order; 0 where its column is not there, 1 for Active.
+std::vector<float> field_of(const Particles& particles, ParticleField field);
+
 }  // namespace sim::SIM_BACKEND

@@ -51,7 +51,8 @@ Stage saliency_stage() {
       [](FluidState& state) {
         find_surroundings(state);
         evaluate_saliency(state.saliency, fluid_of(state));
-      }};
+      },
+      Part::Saliency};
 }
 
 Stage saliency_parts_stage() {
@@ -68,7 +69,8 @@ Stage saliency_parts_stage() {
             SaliencyState& s = state.saliency;
             combine_features(feature_numbers(s.readings), s.eyes, p.position.data(), s.temporal.data(),
                              s.combined.data(), p.saliency_parts.data(), p.size());
-          }};
+          },
+          Part::Saliency};
 }
 
 Stage gaze_targets_stage() {
@@ -79,7 +81,8 @@ Stage gaze_targets_stage() {
       columns(Column::Position),
       columns(Column::Saliency, Column::Target),
       [](const Demand& demand) -> std::string { return demand.gaze_targets ? "levels follow the gaze" : ""; },
-      [](FluidState& state) { evaluate_gaze(state.saliency, fluid_of(state)); }};
+      [](FluidState& state) { evaluate_gaze(state.saliency, fluid_of(state)); },
+      Part::Saliency};
 }
 
 }  // namespace sim::SIM_BACKEND

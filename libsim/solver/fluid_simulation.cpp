@@ -277,6 +277,10 @@ class FluidSimulation final : public Simulation {
     pack_saliency(p.saliency.to_host(), p.target.to_host(), p.saliency_parts.to_host(), out);
   }
 
+  void read_field(ParticleField field, std::vector<float>& out) const override {
+    out = field_of(state_.particles, field);
+  }
+
   void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
     SaliencyState observer;
     observer.readings = options_.readings;

@@ -30,7 +30,9 @@ class FakeSimulation final : public sim::Simulation {
   }
   void read_saliency(std::vector<sim::ParticleSaliency>& out) const override { out.clear(); }
   void measure_saliency(const sim::Looks&, std::vector<sim::ParticleSaliency>& out) override { out.clear(); }
+  void read_field(sim::ParticleField, std::vector<float>& out) const override { out.clear(); }
   std::vector<sim::ParticleState> read_state() const override { return {}; }
+  sim::PartTimes part_times() const override { return {}; }
   bool copy_to_gl(unsigned) override { return false; }
   void synchronize() override {}
   std::size_t particle_bytes() const override { return 0; }

@@ -1,0 +1,112 @@
+#include "apps/view/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr float fastest_m_s = 15;
+constexpr float densest_error = 0.05F;
+
+std::string range_text(const char* what, double low, double high, const char* unit) {
+  char out[96];
+  std::snprintf(out, sizeof out, "%s %g to %g%s", what, low, high, unit);
+  return out;
+}
+
+}  // namespace
+
+const std::vector<std::string>& overlay_names() {
+  static const std::vector<std::string> names{"none",     "acuity", "manifold", "temporal", "combined",
+                                              "saliency", "level",  "speed",    "density",  "active"};
+  return names;
+}
+
+OverlayKind parse_overlay(std::string_view name) {
+  const auto& names = overlay_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<OverlayKind>(found - names.begin());
+  std::string known;
+  for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
+  throw base::Error("--overlay " + std::string(name), "is not known", "use one of " + known);
+}
+
+bool OverlayPainter::take_saliency(OverlayKind kind, const sim::Simulation& fluid) {
+  fluid.read_saliency(saliency_);
+  values_.clear();
+  for (const auto& p : saliency_) {
+    switch (kind) {
+      case OverlayKind::Acuity:
+        values_.push_back(p.acuity);
+        break;
+      case OverlayKind::Manifold:
+        values_.push_back(p.manifold);
+        break;
+      case OverlayKind::Temporal:
+        values_.push_back(p.temporal);
+        break;
+      case OverlayKind::Combined:
+        values_.push_back(p.combined);
+        break;
+      default:
+        values_.push_back(p.s);
+    }
+  }
+  return !values_.empty();
+}
+
+void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture,
+                           unsigned framebuffer) {
+  sim::Overlay overlay;
+  legend_.clear();
+  const auto field = [&](sim::ParticleField which) { fluid.read_field(which, values_); };
+  const std::string name = overlay_names()[static_cast<std::size_t>(kind)];
+  switch (kind) {
+    case OverlayKind::None:
+      return;
+    case OverlayKind::Level:
+      fluid.read_particles(particles_);
+      values_.clear();
+      for (const auto& p : particles_) {
+        values_.push_back(std::round(3 * std::log2(2 * p.radius_m / static_cast<float>(finest_spacing_m_))));
+      }
+      overlay.classes = true;
+      legend_ = "level: orange 0 (finest), green 1, blue 2, pink 3";
+      break;
+    case OverlayKind::Speed:
+      field(sim::ParticleField::Speed);
+      overlay.high = fastest_m_s;
+      legend_ = range_text("speed", 0, static_cast<double>(fastest_m_s), " m/s");
+      break;
+    case OverlayKind::Density:
+      field(sim::ParticleField::DensityError);
+      overlay.low = -densest_error;
+      overlay.high = densest_error;
+      legend_ = range_text("rho / rho_0 - 1:", -100 * static_cast<double>(densest_error),
+                           100 * static_cast<double>(densest_error), " %");
+      break;
+    case OverlayKind::Active:
+      field(sim::ParticleField::Active);
+      overlay.classes = true;
+      legend_ = "orange: moved by the velocity grid, green: solved";
+      break;
+    default:
+      if (!take_saliency(kind, fluid)) {
+        legend_ = name + ": this method computes none, or no frame has run";
+        return;
+      }
+      if (kind != OverlayKind::Saliency && kind != OverlayKind::Acuity) {
+        overlay.high = std::max(1e-6F, *std::max_element(values_.begin(), values_.end()));
+      }
+      legend_ = range_text(name.c_str(), 0, static_cast<double>(overlay.high), "");
+  }
+  overlay.values = values_;
+  picture.renderer().paint(overlay, framebuffer);
+}
+
+}  // namespace apps

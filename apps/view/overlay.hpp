@@ -1,0 +1,50 @@
+#pragma once
+/// Values of the particles that vip-view can paint over the water.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/common/fluid_picture.hpp"
+
+namespace apps {
+
+enum class OverlayKind {
+  None,
+  Acuity,
+  Manifold,
+  Temporal,
+  Combined,
+  Saliency,
+  Level,
+  Speed,
+  Density,
+  Active
+};
+
+/// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active";
+/// others are a base::Error.
+OverlayKind parse_overlay(std::string_view name);
+/// In the order of the enum.
+const std::vector<std::string>& overlay_names();
+
+/// Takes the values of a simulation and paints them over the picture that was just drawn of it.
+class OverlayPainter {
+ public:
+  /// `finest_spacing_m` is 2 r_*.
+  explicit OverlayPainter(double finest_spacing_m) : finest_spacing_m_(finest_spacing_m) {}
+  void paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture, unsigned framebuffer);
+  /// What the colours of the last paint stand for, e.g. "speed 0 to 10 m/s".
+  const std::string& legend() const { return legend_; }
+
+ private:
+  bool take_saliency(OverlayKind kind, const sim::Simulation& fluid);
+
+  double finest_spacing_m_;
+  std::vector<float> values_;
+  std::vector<sim::ParticleSaliency> saliency_;
+  std::vector<sim::RenderParticle> particles_;
+  std::string legend_;
+};
+
+}  // namespace apps
