@@ -214,7 +214,8 @@ Stage activation_stage() {
           columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
           columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
           wanted,
-          choose};
+          choose,
+          Part::Activation};
 }
 
 Stage velocity_grid_stage() {
@@ -225,7 +226,8 @@ Stage velocity_grid_stage() {
                   Column::Rest, Column::StartCell),
           columns(Column::Velocity, Column::Position, Column::Rest),
           wanted,
-          update_grid};
+          update_grid,
+          Part::Activation};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -171,7 +171,8 @@ Stage split_and_merge_stage() {
       columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::History, Column::Age,
               Column::Waiting),
       [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      split_and_merge};
+      split_and_merge,
+      Part::Levels};
 }
 
 }  // namespace sim::SIM_BACKEND

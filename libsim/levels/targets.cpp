@@ -92,7 +92,8 @@ Stage frame_neighbours_stage() {
             auto& p = state.particles;
             copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
             neighbours_stage().run(state);
-          }};
+          },
+          Part::Levels};
 }
 
 Stage forced_targets_stage() {
@@ -107,7 +108,8 @@ Stage forced_targets_stage() {
         auto& p = state.particles;
         for_each("force targets", p.size(),
                  Force{p.position.data(), p.target.data(), state.levels.forced, state.levels.rules.coarsest});
-      }};
+      },
+      Part::Levels};
 }
 
 Stage graded_targets_stage() {
@@ -118,7 +120,8 @@ Stage graded_targets_stage() {
       columns(Column::Position, Column::Target, Column::Neighbours),
       columns(Column::Target),
       [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      grade};
+      grade,
+      Part::Levels};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -13,6 +13,9 @@ std::vector<float> field_of(const Particles& particles, ParticleField field) {
   } else if (field == ParticleField::DensityError && particles.has(Column::Density)) {
     const auto density = particles.density.to_host();
     for (std::size_t i = 0; i < n; ++i) out[i] = density[i] - 1;
+  } else if (field == ParticleField::Active && particles.has(Column::Active)) {
+    const auto active = particles.active.to_host();
+    for (std::size_t i = 0; i < n; ++i) out[i] = active[i];
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "libsim/exec/vec.hpp"
+#include "libsim/simulation.hpp"
 
 namespace sim::SIM_BACKEND {
 
