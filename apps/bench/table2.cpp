@@ -17,6 +17,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/scene/settled_state.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/fps_window.hpp"
 #include "stats/ptpe.hpp"
