@@ -28,4 +28,20 @@ sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m) {
   return gaze;
 }
 
+sim::Gaze gaze_through(const sim::View& view, double x_px, double y_px) {
+  const sim::PixelRays rays = sim::pixel_rays(view);
+  const sim::Mat4 to_world = sim::rigid_inverse(view.view);
+  const double slope[3] = {x_px * static_cast<double>(rays.scale_x) + static_cast<double>(rays.offset_x),
+                           y_px * static_cast<double>(rays.scale_y) + static_cast<double>(rays.offset_y), -1};
+  sim::Gaze gaze;
+  for (std::size_t row = 0; row < 3; ++row) {
+    gaze.origin_m[row] = static_cast<double>(to_world[12 + row]);
+    for (std::size_t column = 0; column < 3; ++column) {
+      gaze.direction[row] += static_cast<double>(to_world[4 * column + row]) * slope[column];
+    }
+  }
+  gaze.valid = true;
+  return gaze;
+}
+
 }  // namespace apps

@@ -36,5 +36,7 @@ class FluidPicture {
 
 /// A gaze from a camera's eye to a point.
 sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m);
+/// A gaze from a view's eye through a point of its picture, px from the lower left corner.
+sim::Gaze gaze_through(const sim::View& view, double x_px, double y_px);
 
 }  // namespace apps

@@ -35,7 +35,8 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
   choice.n_star = sim::parse_n_star(options.n_star);
   choice.readings = sim::readings_of(sim::parse_preset(options.preset));
   choice.levels = options.levels;
-  choice.saliency_parts = parse_overlay(options.overlay) != OverlayKind::None;
+  // In a window they may be chosen later.
+  choice.saliency_parts = parse_overlay(options.overlay) != OverlayKind::None || !options.headless;
   choice.temporal.fixed_tau = parse_tau(options.tau);
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.finest_spacing_m =

@@ -6,11 +6,17 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <array>
+#include <cstdio>
 #include <string>
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/view/options.hpp"
+#include "apps/view/overlay.hpp"
 #include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "libsim/render/png.hpp"
+#include "libsim/scene/gaze.hpp"
 #include "stats/base/error.hpp"
 #include "stats/fps_window.hpp"
 
@@ -73,6 +79,19 @@ class Panel {
 struct Controls {
   bool paused = false;
   bool step_once = false;
+  bool mouse_gaze = true;  ///< else the scene's gaze keys
+  bool screenshot = false;
+  OverlayKind overlay = OverlayKind::None;
+};
+
+/// The last frames' times, for the strip.
+struct Strip {
+  std::array<float, 120> ms{};
+  int next = 0;
+  void push(double value) {
+    ms[static_cast<std::size_t>(next)] = static_cast<float>(value);
+    next = (next + 1) % static_cast<int>(ms.size());
+  }
 };
 
 struct Figures {
@@ -84,7 +103,22 @@ struct Figures {
   const char* model_origin = "";
 };
 
-void draw_panel(Controls& controls, const Figures& f) {
+void draw_choices(Controls& controls, const std::string& legend) {
+  const auto& names = overlay_names();
+  const auto current = static_cast<std::size_t>(controls.overlay);
+  if (ImGui::BeginCombo("paint", names[current].c_str())) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (ImGui::Selectable(names[i].c_str(), i == current)) controls.overlay = static_cast<OverlayKind>(i);
+    }
+    ImGui::EndCombo();
+  }
+  if (!legend.empty()) ImGui::TextUnformatted(legend.c_str());
+  ImGui::Checkbox("gaze follows the mouse", &controls.mouse_gaze);
+  if (ImGui::Button("screenshot (p)")) controls.screenshot = true;
+  if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) controls.screenshot = true;
+}
+
+void draw_panel(Controls& controls, const Figures& f, const Strip& strip, const std::string& legend) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
@@ -95,6 +129,9 @@ void draw_panel(Controls& controls, const Figures& f) {
   ImGui::Text("mu %.2f  delta %.2f frames/s (last %zu)", f.fps.mean, f.fps.sd, f.fps.frames);
   const double tau = stats::ptpe_tolerance(f.model, f.fps.mean, f.fps.sd);
   ImGui::Text("tau %.2f  beta %.3f  (%s)", tau, stats::activation_floor(f.model, tau), f.model_origin);
+  ImGui::PlotLines("ms", strip.ms.data(), static_cast<int>(strip.ms.size()), strip.next, nullptr, 0, 50,
+                   {240, 48});
+  draw_choices(controls, legend);
   ImGui::Checkbox("pause (space)", &controls.paused);
   ImGui::SameLine();
   if (ImGui::Button("step (s)")) controls.step_once = true;
@@ -103,6 +140,25 @@ void draw_panel(Controls& controls, const Figures& f) {
   ImGui::End();
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+/// Where the mouse points, or nowhere when it is over the panel or outside.
+sim::Gaze mouse_gaze(GLFWwindow* window, const sim::View& view) {
+  sim::Gaze gaze;
+  double x = 0, y = 0;
+  glfwGetCursorPos(window, &x, &y);
+  int width = 0, height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  const bool outside = x < 0 || y < 0 || x >= width || y >= height;
+  if (outside || ImGui::GetIO().WantCaptureMouse) return gaze;
+  const double scale = static_cast<double>(view.viewport.width) / width;
+  return gaze_through(view, scale * x, scale * (height - y));
+}
+
+void save_screenshot(int width, int height, int frame) {
+  const std::string path = "vip-view_" + std::to_string(frame) + ".png";
+  sim::write_png(path, sim::read_framebuffer(0, width, height));
+  std::printf("%s\n", path.c_str());
 }
 
 }  // namespace
@@ -115,6 +171,9 @@ void run_window(const ViewOptions& options) {
   FluidPicture picture(prepared.scene);
   stats::FpsWindow fps(30);
   Controls controls;
+  controls.overlay = parse_overlay(options.overlay);
+  OverlayPainter painter(prepared.finest_spacing_m);
+  Strip strip;
   Figures figures;
   figures.particles = prepared.fluid->particle_count();
   figures.model = prepared.ptpe ? prepared.ptpe->model : stats::PtpeModel{};
@@ -122,11 +181,6 @@ void run_window(const ViewOptions& options) {
   double last_s = glfwGetTime();
   while (!glfwWindowShouldClose(window.get())) {
     glfwPollEvents();
-    if (!controls.paused || controls.step_once) {
-      prepared.fluid->step_frame();
-      ++figures.frame;
-      controls.step_once = false;
-    }
     int width = 0, height = 0;
     glfwGetFramebufferSize(window.get(), &width, &height);
     if (width < 1 || height < 1) {  // minimised
@@ -134,11 +188,25 @@ void run_window(const ViewOptions& options) {
       last_s = glfwGetTime();
       continue;
     }
-    picture.draw(*prepared.fluid, sim::make_view(prepared.camera, width, height), 0);
-    draw_panel(controls, figures);
+    const sim::View view = sim::make_view(prepared.camera, width, height);
+    if (!controls.paused || controls.step_once) {
+      const auto by_keys = gaze_at(prepared.camera, sim::gaze_point(prepared.scene, figures.frame + 1));
+      picture.look(*prepared.fluid, view, controls.mouse_gaze ? mouse_gaze(window.get(), view) : by_keys);
+      prepared.fluid->step_frame();
+      ++figures.frame;
+      controls.step_once = false;
+    }
+    picture.draw(*prepared.fluid, view, 0);
+    painter.paint(controls.overlay, *prepared.fluid, picture, 0);
+    if (controls.screenshot) save_screenshot(width, height, figures.frame);
+    controls.screenshot = false;
+    draw_panel(controls, figures, strip, painter.legend());
     glfwSwapBuffers(window.get());
     const double now_s = glfwGetTime();
     figures.frame_ms = 1e3 * (now_s - last_s);
+    strip.push(figures.frame_ms);
+    prepared.fluid->frame_time(figures.frame_ms);
+    figures.particles = prepared.fluid->particle_count();
     if (now_s > last_s) fps.push(now_s - last_s);
     figures.fps = fps.moments();
     last_s = now_s;
