@@ -131,6 +131,7 @@ void split_and_merge(FluidState& state) {
   fit_scratch(state.levels, state.particles);
   const bool any_split = choose_splits(state);
   merge_pairs(state);
+  if (state.levels.rules.relays) relay_stranded(state);
   compact(state, any_split);
   ++state.levels.frame;
 }

@@ -18,6 +18,16 @@ struct LevelRules {
   float merge_reach = 1;
   float merge_overlap = 0.8f;
   bool merge_keeps_steps = true;
+  /// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
+  /// hold their neighbours back: when most have merged, a few are left without a partner in reach.
+  int looks_farther = 6, lags = 32;
+  /// Neighbours from which a particle counts as inside the fluid: sheets and drops never merge from afar.
+  int inside_count = 20;
+  bool relays = true;  ///< the stranded may merge through a coarser particle between them
+  /// Share of its constraint that a particle enforces in a projection while the youngest within its support
+  /// is 0, 1, ... frames old; what overlaps after a split or a merge parts slowly, not at once.
+  static constexpr int ease_frames = 5;
+  float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
   float fresh_viscosity = 0.7f;  ///< XSPH c of pairs with a particle made in the last fresh_frames
   int fresh_frames = 2;
 };

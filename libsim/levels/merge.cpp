@@ -4,13 +4,6 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
-/// hold their neighbours back: after most have merged, a few are left without a partner in reach.
-constexpr int looks_farther = 8;
-constexpr int lags = 16;
-/// Neighbours from which a particle counts as inside the fluid: sheets and drops never merge from afar.
-constexpr int inside_count = 24;
-
 /// Steps ages and histories, and finds who wants to be coarser and has wanted it for four frames.
 struct Remember {
   const std::uint8_t* level;
@@ -43,6 +36,7 @@ struct KeepSteps {
   Neighbours neighbours;
   std::uint8_t* out;
   LevelCounts* counts;
+  int lags;
   SIM_FN void operator()(int i) const {
     out[i] = wish[i];
     if (!wish[i] || level[i] == 0) return;
@@ -118,8 +112,8 @@ struct Propose {
   SIM_FN bool in_reach(int i, int j, float distance2) const {
     const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
     if (distance2 <= reach * reach) return true;
-    return (waiting[i] >= looks_farther || waiting[j] >= looks_farther) &&
-           neighbours.size(i) >= inside_count && neighbours.size(j) >= inside_count;
+    return (waiting[i] >= rules.looks_farther || waiting[j] >= rules.looks_farther) &&
+           neighbours.size(i) >= rules.inside_count && neighbours.size(j) >= rules.inside_count;
   }
 
   /// Would the new particle overlap another of its size or larger? (Fig. 5 d2)
@@ -216,7 +210,7 @@ void merge_pairs(FluidState& state) {
   if (l.rules.merge_keeps_steps) {
     for_each("keep steps", n,
              KeepSteps{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-                       neighbours, l.status.data(), l.counts.data()});
+                       neighbours, l.status.data(), l.counts.data(), l.rules.lags});
     l.wish.swap(l.status);
   }
   for_each("propose merges", n,

@@ -10,6 +10,8 @@ namespace sim::SIM_BACKEND {
 bool choose_splits(FluidState& state);
 /// Merges pairs in place: the particle with the lower id becomes the pair, the other is marked in `gone`.
 void merge_pairs(FluidState& state);
+/// Merges what has waited without a partner through a coarser particle between two such.
+void relay_stranded(FluidState& state);
 /// Makes the children and closes the gaps: the number of particles changes.
 void compact(FluidState& state, bool any_split);
 

@@ -43,7 +43,7 @@ const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
       "position", "velocity", "id",         "level",  "predicted", "predicted_next", "velocity_next",
       "lambda",   "density",  "neighbours", "target", "history",   "saliency",       "saliency_parts",
-      "waiting",  "age",      "active",     "rest",   "start_cell"};
+      "waiting",  "ease",     "age",        "active", "rest",      "start_cell"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -71,6 +71,7 @@ void Particles::for_each_column(Self& self, Visit visit) {
   visit(self.saliency, self.has(Column::Saliency));
   visit(self.saliency_parts, self.has(Column::SaliencyParts));
   visit(self.waiting, self.has(Column::Waiting));
+  visit(self.ease, self.has(Column::Ease));
   visit(self.age, self.has(Column::Age));
   visit(self.active, self.has(Column::Active));
   visit(self.rest, self.has(Column::Rest));

@@ -27,6 +27,7 @@ enum class Column : unsigned {
   Saliency,       ///< float: s in [0, 1], ViP-Fluid 3.2.3
   SaliencyParts,  ///< f_a, f_m, f_T and F behind it
   Waiting,        ///< uint8: frames in a row that it has been ready to merge
+  Ease,           ///< float: share of its constraint that a particle near a fresh one enforces, (0, 1]
   Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
   Active,         ///< uint8: 1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
   Rest,           ///< uint8: why and how long it was not solved (activation/activation.hpp)
@@ -84,7 +85,7 @@ class Particles {
   Array<int> id;
   Array<std::uint8_t> level, target, history, waiting, age, active, rest;
   Array<int> start_cell;
-  Array<float> lambda, density, saliency;
+  Array<float> lambda, density, ease, saliency;
   Array<SaliencyParts> saliency_parts;
 
   /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes

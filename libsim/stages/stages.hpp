@@ -55,10 +55,14 @@ Stage split_and_merge_stage();
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
+/// Shares of the constraint round fresh particles.
+Stage ease_stage();
 /// The slow part of the pressure, solved on cells and applied first.
 Stage coarse_pressure_stage();
 /// Density, unilateral constraint and its multiplier lambda.
 Stage density_stage();
+/// The constraint's multipliers times these shares.
+Stage eased_constraint_stage();
 /// Position correction, momentum-exact, and wall projection.
 Stage displacement_stage();
 /// Velocity from the positions.
