@@ -11,6 +11,7 @@
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timing.hpp"
 #include "apps/common/program.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
@@ -25,6 +26,7 @@ struct FrameOptions {
   std::string method = "HiRes";
   std::string n_star = "4k";
   std::string backend = "auto";
+  std::string tau = "live";
   std::string json;
   int frames = 100;
   int warm_up = 5;
@@ -41,6 +43,7 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   out.method = sim::parse_method(options.method);
   out.n_star = sim::parse_n_star(options.n_star);
   out.backend = sim::choose_backend(options.backend);
+  out.temporal.fixed_tau = sim::parse_tau(options.tau);
   Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
   out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
   return sim::make_simulation(scene, out);
@@ -96,6 +99,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
 
   std::vector<double> solve_ms, frame_ms;
   Accuracy accuracy;
+  double solved = 0;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
   const int stride = std::max(1, options.frames / 10);
   for (int frame = 0; frame < options.frames; ++frame) {
@@ -107,7 +111,14 @@ nlohmann::json run_frames(const FrameOptions& options) {
       const auto times = pictures.timer->draw(*fluid);
       frame_ms.push_back(solve_ms.back() + times.transfer + times.render);
     }
-    if (frame % stride == stride - 1) accuracy.add(fluid->report());
+    fluid->frame_time(pictures.timer ? frame_ms.back() : solve_ms.back());
+    if (frame % stride == stride - 1) {
+      const auto state = fluid->report();
+      accuracy.add(state);
+      const auto share = static_cast<double>(state.temporal.active) /
+                         static_cast<double>(std::max<std::int64_t>(1, state.particles));
+      solved += (share - solved) / accuracy.samples;
+    }
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   const auto report = fluid->report();
@@ -132,6 +143,11 @@ nlohmann::json run_frames(const FrameOptions& options) {
                         {"density_max", accuracy.density_max},
                         {"speed_max_m_s", report.speed_max_m_s},
                         {"particle_bytes", fluid->particle_bytes()},
+                        {"temporal",
+                         {{"tau_given", options.tau},
+                          {"tau_fps", report.temporal.tau},
+                          {"beta", report.temporal.beta},
+                          {"solved_share_mean", solved}}},
                         {"guards",
                          {{"speed_limited", report.guards.speed_limited},
                           {"coincident_pairs", report.guards.coincident_pairs},
@@ -169,6 +185,10 @@ void print_table(const nlohmann::json& result) {
               result["neighbours_mean"].get<double>());
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
               100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
+  const auto& temporal = result["temporal"];
+  std::printf("  temporal     tau %.2f frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
+              temporal["tau_fps"].get<double>(), temporal["tau_given"].get<std::string>().c_str(),
+              temporal["beta"].get<double>(), 100 * temporal["solved_share_mean"].get<double>());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
 }
 
@@ -182,6 +202,10 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
       ->capture_default_str();
   command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();
+  command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
+      ->capture_default_str();
+  command->add_flag("--temporal", options->fluid.temporal.always,
+                    "Temporal acceleration also for a method without it");
   command->add_option("--frames", options->frames, "Timed frames")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

@@ -99,6 +99,7 @@ void run_headless(const ViewOptions& options) {
     if (frame > 0) {
       prepared.fluid->frame_time(1e3 * (drawn - start));
       timing.window.push(drawn - start);
+      prepared.fluid->frame_time(1e3 * (drawn - start));
       timing.step_s += stepped - start;
     }
     timing.draw_s += drawn - stepped;

@@ -43,6 +43,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
   choice.backend = sim::choose_backend(options.backend);
+  if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   {
     Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
     choice.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };

@@ -1,11 +1,26 @@
 #include "libsim/ptpe/tolerance_switch.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string>
 
 #include "stats/base/error.hpp"
 
 namespace sim {
+
+std::optional<double> parse_tau(std::string_view text) {
+  if (text == "live") return std::nullopt;
+  constexpr std::string_view fixed = "fixed:";
+  double value = 0;
+  if (text.starts_with(fixed)) {
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + fixed.size(), end, value);
+    if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+  }
+  throw base::Error("tau \"" + std::string(text) + "\"", "is neither live nor fixed:X",
+                    "write for example fixed:-6, in frames/s");
+}
 
 ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<double> fixed_tau)
     : model_(model), fixed_(fixed_tau.has_value()) {

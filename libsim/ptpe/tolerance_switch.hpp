@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "stats/fps_window.hpp"
 #include "stats/ptpe.hpp"
 
 namespace sim {
+
+/// "live" gives none (tau from the frames' times), "fixed:X" gives X in frames/s; others are a base::Error.
+std::optional<double> parse_tau(std::string_view text);
 
 /// tau over the last 30 frames, with two thresholds so that noise does not switch back and forth: on below 0,
 /// off above +1 frames/s. A tau from outside (tests, benches) stands in for the measured one and goes the

@@ -260,7 +260,7 @@ class FluidSimulation final : public Simulation {
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
     return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
-           state_.saliency.bytes();
+           state_.saliency.bytes() + state_.activation.bytes();
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {

@@ -181,6 +181,34 @@ TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) {
                 {{0.9, 0.05, 0.8, 1.05}, {0.67, 0.05, 0.8, 1.05}, {0.3, 0.1, 0.7, 1.1}});
 }
 
+/// The whole method: saliency, levels and temporal acceleration together.
+void ours_tsp(Backend backend) {
+  const auto scene = sim::read_scene("data/scenes/single_dam.toml");
+  auto options = dam_options(backend, 256);
+  options.method = sim::MethodKind::OursTsp;
+  auto ours = options;
+  ours.method = sim::MethodKind::Ours;
+  options.temporal.fixed_tau = -10;
+  const auto with = sim::make_simulation(scene, options);
+  options.temporal.fixed_tau = 5;
+  const auto idle = sim::make_simulation(scene, options);
+  const auto without = sim::make_simulation(scene, ours);
+  EXPECT_EQ(without->explain().find("frame start  activation"), std::string::npos);
+  std::int64_t least = with->particle_count();
+  for (int frame = 0; frame < 60; ++frame) {
+    for (const auto& fluid : {with.get(), idle.get(), without.get()}) fluid->step_frame();
+    const auto report = with->report();
+    EXPECT_EQ(report.mass_units, 8 * 256);
+    EXPECT_LT(report.density_max, 1.3);
+    least = std::min(least, report.temporal.active - report.particles * 95 / 100);
+  }
+  EXPECT_LT(least, 0) << "some particles must be left out";
+  EXPECT_TRUE(same(idle->read_state(), without->read_state())) << "a good tau is Ours to the last bit";
+  EXPECT_EQ(fluid_test::outside(with->read_state(), scene.tank_size_m, 0.1 * with->spacing_m()), 0);
+}
+TEST(Temporal, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cpu); }
+TEST(TemporalGpu, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cuda); }
+
 TEST(Temporal, PapersOwnReadingStaysFinite) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = dam_options(Backend::Cpu, 256);

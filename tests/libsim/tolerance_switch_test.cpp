@@ -67,6 +67,14 @@ TEST(ToleranceSwitch, CountsTimesThatAreNone) {
   EXPECT_EQ(s.tau(), 0);
 }
 
+TEST(ParseTau, ReadsLiveAndFixedValuesOnly) {
+  EXPECT_FALSE(sim::parse_tau("live").has_value());
+  EXPECT_EQ(sim::parse_tau("fixed:-6.5").value(), -6.5);
+  for (const char* text : {"", "Live", "-6", "fixed:", "fixed:x", "fixed:1x", "fixed:nan", "fixed:inf"}) {
+    EXPECT_THROW(sim::parse_tau(text), base::Error) << text;
+  }
+}
+
 TEST(ToleranceSwitch, AFixedTauIgnoresTheClock) {
   ToleranceSwitch s({}, -6);
   feed(s, 90);
