@@ -172,12 +172,13 @@ void inherit(FluidState& state) {
              MeanChange{a.before.data(), a.after.data(), a.change.data(), a.grid.cells()});
   }
   const auto substeps = static_cast<float>(k.substeps);
+  const float idle = 1 - a.beta;
+  const float mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle * idle : 1;
   const float frame_dt = k.dt * substeps;
   for_each("inherit", p.size(),
            Inherit{p.active.data(), p.level.data(), p.position.data(), p.velocity.data(), state.guard(),
                    a.grid.frame(), a.change.data(), a.grid.velocity().data(), state.walls, frame_dt,
-                   frame_dt * (substeps + 1) / (2 * substeps), k.wall_gap,
-                   a.rules.inherit_change ? a.rules.damping * (1 - a.beta) : 1});
+                   frame_dt * (substeps + 1) / (2 * substeps), k.wall_gap, mean_share});
 }
 
 /// Marks spray, which no grid may move.

@@ -71,8 +71,8 @@ struct Readings {
   int longest_rest_frames = 3;  ///< frames that a particle may stay inactive in a row; 0 = no limit
   /// Inactive particles add the mean change that their cell's solved ones met; false: take the mean velocity.
   bool inherit_change = true;
-  /// This share times (1 - beta) of what they keep gives way to the mean velocity each frame.
-  double inactive_damping = 0.08;
+  /// This share times (1 - beta)^3 of what they keep gives way to the mean velocity each frame.
+  double inactive_damping = 0.8;
   /// The others count in lambda's denominator as if they could move; false: with no inverse mass.
   bool inactive_yield = true;
   /// Spray, particles at walls, fast ones and those just split or merged are never inactive.
