@@ -23,6 +23,7 @@ Readings readings_of(Preset preset) {
   if (preset == Preset::Tuned) return out;
   out.thickness = ThicknessWeight::Max;
   out.gradient = GradientReach::TwoSupports;
+  out.temporal_follow = 1;
   out.dimensionless = false;
   out.normalisation = Normalisation::MinMax;
   out.graded_targets = false;

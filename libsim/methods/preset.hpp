@@ -39,6 +39,9 @@ struct Readings {
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
   bool hide_manifold_behind = false;                 ///< Eq. 5: f_m of covered particles divided by gamma_t
   GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6
+  /// Eq. 6: share of the way to the new value that the temporal feature goes in a frame; 1 = all of it. In
+  /// still water 0.3 makes a third fewer splits than 1, and 0.1 less than half as many.
+  double temporal_follow = 0.2;
   /// Eq. 6: differences times h_i, without unit; false leaves 1/m.
   bool dimensionless = true;
   /// Eq. 6: epsilon_v as a share of sqrt(g d_*), epsilon_rho as a share of rho_0; without this floor the

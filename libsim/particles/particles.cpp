@@ -41,9 +41,9 @@ struct GatherOne {
 
 const char* column_name(Column column) {
   constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position", "velocity", "id",         "level",  "predicted", "predicted_next", "velocity_next",
-      "lambda",   "density",  "neighbours", "target", "history",   "saliency",       "saliency_parts",
-      "waiting",  "ease",     "age",        "active", "rest",      "start_cell"};
+      "position",       "velocity", "id",         "level",  "predicted", "predicted_next", "velocity_next",
+      "lambda",         "density",  "neighbours", "target", "history",   "saliency",       "unrest",
+      "saliency_parts", "waiting",  "ease",       "age",    "active",    "rest",           "start_cell"};
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -69,6 +69,7 @@ void Particles::for_each_column(Self& self, Visit visit) {
   visit(self.target, self.has(Column::Target));
   visit(self.history, self.has(Column::History));
   visit(self.saliency, self.has(Column::Saliency));
+  visit(self.unrest, self.has(Column::Unrest));
   visit(self.saliency_parts, self.has(Column::SaliencyParts));
   visit(self.waiting, self.has(Column::Waiting));
   visit(self.ease, self.has(Column::Ease));
@@ -83,6 +84,7 @@ void Particles::for_each_lasting_extra(Visit visit) {
   if (has(Column::Target)) visit(target, spare_byte_);
   if (has(Column::History)) visit(history, spare_byte_);
   if (has(Column::Saliency)) visit(saliency, spare_float_);
+  if (has(Column::Unrest)) visit(unrest, spare_float_);
   if (has(Column::SaliencyParts)) visit(saliency_parts, spare_parts_);
   if (has(Column::Waiting)) visit(waiting, spare_byte_);
   if (has(Column::Age)) visit(age, spare_byte_);

@@ -25,6 +25,7 @@ enum class Column : unsigned {
   Target,         ///< uint8: level that the particle should have
   History,        ///< uint8: targets of the last four frames, two bits each, the newest lowest
   Saliency,       ///< float: s in [0, 1], ViP-Fluid 3.2.3
+  Unrest,         ///< float: f_T gamma_t of ViP-Fluid Eq. 6, followed over frames
   SaliencyParts,  ///< f_a, f_m, f_T and F behind it
   Waiting,        ///< uint8: frames in a row that it has been ready to merge
   Ease,           ///< float: share of its constraint that a particle near a fresh one enforces, (0, 1]
@@ -85,7 +86,7 @@ class Particles {
   Array<int> id;
   Array<std::uint8_t> level, target, history, waiting, age, active, rest;
   Array<int> start_cell;
-  Array<float> lambda, density, ease, saliency;
+  Array<float> lambda, density, ease, saliency, unrest;
   Array<SaliencyParts> saliency_parts;
 
   /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes

@@ -15,6 +15,17 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
           speed_epsilon,  p.dimensionless};
 }
 
+/// What is not known yet starts with the frame's value, so that a NaN does not stay.
+struct FollowUnrest {
+  const float* now;
+  float* unrest;
+  float share;
+  SIM_FN void operator()(int i) const {
+    const float before = unrest[i];
+    unrest[i] = std::isfinite(before) ? before + share * (now[i] - before) : now[i];
+  }
+};
+
 }  // namespace
 
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
@@ -25,8 +36,13 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
   const GradientFields fields = gradient_fields(p, fluid, state.temporal.data());
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
-  combine_features(feature_numbers(p), state.eyes, fluid.position, state.temporal.data(),
-                   state.combined.data(), fluid.parts, fluid.n);
+  if (fluid.unrest) {
+    for_each("saliency unrest", fluid.n,
+             FollowUnrest{state.temporal.data(), fluid.unrest, static_cast<float>(p.temporal_follow)});
+  }
+  const float* unrest = fluid.unrest ? fluid.unrest : state.temporal.data();
+  combine_features(feature_numbers(p), state.eyes, fluid.position, unrest, state.combined.data(), fluid.parts,
+                   fluid.n);
   state.normaliser.update(state.combined, fluid.n, p.normalisation);
   saliency_to_levels(state.combined.data(), state.normaliser.range(), state.levels, fluid.saliency,
                      fluid.target, fluid.guards, fluid.n);

@@ -16,7 +16,7 @@ struct SaliencyState {
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
   Eyes eyes;                        ///< of the last evaluation
-  Array<float> temporal, combined;  ///< f_T gamma_t and F of the last evaluation
+  Array<float> temporal, combined;  ///< f_T gamma_t of this frame alone, and F
 
   std::size_t bytes() const {
     return input.bytes() + gradients.bytes() + temporal.bytes() + combined.bytes();
@@ -33,6 +33,7 @@ struct SaliencyFluid {
   float finest_support;  ///< h_*, m
   float gravity;         ///< m/s2
   float frame_dt;        ///< s
+  float* unrest;  ///< f_T gamma_t followed over frames, NaN where not known yet; nullptr: this frame's alone
   float* saliency;
   std::uint8_t* target;
   SaliencyParts* parts;  ///< may be nullptr

@@ -9,7 +9,8 @@ SaliencyFluid fluid_of(FluidState& state) {
   const auto& k = state.parameters;
   return {p.position.data(), p.velocity.data(),    p.density.data(), state.neighbours.view(),
           p.size(),          state.finest_support, k.gravity,        k.dt * static_cast<float>(k.substeps),
-          p.saliency.data(), p.target.data(),      nullptr,          state.guard()};
+          p.unrest.data(),   p.saliency.data(),    p.target.data(),  nullptr,
+          state.guard()};
 }
 
 /// Neighbours and densities where the particles are now: those of the last substep belong to other places
@@ -33,6 +34,7 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
   parts.resize(size);
   find_surroundings(state);
   SaliencyFluid fluid = fluid_of(state);
+  fluid.unrest = nullptr;
   fluid.saliency = saliency.data();
   fluid.target = target.data();
   fluid.parts = parts.data();
@@ -45,8 +47,8 @@ Stage saliency_stage() {
       "ViP-Fluid 3.2, Eq. 1-9",
       Phase::FrameStart,
       columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-      columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density, Column::Saliency,
-              Column::Target),
+      columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density, Column::Unrest,
+              Column::Saliency, Column::Target),
       [](const Demand& demand) -> std::string { return demand.saliency ? "levels follow what is seen" : ""; },
       [](FluidState& state) {
         find_surroundings(state);
@@ -59,7 +61,7 @@ Stage saliency_parts_stage() {
   return {"saliency parts",
           "ViP-Fluid 3.2, f_a, f_m, f_T and F",
           Phase::FrameStart,
-          columns(Column::Position, Column::Saliency),
+          columns(Column::Position, Column::Unrest),
           columns(Column::SaliencyParts),
           [](const Demand& demand) -> std::string {
             return demand.saliency && demand.saliency_parts ? "an output asks for them" : "";
@@ -67,7 +69,7 @@ Stage saliency_parts_stage() {
           [](FluidState& state) {
             auto& p = state.particles;
             SaliencyState& s = state.saliency;
-            combine_features(feature_numbers(s.readings), s.eyes, p.position.data(), s.temporal.data(),
+            combine_features(feature_numbers(s.readings), s.eyes, p.position.data(), p.unrest.data(),
                              s.combined.data(), p.saliency_parts.data(), p.size());
           },
           Part::Saliency};

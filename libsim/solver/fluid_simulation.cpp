@@ -382,6 +382,9 @@ class FluidSimulation final : public Simulation {
     p.id.from_host(id);
     p.level.from_host(level);
     if (p.has(Column::Saliency)) p.saliency.zero();
+    if (p.has(Column::Unrest)) {
+      p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
+    }
     if (adaptive()) state_.levels.begin(p);
     state_.walls = walls_of(scene_, false);
     set_jets();

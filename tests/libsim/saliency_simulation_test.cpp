@@ -175,6 +175,70 @@ TEST(SaliencyInSimulationsGpu, MeasuringNeedsNoMethodAndLeavesNoTrace) {
   measuring_needs_no_method_and_leaves_no_trace(Backend::Cuda);
 }
 
+bool same(const std::vector<fluid_test::ParticleState>& a, const std::vector<fluid_test::ParticleState>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
+           return p.id == q.id && p.level == q.level && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&
+                  p.vx_m_s == q.vx_m_s && p.vy_m_s == q.vy_m_s && p.vz_m_s == q.vz_m_s;
+         });
+}
+
+void saccades_split_no_more_than_the_cap(Backend backend) {
+  // S21: between two points 45 degrees apart at 500 degrees/s, 6 frames a way, then a rest of 12.
+  const auto fluid = make(backend, MethodKind::Ours);
+  std::uint64_t before = 0, most = 0;
+  for (int frame = 0; frame < 72; ++frame) {
+    const double way = std::clamp(frame % 18 / 6.0, 0.0, 1.0);
+    const double angle = 0.3927 * (frame / 18 % 2 ? 1 - 2 * way : 2 * way - 1);
+    const auto count = static_cast<std::uint64_t>(fluid->particle_count());
+    fluid->look({{eye_at({4 * std::sin(angle), -0.6, -4 * std::cos(angle)})}});
+    fluid->step_frame();
+    const auto splits = fluid->report().levels.splits;
+    EXPECT_LE(splits - before, (count * 5 + 99) / 100) << frame;
+    most = std::max(most, splits - before);
+    before = splits;
+  }
+  EXPECT_GT(most, 0u) << "without a split the cap has not been tried";
+  for (const auto& p : fluid->read_state()) ASSERT_TRUE(std::isfinite(p.x_m + p.y_m + p.z_m));
+}
+TEST(SaliencyInSimulations, SaccadesSplitNoMoreThanTheCap) {
+  saccades_split_no_more_than_the_cap(Backend::Cpu);
+}
+TEST(SaliencyInSimulationsGpu, SaccadesSplitNoMoreThanTheCap) {
+  saccades_split_no_more_than_the_cap(Backend::Cuda);
+}
+
+void a_blink_leaves_no_trace(Backend backend) {
+  // S21: the tracker loses the eye for 12 frames, 0.2 s; the gaze is held, so nothing may differ.
+  const auto steady = make(backend, MethodKind::Ours), blinking = make(backend, MethodKind::Ours);
+  for (int frame = 0; frame < 30; ++frame) {
+    steady->look({{eye_at(ahead)}});
+    auto eye = eye_at(ahead);
+    if (frame >= 10 && frame < 22) eye.gaze = {{}, {0, 0, std::numeric_limits<double>::quiet_NaN()}, false};
+    blinking->look({{eye}});
+    steady->step_frame();
+    blinking->step_frame();
+  }
+  EXPECT_TRUE(same(steady->read_state(), blinking->read_state()));
+  EXPECT_EQ(blinking->report().guards.gaze_lost, 12u);
+}
+TEST(SaliencyInSimulations, ABlinkLeavesNoTrace) { a_blink_leaves_no_trace(Backend::Cpu); }
+TEST(SaliencyInSimulationsGpu, ABlinkLeavesNoTrace) { a_blink_leaves_no_trace(Backend::Cuda); }
+
+void the_second_eye_counts(Backend backend) {
+  const auto one = make(backend, MethodKind::Ours), twice = make(backend, MethodKind::Ours);
+  const auto two = make(backend, MethodKind::Ours);
+  for (int frame = 0; frame < 20; ++frame) {
+    one->look({{eye_at(ahead)}});
+    twice->look({{eye_at(ahead), eye_at(ahead)}});
+    two->look({{eye_at(ahead), eye_at({-1.6, -0.6, -4})}});
+    for (const auto* fluid : {&one, &twice, &two}) (*fluid)->step_frame();
+  }
+  EXPECT_TRUE(same(one->read_state(), twice->read_state())) << "the same eye twice is one eye";
+  EXPECT_FALSE(same(one->read_state(), two->read_state()));
+}
+TEST(SaliencyInSimulations, TheSecondEyeCounts) { the_second_eye_counts(Backend::Cpu); }
+TEST(SaliencyInSimulationsGpu, TheSecondEyeCounts) { the_second_eye_counts(Backend::Cuda); }
+
 TEST(SaliencyInSimulations, DoesNotDependOnTheNumberOfThreads) {
   std::vector<sim::ParticleSaliency> by_threads[2];
   const int usual = omp_get_max_threads();

@@ -156,6 +156,7 @@ struct Fluid {
             state.finest_support,
             state.parameters.gravity,
             1.0f / 60,
+            nullptr,
             s.data(),
             target.data(),
             parts.data(),
