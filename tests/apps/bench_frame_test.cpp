@@ -1,14 +1,12 @@
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace {
 
@@ -17,30 +15,20 @@ namespace fs = std::filesystem;
 /// vip-bench frame on 1,024 particles.
 class BenchFrameE2e : public ::testing::Test {
  protected:
-  BenchFrameE2e() {
-    std::string pattern = (fs::temp_directory_path() / "vip-bench-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~BenchFrameE2e() override { fs::remove_all(folder); }
-
   int bench(const std::string& more, const std::string& environment = "") {
-    const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
-                                " " VIP_BIN_DIR
-                                "/vip-bench frame data/scenes/peers_dam.toml --n-star 128 --backend cpu "
-                                "--frames 2 --warm-up 0 --json " +
-                                json().string() + " " + more + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    std::array<char, 512> chunk;
-    text.clear();
-    while (pipe && fgets(chunk.data(), chunk.size(), pipe)) text += chunk.data();
-    const int status = pipe ? pclose(pipe) : -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const auto ended = apps::test::run_shell("env -u DISPLAY -u WAYLAND_DISPLAY " + environment +
+                                             " " VIP_BIN_DIR
+                                             "/vip-bench frame data/scenes/peers_dam.toml --n-star 128 "
+                                             "--backend cpu --frames 2 --warm-up 0 --json " +
+                                             json().string() + " " + more);
+    text = ended.out;
+    return ended.exit_code;
   }
 
   fs::path json() const { return folder / "frame.json"; }
   nlohmann::json figures() const { return nlohmann::json::parse(base::read_file(json(), 1 << 20)); }
 
-  fs::path folder;
+  test::TemporaryFolder folder;
   std::string text;  ///< stdout and stderr
 };
 
@@ -73,6 +61,8 @@ TEST_F(BenchFrameE2e, RefusesBadPictures) {
   EXPECT_EQ(bench("--size 3x3"), 1);
   EXPECT_NE(text.find("--size 3x3"), std::string::npos) << text;
   EXPECT_NE(bench("--views 3"), 0);
+  EXPECT_NE(bench("--momentum nan"), 0);
+  EXPECT_NE(text.find("nan"), std::string::npos) << text;
   EXPECT_FALSE(fs::exists(json()));
 }
 

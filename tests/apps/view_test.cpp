@@ -133,4 +133,31 @@ TEST_F(ViewE2e, NoDriverIsAClearError) {
   EXPECT_NE(outcome.out.find("libgl1-mesa-dri"), std::string::npos) << outcome.out;
 }
 
+TEST_F(ViewE2e, PaintsEachValueOverTheWater) {
+  for (const std::string name : {"level", "speed", "density", "saliency", "manifold", "active"}) {
+    const auto ended = view("--headless " + scene() +
+                            " --method Ours-TSp --n-star 64 --frames 3 --size 64x48 --tau fixed:-6 "
+                            "--overlay " +
+                            name + " --png " + (folder / name).string());
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+    EXPECT_NE(ended.out.find("paint  "), std::string::npos) << name << ended.out;
+    EXPECT_TRUE(fs::exists(folder / name / "frame_0002.png")) << name;
+  }
+  const auto none = view("--headless " + scene() +
+                         " --method LoRes --n-star 64 --frames 2 --size 64x48 --overlay manifold "
+                         "--png " +
+                         (folder / "none").string());
+  EXPECT_EQ(none.exit_code, 0);
+  EXPECT_NE(none.out.find("computes none"), std::string::npos) << none.out;
+}
+
+TEST_F(ViewE2e, RefusesUnknownOverlaysPresetsLevelsAndTau) {
+  for (const std::string wrong :
+       {"--overlay glow", "--preset best", "--levels 5", "--tau fixed:", "--method Theirs"}) {
+    const auto ended = view("--headless " + scene() + " --n-star 64 --frames 1 " + wrong);
+    EXPECT_EQ(ended.exit_code, 1) << wrong << ended.out;
+    EXPECT_NE(ended.out.find("error"), std::string::npos) << wrong;
+  }
+}
+
 }  // namespace
