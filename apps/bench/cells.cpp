@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "apps/common/tau_option.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -93,7 +93,7 @@ std::vector<sim::Preset> presets_of(const std::string& word) {
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method) {
   if (word == "table2") return paper_tau(scene, n_star, method);
-  return parse_tau(word, ", or table2");
+  return sim::parse_tau(word);
 }
 
 std::string to_csv(const TextTable& table) {

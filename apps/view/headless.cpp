@@ -97,7 +97,6 @@ void run_headless(const ViewOptions& options) {
     }
     const double drawn = seconds_now();
     if (frame > 0) {
-      prepared.fluid->frame_time(1e3 * (drawn - start));
       timing.window.push(drawn - start);
       prepared.fluid->frame_time(1e3 * (drawn - start));
       timing.step_s += stepped - start;

@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "apps/common/program.hpp"
-#include "apps/common/tau_option.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
@@ -37,7 +37,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
   choice.levels = options.levels;
   // In a window they may be chosen later.
   choice.saliency_parts = parse_overlay(options.overlay) != OverlayKind::None || !options.headless;
-  choice.temporal.fixed_tau = parse_tau(options.tau);
+  choice.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;

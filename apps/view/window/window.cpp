@@ -209,7 +209,6 @@ void run_window(const ViewOptions& options) {
     figures.particles = prepared.fluid->particle_count();
     if (now_s > last_s) fps.push(now_s - last_s);
     figures.fps = fps.moments();
-    prepared.fluid->frame_time(figures.frame_ms);
     last_s = now_s;
   }
 }
