@@ -161,9 +161,9 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods that
-  /// follow no gaze ignore it; those that do look from the scene's own view along its axis until it is called.
-  /// base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is not whole.
+  /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods
+  /// that follow no gaze ignore it; those that do look from the scene's own view along its axis until it is
+  /// called. base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is not whole.
   virtual void look(const Looks& looks) = 0;
   /// Advances by one frame.
   virtual void step_frame() = 0;
@@ -180,13 +180,13 @@ class Simulation {
   virtual double spacing_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
-  /// Saliency behind the levels of the last frame, in the order of read_particles; what a particle became of has
-  /// its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none: another
-  /// method, or no frame yet.
+  /// Saliency behind the levels of the last frame, in the order of read_particles; what a particle became of
+  /// has its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none:
+  /// another method, or no frame yet.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
-  /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the first
-  /// frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
-  /// read_particles after it.
+  /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the
+  /// first frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order
+  /// of a read_particles after it.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// One value a particle in the order of read_particles.
   virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;

@@ -18,8 +18,8 @@ struct ActivationRules {
   /// Particles that are not solved keep their own velocity and add the mean change that the solved particles
   /// of their cell met; false: they take the cell's mean velocity, as printed.
   bool inherit_change = true;
-  /// Of what they keep, this share times (1 - beta)^3 gives way to the cell's mean velocity each frame: nothing
-  /// slows them down when they run into others, which would feed the fluid energy.
+  /// Of what they keep, this share times (1 - beta)^3 gives way to the cell's mean velocity each frame:
+  /// nothing slows them down when they run into others, which would feed the fluid energy.
   float damping = 0.8f;
   /// In the denominator of lambda the others count as if they could move; false: as if they had infinite
   /// mass.

@@ -19,7 +19,8 @@ void* GlSharing::map(unsigned buffer, std::size_t bytes) {
     forget();
     buffer_ = buffer;
     cudaGraphicsResource_t resource = nullptr;
-    refused_ = cudaGraphicsGLRegisterBuffer(&resource, buffer, cudaGraphicsRegisterFlagsWriteDiscard) != cudaSuccess;
+    refused_ =
+        cudaGraphicsGLRegisterBuffer(&resource, buffer, cudaGraphicsRegisterFlagsWriteDiscard) != cudaSuccess;
     if (refused_) {
       cudaGetLastError();  // said by the return value; not an error of the next launch
       return nullptr;

@@ -12,8 +12,8 @@ class GlSharing {
   GlSharing(const GlSharing&) = delete;
   GlSharing& operator=(const GlSharing&) = delete;
 
-  /// Registers the GL buffer of the current context at its first use and maps it. Null when it cannot be shared or holds fewer
-  /// than `bytes`.
+  /// Registers the GL buffer of the current context at its first use and maps it. Null when it cannot be
+  /// shared or holds fewer than `bytes`.
   void* map(unsigned buffer, std::size_t bytes);
   void unmap();
 

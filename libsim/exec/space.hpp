@@ -1,7 +1,8 @@
 #pragma once
-/// The execution layer: the only place that knows a back end. This header and every kernel that includes it are compiled by g++
-/// into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc into sim::cuda (SIM_BACKEND=cuda), from one text.
-/// Kernels are trivially copyable functors `void operator()(int i) const`; all work is in order on one stream.
+/// The execution layer: the only place that knows a back end. This header and every kernel that includes it
+/// are compiled by g++ into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc into sim::cuda (SIM_BACKEND=cuda),
+/// from one text. Kernels are trivially copyable functors `void operator()(int i) const`; all work is in
+/// order on one stream.
 
 #include <cstddef>
 #include <cstdint>
@@ -179,7 +180,8 @@ inline void atomic_max(int* target, int value) {
 
 #endif
 
-/// Sums values[0..n-1] in double over fixed chunks, so that the result does not depend on the number of threads.
+/// Sums values[0..n-1] in double over fixed chunks, so that the result does not depend on the number of
+/// threads.
 double fixed_order_sum(const Array<float>& values, int n);
 /// Largest value; 0 when n is 0.
 float maximum(const Array<float>& values, int n);

@@ -35,8 +35,8 @@ void synchronize() {}
 
 namespace {
 
-// Least-significant-digit radix sort over fixed chunks: stable, hence equal for any number of threads. Digits that all keys
-// share are skipped, which leaves about one pass for each axis of a room-sized grid.
+// Least-significant-digit radix sort over fixed chunks: stable, hence equal for any number of threads. Digits
+// that all keys share are skipped, which leaves about one pass for each axis of a room-sized grid.
 constexpr int digit_bits = 11;
 constexpr int buckets = 1 << digit_bits;
 constexpr int chunks = 8;

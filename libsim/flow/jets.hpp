@@ -20,7 +20,7 @@ struct Jets {
   int frame = 0;           ///< the frame that begins
   CornerColumns columns;
   Exchange exchange;
-  Array<int> mass_by_target;  ///< near a mouth
+  Array<int> mass_by_target;   ///< near a mouth
   std::int64_t reservoir = 0;  ///< taken from the corners and not yet poured, in m_*
   std::int64_t poured = 0;     ///< since the run began, in m_*
   std::uint64_t waited = 0;    ///< layers left out because the corners held too little

@@ -30,9 +30,9 @@ enum class Column : unsigned {
   Waiting,        ///< uint8: frames in a row that it has been ready to merge
   Ease,           ///< float: share of its constraint that a particle near a fresh one enforces, (0, 1]
   Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
-  Active,         ///< uint8: 1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-  Rest,           ///< uint8: why and how long it was not solved (activation/activation.hpp)
-  StartCell,      ///< int: where in the velocity grid the particle was when the frame began
+  Active,     ///< uint8: 1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
+  Rest,       ///< uint8: why and how long it was not solved (activation/activation.hpp)
+  StartCell,  ///< int: where in the velocity grid the particle was when the frame began
   count
 };
 using ColumnSet = std::bitset<static_cast<std::size_t>(Column::count)>;

@@ -1,5 +1,6 @@
 #pragma once
-/// From what is wanted to what runs: keeps only the stages that are called for, in their fixed order, and checks them.
+/// From what is wanted to what runs: keeps only the stages that are called for, in their fixed order, and
+/// checks them.
 
 #include <string>
 #include <vector>
@@ -10,14 +11,16 @@ namespace sim::SIM_BACKEND {
 
 struct Schedule {
   std::vector<Stage> frame_start, substep, iteration, substep_end, frame_end;
-  ColumnSet columns;      ///< union of what the passes read and write
+  ColumnSet columns;        ///< union of what the passes read and write
   std::string explanation;  ///< each pass with why it is there, each known stage with why it is not
 };
 
-/// Prunes, never reorders. A pass that reads a column nothing has written is an error (base::Error names both).
+/// Prunes, never reorders. A pass that reads a column nothing has written is an error (base::Error names
+/// both).
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages());
 
-/// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes), then the frame's end.
+/// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes),
+/// then the frame's end.
 void run_frame(const Schedule& schedule, FluidState& state);
 
 }  // namespace sim::SIM_BACKEND

@@ -179,7 +179,8 @@ void splits_are_calm(Backend backend) {
           static_cast<unsigned long long>(events.merges), densest, fastest, gain);
       EXPECT_GT(events.splits, 0u);
       EXPECT_LT(densest, radius > 100 ? 1.25 : 1.15);
-      // Splitting all of it takes 20 frames in which the whole tank rises: 5 % measured, not the 1 % of a few.
+      // Splitting all of it takes 20 frames in which the whole tank rises: 5 % measured, not the 1 % of a
+      // few.
       EXPECT_LT(gain, radius > 100 ? 0.08 : 0.01);
       expect_sound(*fluid, static_cast<std::int64_t>(start.size()), 8 * Settled::n_star);
     }

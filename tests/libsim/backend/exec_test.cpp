@@ -13,8 +13,9 @@ namespace {
 void expect_sorted_like_std(std::vector<std::uint64_t> keys) {
   std::vector<int> expected(keys.size());
   std::iota(expected.begin(), expected.end(), 0);
-  std::stable_sort(expected.begin(), expected.end(),
-                   [&](int a, int b) { return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)]; });
+  std::stable_sort(expected.begin(), expected.end(), [&](int a, int b) {
+    return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
+  });
   std::vector<int> iota(keys.size());
   std::iota(iota.begin(), iota.end(), 0);
   Array<std::uint64_t> device_keys;

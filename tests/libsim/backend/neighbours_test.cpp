@@ -11,9 +11,9 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 struct Listed {
-  std::vector<int> id;               // by place
-  std::vector<Vec4> position;        // by place
-  std::vector<std::set<int>> sets;   // by id
+  std::vector<int> id;              // by place
+  std::vector<Vec4> position;       // by place
+  std::vector<std::set<int>> sets;  // by id
   std::uint64_t dropped = 0;
   int cells = 0;
   std::size_t entries = 0;
@@ -30,7 +30,8 @@ std::uint8_t level_of(float h) {
 Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed = false) {
   const int n = static_cast<int>(points.size());
   Particles particles;
-  particles.allocate(columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level), n);
+  particles.allocate(
+      columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level), n);
   std::vector<Vec4> at = points;
   std::vector<int> id(points.size());
   for (int i = 0; i < n; ++i) id[static_cast<std::size_t>(i)] = i;
@@ -71,11 +72,13 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed =
   std::vector<int> entry((points.size() + list_interleave) * static_cast<std::size_t>(view.capacity));
   copy_to_host(count.data(), view.count, count.size() * sizeof(int));
   const std::size_t groups = (points.size() + list_interleave - 1) / list_interleave;
-  copy_to_host(entry.data(), view.entry, groups * list_interleave * static_cast<std::size_t>(view.capacity) * sizeof(int));
+  copy_to_host(entry.data(), view.entry,
+               groups * list_interleave * static_cast<std::size_t>(view.capacity) * sizeof(int));
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < count[static_cast<std::size_t>(i)]; ++k) {
       const int j = entry[view.place(i, k)];
-      out.sets[static_cast<std::size_t>(out.id[static_cast<std::size_t>(i)])].insert(out.id[static_cast<std::size_t>(j)]);
+      out.sets[static_cast<std::size_t>(out.id[static_cast<std::size_t>(i)])].insert(
+          out.id[static_cast<std::size_t>(j)]);
       ++out.entries;
     }
   }
@@ -113,7 +116,8 @@ std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
 }
 
 SIM_TEST(NeighbourList, EqualsBruteForceOnRandomPoints) {
-  for (const float size : {0.2f, 1.0f, 3.0f}) expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
+  for (const float size : {0.2f, 1.0f, 3.0f})
+    expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
 }
 
 /// Gives each point one of `levels`, by turns.
@@ -124,8 +128,8 @@ std::vector<Vec4> mixed_points(std::vector<Vec4> points, const std::vector<int>&
 }
 
 SIM_TEST(MixedNeighbourList, EqualsBruteForceOnRandomPoints) {
-  for (const auto& levels :
-       std::vector<std::vector<int>>{{0, 1, 2, 3}, {0, 3}, {1, 2}, {3, 3, 3, 0}, {0}, {3}, {2, 0, 0, 0, 0, 0, 0}}) {
+  for (const auto& levels : std::vector<std::vector<int>>{
+           {0, 1, 2, 3}, {0, 3}, {1, 2}, {3, 3, 3, 0}, {0}, {3}, {2, 0, 0, 0, 0, 0, 0}}) {
     for (const float size : {0.3f, 1.2f, 4.0f}) {
       expect_brute_force(mixed_points(random_points(size < 1 ? 300 : 1500, size, finest, 7), levels), true);
     }
@@ -147,11 +151,13 @@ SIM_TEST(MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(mixed_points(random_points(300, 0.05f, finest, 3), {0, 1, 2, 3}), true);
   std::vector<Vec4> points;
   for (const float far : {-1e9f, -6.9e5f, -6e5f, -3.4e5f, 0.0f, 3.4e5f, 6e5f, 6.9e5f, 1e9f}) {
-    for (int i = 0; i < 12; ++i) points.push_back({far, far > 0 ? far : 0.1f * static_cast<float>(i), -far, finest});
+    for (int i = 0; i < 12; ++i)
+      points.push_back({far, far > 0 ? far : 0.1f * static_cast<float>(i), -far, finest});
   }
   expect_brute_force(mixed_points(points, {0, 1, 2, 3}), true);
   // Only fine particles beyond the range of their own grid but within that of a coarse one.
-  expect_brute_force(mixed_points({{1.0e6f, 0, 0, 0}, {1.0e6f, 0.2f, 0, 0}, {1.0e6f, 0.4f, 0, 0}}, {3, 0}), true);
+  expect_brute_force(mixed_points({{1.0e6f, 0, 0, 0}, {1.0e6f, 0.2f, 0, 0}, {1.0e6f, 0.4f, 0, 0}}, {3, 0}),
+                     true);
 }
 
 SIM_TEST(MixedNeighbourList, TakesNoneOneAndThin) {
@@ -192,7 +198,8 @@ SIM_TEST(NeighbourList, CountsWhatFindsNoRoom) {
   const Listed listed = list(points);
   EXPECT_EQ(listed.dropped, 600u * (599 - (NeighbourList::most_capacity - 1)));
   EXPECT_EQ(listed.cells, 1);
-  for (const auto& set : listed.sets) EXPECT_EQ(set.size(), static_cast<std::size_t>(NeighbourList::most_capacity - 1));
+  for (const auto& set : listed.sets)
+    EXPECT_EQ(set.size(), static_cast<std::size_t>(NeighbourList::most_capacity - 1));
 }
 
 SIM_TEST(NeighbourList, TakesNoneAndOne) {

@@ -116,7 +116,8 @@ SIM_TEST(Density, LatticeHasTheRestDensity) {
   std::vector<Vec4> points;
   const float d = 0.15f;
   for (int i = 0; i < 343; ++i) {
-    points.push_back({d * static_cast<float>(i % 7), d * static_cast<float>(i / 7 % 7), d * static_cast<float>(i / 49), 2 * d});
+    points.push_back({d * static_cast<float>(i % 7), d * static_cast<float>(i / 7 % 7),
+                      d * static_cast<float>(i / 49), 2 * d});
   }
   auto state = state_of(points, true);
   density_stage().run(state);
@@ -146,7 +147,8 @@ SIM_TEST(Walls, MakeUpHalvesQuartersAndCorners) {
 }
 
 SIM_TEST(Walls, ShareIsTheKernelsIntegralBehindThePlane) {
-  // Numeric integral of poly6 over discs behind the plane, h = 1; and of the spiky kernel's slope along the normal.
+  // Numeric integral of poly6 over discs behind the plane, h = 1; and of the spiky kernel's slope along the
+  // normal.
   for (const double q : {0.0, 0.2, 0.5, 0.8}) {
     double behind = 0;
     double slope = 0;
