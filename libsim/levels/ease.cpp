@@ -4,17 +4,27 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// Lists belong to slots; who is not solved has nothing to ease.
+template <class Selection>
 struct Ease {
+  Selection select;
   const Vec4* predicted;
   const std::uint8_t* age;
   Neighbours neighbours;
   float* ease;
   LevelRules rules;
-  SIM_FN void operator()(int i) const {
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        ease[~i] = 1;
+        return;
+      }
+    }
     int youngest = age[i];
     const Vec4 self = predicted[i];
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    for (int k = 0; k < neighbours.size(slot); ++k) {
+      const int j = neighbours(slot, k);
       if (age[j] >= LevelRules::ease_frames || age[j] >= youngest) continue;
       const Vec4 other = predicted[j];
       const Vec3 offset = xyz(self) - xyz(other);
@@ -31,6 +41,14 @@ struct Apply {
   SIM_FN void operator()(int i) const { lambda[i] *= ease[i]; }
 };
 
+template <class Selection>
+void launch(FluidState& state, Selection select) {
+  auto& p = state.particles;
+  for_each("ease", p.size(),
+           Ease<Selection>{select, p.predicted.data(), p.age.data(), state.neighbours.view(), p.ease.data(),
+                           state.levels.rules});
+}
+
 }  // namespace
 
 Stage ease_stage() {
@@ -42,10 +60,7 @@ Stage ease_stage() {
       columns(Column::Ease),
       [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
       [](FluidState& state) {
-        auto& p = state.particles;
-        for_each("ease", p.size(),
-                 Ease{p.predicted.data(), p.age.data(), state.neighbours.view(), p.ease.data(),
-                      state.levels.rules});
+        state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
       }};
 }
 

@@ -1,0 +1,85 @@
+/// Who eases the constraint, against brute force.
+
+#include <random>
+
+#include "libsim/stages/stages.hpp"
+#include "tests/libsim/backend/backend_test.hpp"
+
+namespace sim::SIM_BACKEND {
+namespace {
+
+constexpr float h = 0.3f;
+
+/// Mixed levels in a box; one in forty was just made, one in three is not solved where `resting`.
+FluidState crowd(int n, bool resting) {
+  FluidState state;
+  state.guards.resize(1);
+  state.guards.zero();
+  state.one_level = false;
+  state.finest_support = state.lightest_support = h;
+  state.supports = level_supports(static_cast<double>(h));
+  state.all_active = !resting;
+  auto& p = state.particles;
+  p.allocate(ColumnSet().set(), n);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> at(0, 1.5f);
+  std::vector<Vec4> position;
+  std::vector<int> id;
+  std::vector<std::uint8_t> level, age, active;
+  for (int i = 0; i < n; ++i) {
+    level.push_back(static_cast<std::uint8_t>(i % 4));
+    position.push_back({at(random), at(random), at(random), state.supports.h[i % 4]});
+    id.push_back(i);
+    age.push_back(i % 40 == 0 ? static_cast<std::uint8_t>(i / 40 % 5) : std::uint8_t{255});
+    active.push_back(!resting || i % 3 != 0);
+  }
+  p.position.from_host(position);
+  p.predicted.from_host(position);
+  p.predicted_next.from_host(position);
+  p.velocity.zero();
+  p.id.from_host(id);
+  p.level.from_host(level);
+  p.age.from_host(age);
+  p.active.from_host(active);
+  p.ease.from_host(std::vector<float>(static_cast<std::size_t>(n), -1));
+  p.lambda.zero();
+  p.density.from_host(std::vector<float>(static_cast<std::size_t>(n), 1));
+  p.rest.zero();
+  p.saliency.zero();
+  return state;
+}
+
+void equals_brute_force(bool resting) {
+  auto state = crowd(1500, resting);
+  do {  // until no row is too short
+    state.guards.zero();
+    neighbours_stage().run(state);
+    state.neighbours.grow();
+  } while (state.guards.to_host()[0].neighbours_dropped > 0);
+  ease_stage().run(state);
+  const auto& p = state.particles;
+  const auto x = p.predicted.to_host();
+  const auto age = p.age.to_host();
+  const auto active = p.active.to_host();
+  const auto ease = p.ease.to_host();
+  int eased = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    int youngest = age[i];
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const Vec3 offset = xyz(x[i]) - xyz(x[j]);
+      const float reach = 0.5f * (x[i].w + x[j].w);
+      if (i != j && dot(offset, offset) < reach * reach) youngest = std::min<int>(youngest, age[j]);
+    }
+    const bool near_fresh = active[i] && youngest < LevelRules::ease_frames;
+    ASSERT_EQ(ease[i], near_fresh ? state.levels.rules.ease[youngest] : 1.0f) << i;
+    eased += near_fresh;
+  }
+  EXPECT_GT(eased, 100);
+  EXPECT_LT(eased, 1400);
+}
+
+SIM_TEST(Ease, FollowsTheYoungestWithinTheSupport) { equals_brute_force(false); }
+SIM_TEST(Ease, LeavesOutWhoIsNotSolved) { equals_brute_force(true); }
+
+}  // namespace
+}  // namespace sim::SIM_BACKEND
