@@ -1,5 +1,6 @@
 #include "stats/image/ssim.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -25,47 +26,73 @@ std::array<double, window> gaussian() {
 
 std::vector<double> luma(const ImageView& image) {
   std::vector<double> out(image.pixels());
+#pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = 0.299 * image.rgb[3 * i] + 0.587 * image.rgb[3 * i + 1] + 0.114 * image.rgb[3 * i + 2];
   return out;
 }
 
-/// Sums one row of `width` values over the window; out has width - 10 values.
-void filter_row(const double* in, int width, const std::array<double, window>& weights, double* out) {
-  for (int x = 0; x + window <= width; ++x) {
-    double sum = 0;
-    for (int k = 0; k < window; ++k) sum += weights[static_cast<std::size_t>(k)] * in[x + k];
-    out[x] = sum;
-  }
-}
+/// Rows of the map that one thread takes at a time; it filters ten more along x.
+constexpr int band_rows = 24;
+/// What the window averages: x, y, x^2, y^2 and x y.
+constexpr int quantities = 5;
 
-/// The Gaussian mean of a(i) over each whole window, along rows and then along columns.
-std::vector<double> filtered(const std::vector<double>& values, int width, int height) {
-  const auto weights = gaussian();
-  const int out_width = width - window + 1;
-  const int out_height = height - window + 1;
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(out_width) + static_cast<std::size_t>(x);
-  };
-  std::vector<double> rows(at(0, height));
-  for (int y = 0; y < height; ++y) {
-    const auto begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-    filter_row(values.data() + begin, width, weights, rows.data() + at(0, y));
-  }
-  std::vector<double> out(at(0, out_height), 0.0);
-  for (int y = 0; y < out_height; ++y) {
-    for (int k = 0; k < window; ++k) {
-      const double weight = weights[static_cast<std::size_t>(k)];
-      for (int x = 0; x < out_width; ++x) out[at(x, y)] += weight * rows[at(x, y + k)];
+/// The five quantities of a row of lumas x and y, averaged along the row: out[q * width + i].
+void filter_row(const double* x, const double* y, int width, const std::array<double, window>& weights,
+                double* out) {
+  std::fill_n(out, quantities * width, 0.0);
+  for (int k = 0; k < window; ++k) {
+    const double weight = weights[static_cast<std::size_t>(k)];
+    for (int i = 0; i < width; ++i) {
+      const double at_x = x[i + k];
+      const double at_y = y[i + k];
+      out[i] += weight * at_x;
+      out[width + i] += weight * at_y;
+      out[2 * width + i] += weight * (at_x * at_x);
+      out[3 * width + i] += weight * (at_y * at_y);
+      out[4 * width + i] += weight * (at_x * at_y);
     }
   }
-  return out;
 }
 
-std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> out(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] * b[i];
-  return out;
+/// The indices of a row from the five averages.
+void index_row(const double* mean, int width, double* out) {
+  constexpr double c1 = (0.01 * 255) * (0.01 * 255);
+  constexpr double c2 = (0.03 * 255) * (0.03 * 255);
+  for (int i = 0; i < width; ++i) {
+    const double mx = mean[i];
+    const double my = mean[width + i];
+    const double variance_x = mean[2 * width + i] - mx * mx;
+    const double variance_y = mean[3 * width + i] - my * my;
+    const double covariance = mean[4 * width + i] - mx * my;
+    // C3 = C2 / 2 folds contrast and structure into one factor (Eq. 13).
+    out[i] = (2 * mx * my + c1) * (2 * covariance + c2) /
+             ((mx * mx + my * my + c1) * (variance_x + variance_y + c2));
+  }
+}
+
+/// Rows [first, last) of the map. The Gaussian is separable: along x, then along y.
+void fill_band(const std::vector<double>& x, const std::vector<double>& y, int first, int last,
+               const std::array<double, window>& weights, SsimMap& map) {
+  const int stride = quantities * map.width;
+  const auto at = [](int row, int width) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+  };
+  std::vector<double> rows(at(last - first + window - 1, stride));
+  for (int row = first; row < last + window - 1; ++row) {
+    const std::size_t begin = at(row, map.width + 2 * SsimMap::border);
+    filter_row(x.data() + begin, y.data() + begin, map.width, weights, rows.data() + at(row - first, stride));
+  }
+  std::vector<double> mean(at(1, stride));
+  for (int row = first; row < last; ++row) {
+    std::fill(mean.begin(), mean.end(), 0.0);
+    for (int k = 0; k < window; ++k) {
+      const double weight = weights[static_cast<std::size_t>(k)];
+      const double* from = rows.data() + at(row - first + k, stride);
+      for (int i = 0; i < stride; ++i) mean[static_cast<std::size_t>(i)] += weight * from[i];
+    }
+    index_row(mean.data(), map.width, map.index.data() + at(row, map.width));
+  }
 }
 
 }  // namespace
@@ -74,26 +101,16 @@ SsimMap ssim_map(const ImageView& a, const ImageView& b) {
   check_images(a, b, {});
   if (a.width < window || a.height < window)
     throw std::invalid_argument("pictures must be at least 11 x 11 px for SSIM");
-  const auto filter = [&](const std::vector<double>& values) { return filtered(values, a.width, a.height); };
   const auto x = luma(a);
   const auto y = luma(b);
-  const auto mean_x = filter(x);
-  const auto mean_y = filter(y);
-  const auto mean_xx = filter(product(x, x));
-  const auto mean_yy = filter(product(y, y));
-  const auto mean_xy = filter(product(x, y));
-  constexpr double c1 = (0.01 * 255) * (0.01 * 255);
-  constexpr double c2 = (0.03 * 255) * (0.03 * 255);
-  SsimMap out{a.width - window + 1, a.height - window + 1, std::vector<double>(mean_x.size())};
-  for (std::size_t i = 0; i < out.index.size(); ++i) {
-    const double mx = mean_x[i];
-    const double my = mean_y[i];
-    const double variance_x = mean_xx[i] - mx * mx;
-    const double variance_y = mean_yy[i] - my * my;
-    const double covariance = mean_xy[i] - mx * my;
-    // C3 = C2 / 2 folds contrast and structure into one factor (Eq. 13).
-    out.index[i] = (2 * mx * my + c1) * (2 * covariance + c2) /
-                   ((mx * mx + my * my + c1) * (variance_x + variance_y + c2));
+  const auto weights = gaussian();
+  SsimMap out{a.width - window + 1, a.height - window + 1, {}};
+  out.index.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height));
+  const int bands = (out.height + band_rows - 1) / band_rows;
+#pragma omp parallel for schedule(static)
+  for (int band = 0; band < bands; ++band) {
+    const int first = band * band_rows;
+    fill_band(x, y, first, std::min(first + band_rows, out.height), weights, out);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stats/image/flicker.hpp"
 #include "stats/image/psnr.hpp"
 #include "stats/image/ssim.hpp"
 
@@ -80,6 +81,28 @@ TEST(Psnr, RefusesPicturesThatDoNotFit) {
   EXPECT_THROW(stats::psnr_db({0, 0, {}}, {0, 0, {}}), std::invalid_argument);
 }
 
+TEST(Flicker, SeesWhatChangesAndNotWhatStays) {
+  const Image calm = flat(8, 4, 100);
+  const Image offset = flat(8, 4, 130);
+  Image pops = offset;
+  pops.rgb[0] = 133;  // one channel of 96 by 3
+  const auto of = [&](const Image& before, const Image& now) {
+    return stats::flicker({before.view(), now.view()}, {calm.view(), calm.view()}).value;
+  };
+  EXPECT_EQ(of(offset, offset), 0) << "an error that stays";
+  EXPECT_DOUBLE_EQ(of(offset, pops), 9.0 / 96);
+  EXPECT_DOUBLE_EQ(of(pops, offset), 9.0 / 96);
+  EXPECT_EQ(stats::flicker({calm.view(), offset.view()}, {calm.view(), offset.view()}).value, 0)
+      << "both films change alike";
+  std::vector<std::uint8_t> mask(32, 1);
+  mask[0] = 0;
+  const auto masked = stats::flicker({offset.view(), pops.view()}, {calm.view(), calm.view()}, mask);
+  EXPECT_EQ(masked.value, 0);
+  EXPECT_EQ(masked.pixels, 31u);
+  EXPECT_THROW(stats::flicker({calm.view(), calm.view()}, {calm.view(), flat(4, 8, 1).view()}),
+               std::invalid_argument);
+}
+
 TEST(Ssim, ConstantsHaveTheClosedForm) {
   const auto map = stats::ssim_map(flat(20, 15, 100).view(), flat(20, 15, 110).view());
   EXPECT_EQ(map.width, 10);
@@ -144,6 +167,67 @@ TEST(Ssim, EqualsItsDefinitionAtEveryPixel) {
       const auto i = static_cast<std::size_t>(y * map.width + x);
       ASSERT_NEAR(map.index[i], ssim_at(a, b, x + 5, y + 5), 1e-9) << x << ' ' << y;
     }
+  }
+}
+
+/// Gaussian means along rows, then along columns, of whole pictures: the plain form of what ssim_map does in
+/// bands.
+std::vector<double> gaussian_means(const std::vector<double>& values, int width, int height) {
+  std::vector<double> weights;
+  double total = 0;
+  for (int k = -5; k <= 5; ++k) weights.push_back(std::exp(-k * k / 4.5));
+  for (const double w : weights) total += w;
+  std::vector<double> rows;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x + 11 <= width; ++x) {
+      double sum = 0;
+      for (int k = 0; k < 11; ++k)
+        sum += weights[static_cast<std::size_t>(k)] / total *
+               values[static_cast<std::size_t>(y * width + x + k)];
+      rows.push_back(sum);
+    }
+  }
+  std::vector<double> out;
+  for (int y = 0; y + 11 <= height; ++y) {
+    for (int x = 0; x < width - 10; ++x) {
+      double sum = 0;
+      for (int k = 0; k < 11; ++k)
+        sum += weights[static_cast<std::size_t>(k)] / total *
+               rows[static_cast<std::size_t>((y + k) * (width - 10) + x)];
+      out.push_back(sum);
+    }
+  }
+  return out;
+}
+
+TEST(Ssim, BandsOfRowsChangeNoValue) {
+  // Taller than several bands, and no multiple of one.
+  constexpr int width = 47, height = 131;
+  const Image a = rough(noise(width, height, 7));
+  const Image b = rough(noise(width, height, 8));
+  const auto product = [](const std::vector<double>& x, const std::vector<double>& y) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < x.size(); ++i) out.push_back(x[i] * y[i]);
+    return out;
+  };
+  const auto luma = [](const Image& image) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      out.push_back(0.299 * image.rgb[i] + 0.587 * image.rgb[i + 1] + 0.114 * image.rgb[i + 2]);
+    return out;
+  };
+  const auto means = [&](const std::vector<double>& values) { return gaussian_means(values, width, height); };
+  const auto x = luma(a), y = luma(b);
+  const auto mx = means(x), my = means(y);
+  const auto mxx = means(product(x, x)), myy = means(product(y, y)), mxy = means(product(x, y));
+  const auto map = stats::ssim_map(a.view(), b.view());
+  ASSERT_EQ(map.index.size(), mx.size());
+  const double c1 = 2.55 * 2.55, c2 = 7.65 * 7.65;
+  for (std::size_t i = 0; i < mx.size(); ++i) {
+    const double index =
+        (2 * mx[i] * my[i] + c1) * (2 * (mxy[i] - mx[i] * my[i]) + c2) /
+        ((mx[i] * mx[i] + my[i] * my[i] + c1) * (mxx[i] - mx[i] * mx[i] + myy[i] - my[i] * my[i] + c2));
+    ASSERT_NEAR(map.index[i], index, 1e-12) << i;
   }
 }
 

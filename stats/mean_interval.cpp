@@ -1,0 +1,58 @@
+#include "stats/mean_interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "stats/quantiles.hpp"
+
+namespace stats {
+
+MeanInterval mean_interval(std::span<const double> values, double confidence) {
+  if (!(confidence > 0 && confidence < 1))
+    throw std::invalid_argument("a confidence must lie between 0 and 1");
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
+    throw std::invalid_argument("a mean of values that are not finite");
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  MeanInterval out{unknown, unknown, unknown, values.size()};
+  if (values.empty()) return out;
+  const auto n = static_cast<double>(values.size());
+  out.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  if (values.size() < 2) return out;
+  double squares = 0;
+  for (const double v : values) squares += (v - out.mean) * (v - out.mean);
+  const double error = std::sqrt(squares / (n - 1) / n);
+  const double reach = student_quantile(0.5 + confidence / 2, n - 1) * error;
+  out.low = out.mean - reach;
+  out.high = out.mean + reach;
+  return out;
+}
+
+std::vector<double> group_means(std::span<const double> values, std::size_t size) {
+  if (size == 0 || values.size() % size != 0)
+    throw std::invalid_argument("values must fill whole groups of at least one");
+  std::vector<double> out;
+  for (std::size_t first = 0; first < values.size(); first += size) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const double v : values.subspan(first, size)) {
+      if (!std::isfinite(v)) continue;
+      sum += v;
+      ++count;
+    }
+    if (count > 0) out.push_back(sum / static_cast<double>(count));
+  }
+  return out;
+}
+
+std::vector<double> paired_group_means(std::span<const double> a, std::span<const double> b,
+                                       std::size_t size) {
+  if (a.size() != b.size()) throw std::invalid_argument("paired values must have the same length");
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
+  return group_means(differences, size);
+}
+
+}  // namespace stats

@@ -1,0 +1,31 @@
+#pragma once
+/// Means with their uncertainty, of values and of paired differences.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace stats {
+
+/// A mean and the interval of Student's t about it.
+struct MeanInterval {
+  double mean = 0;           ///< NaN without values
+  double low = 0, high = 0;  ///< NaN with fewer than two values
+  std::size_t n = 0;
+};
+
+/// mean -+ t(n - 1) s / sqrt(n) of independent values. All must be finite and confidence lie in (0, 1)
+/// (std::invalid_argument).
+MeanInterval mean_interval(std::span<const double> values, double confidence = 0.95);
+
+/// Mean of each run of `size` values, in order: repeats of one condition are not independent and count as
+/// one. Values that are not finite are left out; a group without any is left out as a whole.
+/// std::invalid_argument unless the values fill whole groups.
+std::vector<double> group_means(std::span<const double> values, std::size_t size);
+
+/// group_means of a[i] - b[i]; a pair counts where both are finite. std::invalid_argument when the lengths
+/// differ.
+std::vector<double> paired_group_means(std::span<const double> a, std::span<const double> b,
+                                       std::size_t size);
+
+}  // namespace stats
