@@ -74,6 +74,10 @@ struct SimulationOptions {
   std::optional<std::vector<ParticleState>> start;
   /// Frames that lie behind the start: nozzles go on from there. >= 0.
   int start_frame = 0;
+  /// For starts in the middle of a run: at most so many density projections move the particles of `start`,
+  /// until the mean of max(rho / rho_0 - 1, 0) is below 1 %; velocities stay. The velocity grid of temporal
+  /// acceleration is then made from the start as well. 0 = take the start as it is.
+  int start_projections = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
   bool time_parts = false;  ///< see Simulation::part_times(); waits for the device between parts
@@ -188,6 +192,10 @@ class Simulation {
   /// first frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order
   /// of a read_particles after it.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
+  /// s and target of a method that follows the gaze alone, in the order of read_particles; the rest is 0.
+  virtual void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
+  /// Ids in the order of read_particles.
+  virtual std::vector<int> read_ids() const = 0;
   /// One value a particle in the order of read_particles.
   virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;
   /// Everything about every particle, ordered by id.

@@ -15,9 +15,14 @@ void FluidPicture::draw(sim::Simulation& fluid, const sim::View& view, unsigned 
   drawn_ = true;
 }
 
+void FluidPicture::begin(const sim::GBuffer* seen) {
+  before_ = seen;
+  drawn_ = false;
+}
+
 void FluidPicture::look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze) {
   if (drawn_) seen_ = renderer_.read_gbuffer();
-  fluid.look({{{gaze, view, drawn_ ? &seen_ : nullptr}}});
+  fluid.look({{{gaze, view, drawn_ ? &seen_ : before_}}});
 }
 
 sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m) {

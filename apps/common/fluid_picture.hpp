@@ -15,6 +15,9 @@ class FluidPicture {
   explicit FluidPicture(const sim::Scene& scene, const sim::RenderOptions& options = {})
       : renderer_(scene, options) {}
 
+  /// Forgets what was drawn before another run. `seen`, if any, is what its viewer saw last; it must live
+  /// until the first draw.
+  void begin(const sim::GBuffer* seen);
   /// Takes the particles, on the device where the back end shares memory with GL, and draws them.
   void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer);
   /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
@@ -29,6 +32,7 @@ class FluidPicture {
   sim::FluidRenderer renderer_;
   sim::ParticleBuffer buffer_;
   sim::GBuffer seen_;
+  const sim::GBuffer* before_ = nullptr;
   bool drawn_ = false;
   std::vector<sim::RenderParticle> particles_;
   bool uploaded_ = false;

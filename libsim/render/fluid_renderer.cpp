@@ -128,6 +128,8 @@ struct FluidRenderer::State {
   }
   ~State() { glDeleteVertexArrays(1, &vertex_array); }
 
+  /// A view of the last draw, ready to be read.
+  const ViewTargets& drawn(std::size_t view) const;
   void write_block(ViewTargets& t) const;
   void clear(ViewTargets& t, std::int64_t count);
   void splat_particles(ViewTargets& t, unsigned particles, std::int64_t count);
@@ -350,12 +352,23 @@ RenderCounts FluidRenderer::counts() const {
 
 std::vector<PassTime> FluidRenderer::times() const { return state_->timer.times(); }
 
-GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
-  const State& s = *state_;
-  if (view >= s.views_drawn)
+const ViewTargets& FluidRenderer::State::drawn(std::size_t view) const {
+  if (view >= views_drawn)
     throw base::Error("G-buffer", "view " + std::to_string(view) + " was not drawn", "draw it first");
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  const ViewTargets& t = s.targets[view];
+  return targets[view];
+}
+
+std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
+  const ViewTargets& t = state_->drawn(view);
+  std::vector<float> out(static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height));
+  t.depth.read(out.data(), static_cast<std::int64_t>(4 * out.size()));
+  return out;
+}
+
+GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
+  const State& s = *state_;
+  const ViewTargets& t = s.drawn(view);
   const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
   GBuffer g;
   g.width = t.width;

@@ -100,6 +100,8 @@ class FluidRenderer {
 
   /// The G-buffer of a view of the last draw; waits for the device. base::Error when that view was not drawn.
   GBuffer read_gbuffer(std::size_t view = 0) const;
+  /// Its depth alone (GBuffer::depth).
+  std::vector<float> read_depth(std::size_t view = 0) const;
   /// Waits for the device.
   RenderCounts counts() const;
   /// In order of the passes; empty unless time_passes. Waits for the device.

@@ -41,6 +41,17 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
   evaluate_saliency(observer, fluid);
 }
 
+void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                  Array<std::uint8_t>& target) {
+  const auto size = static_cast<std::size_t>(state.particles.size());
+  saliency.resize(size);
+  target.resize(size);
+  SaliencyFluid fluid = fluid_of(state);
+  fluid.saliency = saliency.data();
+  fluid.target = target.data();
+  evaluate_gaze(observer, fluid);
+}
+
 Stage saliency_stage() {
   return {
       "saliency",

@@ -195,6 +195,7 @@ class FluidSimulation final : public Simulation {
                      static_cast<float>(scene.tank_size_m[2] / 2)};
     if (options.start) {
       open(*options.start);
+      if (options.start_projections > 0) prepare_start();
     } else {
       open(filled(scene, options, resolution_.level));
       settle();
@@ -293,6 +294,19 @@ class FluidSimulation final : public Simulation {
     pack_saliency(s.to_host(), target.to_host(), parts.to_host(), out);
   }
 
+  void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) override {
+    SaliencyState observer;
+    observer.readings = options_.readings;
+    observer.levels = options_.levels;
+    observer.input.look(looks);
+    Array<float> s;
+    Array<std::uint8_t> target;
+    SIM_BACKEND::measure_gaze(state_, observer, s, target);
+    pack_saliency(s.to_host(), target.to_host(), {}, out);
+  }
+
+  std::vector<int> read_ids() const override { return state_.particles.id.to_host(); }
+
   std::vector<ParticleState> read_state() const override {
     const auto position = state_.particles.position.to_host();
     const auto velocity = state_.particles.velocity.to_host();
@@ -388,6 +402,13 @@ class FluidSimulation final : public Simulation {
     if (adaptive()) state_.levels.begin(p);
     state_.walls = walls_of(scene_, false);
     set_jets();
+  }
+
+  void prepare_start() {
+    relax_start(state_, options_.start_projections);
+    if (state_.particles.has(Column::Active)) start_velocity_grid(state_);
+    // What was met on the way is not part of the run.
+    state_.guards.zero();
   }
 
   void set_jets() {

@@ -83,6 +83,9 @@ Stage velocity_grid_stage();
 /// columns and fills the given ones in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                       Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
+/// The same from the gaze alone, in the present order.
+void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                  Array<std::uint8_t>& target);
 
 /// All stages in the fixed order in which a schedule may call them.
 std::vector<Stage> all_stages();

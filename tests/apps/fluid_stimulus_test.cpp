@@ -30,6 +30,10 @@ class FakeSimulation final : public sim::Simulation {
   }
   void read_saliency(std::vector<sim::ParticleSaliency>& out) const override { out.clear(); }
   void measure_saliency(const sim::Looks&, std::vector<sim::ParticleSaliency>& out) override { out.clear(); }
+  void measure_gaze_targets(const sim::Looks&, std::vector<sim::ParticleSaliency>& out) override {
+    out.clear();
+  }
+  std::vector<int> read_ids() const override { return {}; }
   void read_field(sim::ParticleField, std::vector<float>& out) const override { out.clear(); }
   std::vector<sim::ParticleState> read_state() const override { return {}; }
   sim::PartTimes part_times() const override { return {}; }
