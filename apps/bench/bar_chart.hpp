@@ -1,6 +1,7 @@
 #pragma once
 /// A chart of horizontal bars in groups, as SVG.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,12 @@ struct BarChart {
   struct Bar {
     std::string group, label;
     double value = 0;  ///< at least 0; others are drawn as 0 and labelled as they are
+    /// Ends of an interval, drawn over the bar where both are finite.
+    double low = std::numeric_limits<double>::quiet_NaN();
+    double high = std::numeric_limits<double>::quiet_NaN();
   };
   std::string title, unit;
+  int digits = 2;         ///< of the values, behind the point
   std::vector<Bar> bars;  ///< bars of a group stand together, in this order
 };
 std::string to_svg(const BarChart& chart);

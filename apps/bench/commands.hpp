@@ -7,6 +7,9 @@ namespace apps {
 /// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
 void add_frame_command(CLI::App& app);
 
+/// vip-bench table1: pictures of the five methods against HiRes.
+void add_table1_command(CLI::App& app);
+
 /// vip-bench table2: particles, milliseconds by part and speed-up of the five methods.
 void add_table2_command(CLI::App& app);
 

@@ -1,0 +1,65 @@
+#include "apps/bench/onlooker.hpp"
+
+#include <cmath>
+
+#include "apps/bench/timing.hpp"
+
+namespace apps {
+
+Picture without_alpha(const sim::Image& image) {
+  Picture out{image.width, image.height, {}};
+  const std::size_t pixels = image.rgba.size() / 4;
+  out.rgb.resize(3 * pixels);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    for (std::size_t c = 0; c < 3; ++c) out.rgb[3 * p + c] = image.rgba[4 * p + c];
+  }
+  return out;
+}
+
+Onlooker::Onlooker(const sim::Scene& scene, const PictureSize& size)
+    : camera_(scene.view),
+      view_(sim::make_view(scene.view, size.width, size.height)),
+      target_(size.width, size.height),
+      picture_(scene) {}
+
+void Onlooker::step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool wanted) {
+  const sim::TargetSource source = sim::traits_of(method).target;
+  const sim::Gaze gaze = gaze_at(camera_, gaze_m);
+  if (source == sim::TargetSource::Saliency) picture_.look(fluid, view_, gaze);
+  if (source == sim::TargetSource::Gaze) fluid.look({{{gaze, view_, nullptr}}});
+  const double start = milliseconds_now();
+  fluid.step_frame();
+  if (wanted || source == sim::TargetSource::Saliency) draw(fluid);
+  fluid.synchronize();
+  fluid.frame_time(milliseconds_now() - start);
+}
+
+std::vector<std::uint8_t> Onlooker::fluid_mask() const {
+  const auto depth = picture_.renderer().read_depth();
+  const auto width = static_cast<std::size_t>(target_.width());
+  const auto height = static_cast<std::size_t>(target_.height());
+  std::vector<std::uint8_t> out(depth.size());
+  for (std::size_t y = 0; y < height; ++y) {
+    // A G-buffer begins with its lowest row.
+    for (std::size_t x = 0; x < width; ++x)
+      out[y * width + x] = std::isfinite(depth[(height - 1 - y) * width + x]);
+  }
+  return out;
+}
+
+sim::Image Onlooker::painted_by_level(sim::Simulation& fluid, double finest_spacing_m) {
+  std::vector<sim::RenderParticle> particles;
+  fluid.read_particles(particles);
+  std::vector<float> levels;
+  for (const auto& p : particles) {
+    // Eq. 10: r = cbrt(2^level) r_*
+    levels.push_back(std::round(3 * std::log2(2 * p.radius_m / static_cast<float>(finest_spacing_m))));
+  }
+  sim::Overlay overlay;
+  overlay.values = levels;
+  overlay.classes = true;
+  picture_.renderer().paint(overlay, target_.framebuffer());
+  return target_.read();
+}
+
+}  // namespace apps

@@ -1,0 +1,59 @@
+#pragma once
+/// Table 1 as numbers: what was measured of each method, its means and the paired differences.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "apps/bench/cells.hpp"
+#include "stats/image/image.hpp"
+
+namespace apps {
+
+enum class Metric { PsnrFov, PsnrSalient, PsnrOverall, PsnrFluid, SsimStatic, SsimCumul, Flicker };
+
+struct MetricTraits {
+  Metric metric{};
+  const char* name = "";
+  const char* title = "";  ///< with unit, for tables and figures
+  int digits = 2;          ///< behind the point
+};
+const std::array<MetricTraits, 7>& all_metrics();
+
+/// One metric of one method: cells in the order checkpoint, gaze point, repeat. A value is infinite where the
+/// pictures were equal and NaN where the mask was too small.
+struct Series {
+  std::vector<stats::ImageScore> cells;
+  std::size_t repeats = 1;  ///< cells that follow each other and are not independent
+};
+
+struct MethodScores {
+  sim::MethodKind method{};
+  std::array<Series, 7> series;
+  Series& of(Metric metric) { return series[static_cast<std::size_t>(metric)]; }
+  const Series& of(Metric metric) const { return series[static_cast<std::size_t>(metric)]; }
+};
+
+/// The five methods in one cell of the paper's table, each against HiRes; HiRes itself from perturbed starts.
+struct ScoreBlock {
+  std::string scene, n_star;
+  sim::Preset preset{};
+  std::vector<MethodScores> methods;
+};
+
+/// scene, n_star, method, preset, metric, mean, ci_low, ci_high (95 %, Student's t over groups), groups
+/// (checkpoint x gaze point, repeats averaged), cells (finite ones), equal (pictures, left out), skipped
+/// (masks that are too small), pixels (mean of a mask).
+TextTable score_rows(const std::vector<ScoreBlock>& blocks);
+
+/// The same as the paper prints it: a row a method, a column a metric, mean +- half the interval.
+TextTable score_table(const std::vector<ScoreBlock>& blocks);
+
+/// Paired differences with their intervals, and whether the paper's order holds: it is broken where a mean
+/// lies beyond 0.1 dB (0.005 SSIM) on the wrong side; in the fovea Ours may lie 0.75 dB below FovFluid.
+TextTable paired_rows(const std::vector<ScoreBlock>& blocks);
+
+/// Bars with intervals of one metric as SVG.
+std::string score_chart(const std::vector<ScoreBlock>& blocks, const MetricTraits& metric);
+
+}  // namespace apps

@@ -1,0 +1,40 @@
+#pragma once
+/// The still cells of Table 1: from one state of HiRes to every method's picture a few frames later.
+
+#include <functional>
+#include <vector>
+
+#include "apps/bench/contact_sheet.hpp"
+#include "apps/bench/scores.hpp"
+#include "apps/bench/table1_options.hpp"
+
+namespace apps {
+
+/// How a method's starts fitted together once they had been projected.
+struct StartQuality {
+  sim::MethodKind method{};
+  sim::Preset preset{};
+  double compression = 0;      ///< largest mean of max(rho / rho_0 - 1, 0) of a start
+  double particles_share = 0;  ///< mean of n / (8 n_*)
+  int starts = 0;
+};
+
+struct StillResult {
+  std::vector<ScoreBlock> blocks;  ///< one a preset
+  std::vector<StartQuality> starts;
+};
+
+/// Runs that run_stills makes, for a progress line.
+std::size_t still_runs(const CellScene& scene, const Table1Options& options, std::size_t presets);
+
+/// The protocol: HiRes runs from its settled state; at each checkpoint every method starts from its state,
+/// coarsened to the method's targets and projected, looks at one gaze point and at the checkpoint's picture,
+/// and is compared `frames_after` later with HiRes from the same checkpoint. Repeats move the state by an
+/// ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from moved states is the floor that
+/// chaos sets. Masks come from the HiRes picture and its saliency with tuned readings, the same for all.
+/// Needs a current context; `done` is called after each run.
+StillResult run_stills(const CellScene& scene, const CellSize& size, const Table1Options& options,
+                       const std::vector<sim::Preset>& presets, const std::function<void()>& done,
+                       SheetWriter& sheets);
+
+}  // namespace apps

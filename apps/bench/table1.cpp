@@ -1,0 +1,155 @@
+/// vip-bench table1: the paper's Table 1 on this machine.
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/bench/checkpoint.hpp"
+#include "apps/bench/commands.hpp"
+#include "apps/bench/film.hpp"
+#include "apps/bench/stills.hpp"
+#include "apps/common/program.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+/// As it was typed.
+struct Table1Words : Table1Options {
+  std::string checkpoints_word = "all";
+  std::string size_word = "1280x720";
+};
+
+int checkpoints_of(const std::string& word) {
+  if (word == "all") return 0;
+  int count = 0;
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, count);
+  if (error != std::errc() || rest != end || count < 1)
+    throw base::Error("--checkpoints " + word, "is not a number of checkpoints", "use all, 1, 2, ...");
+  return count;
+}
+
+std::string started(const std::vector<StartQuality>& starts, const std::string& what) {
+  std::string out = "starts of " + what + " (largest mean compression, mean n / (8 n_*)):";
+  for (const auto& start : starts) {
+    char text[96];
+    std::snprintf(text, sizeof text, " %s %.2f %%, %.3f;", sim::method_name(start.method).c_str(),
+                  100 * start.compression, start.particles_share);
+    out += text;
+  }
+  out.back() = '\n';
+  return out;
+}
+
+struct Table1 {
+  std::vector<ScoreBlock> blocks;
+  std::string notes;
+
+  std::string text() const {
+    return to_markdown(score_table(blocks)) + "\n" + to_markdown(paired_rows(blocks)) + "\n" + notes;
+  }
+};
+
+/// rows.csv -> rows_paired.csv
+std::filesystem::path paired_path(const std::filesystem::path& csv) {
+  return csv.parent_path() / (csv.stem().string() + "_paired" + csv.extension().string());
+}
+
+void write_outputs(const Table1Options& options, const Table1& table) {
+  if (!options.csv.empty()) {
+    base::write_file_atomically(options.csv, to_csv(score_rows(table.blocks)));
+    base::write_file_atomically(paired_path(options.csv), to_csv(paired_rows(table.blocks)));
+  }
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, table.text());
+  if (options.svg_folder.empty()) return;
+  make_folder(options.svg_folder);
+  for (const auto& metric : all_metrics()) {
+    const std::string chart = score_chart(table.blocks, metric);
+    const auto path =
+        std::filesystem::path(options.svg_folder) / ("table1_" + std::string(metric.name) + ".svg");
+    if (!chart.empty()) base::write_file_atomically(path, chart);
+  }
+}
+
+/// The scenes at the sizes, known to fit the options before the first of them is run.
+struct Plan {
+  std::vector<CellScene> scenes;
+  std::vector<CellSize> sizes;
+  std::vector<sim::Preset> presets;
+  std::size_t runs = 0;
+};
+
+Plan plan_of(const Table1Options& options) {
+  Plan out{scenes_of(options.scene), sizes_of(options.n_star), presets_of(options.preset)};
+  for (const auto& scene : out.scenes) {
+    gaze_points(scene.scene, 0, options.gazes);
+    for (const auto& size : out.sizes) {
+      run_options(options, scene, size, out.presets.front(), sim::MethodKind::OursTsp);
+      out.runs += still_runs(scene, options, out.presets.size());
+    }
+  }
+  return out;
+}
+
+/// Files are written anew after each scene and size: a run that is cut short leaves what it has.
+void run_table1(const Table1Options& options) {
+  const Plan plan = plan_of(options);
+  auto context = sim::GlContext::make_headless();
+  if (!options.pictures.empty()) make_folder(options.pictures);
+  Table1 table;
+  SheetWriter sheets;
+  Progress progress("still runs", plan.runs);
+  std::size_t runs = 0;
+  const auto done = [&] { progress.update(++runs); };
+  for (const auto& scene : plan.scenes) {
+    for (const auto& size : plan.sizes) {
+      auto stills = run_stills(scene, size, options, plan.presets, done, sheets);
+      for (auto& block : stills.blocks) {
+        if (options.cumul_frames > 0) run_film(scene, size, options, block);
+        table.blocks.push_back(block);
+      }
+      table.notes += started(stills.starts, scene.name + " " + size.word);
+      write_outputs(options, table);
+    }
+  }
+  sheets.finish();
+  std::printf("%s", table.text().c_str());
+}
+
+}  // namespace
+
+void add_table1_command(CLI::App& app) {
+  auto words = std::make_shared<Table1Words>();
+  auto* command =
+      app.add_subcommand("table1", "The paper's Table 1: PSNR and SSIM of the methods against HiRes");
+  add_table_options(*command, *words);
+  command
+      ->add_option("--checkpoints", words->checkpoints_word,
+                   "all, or how many of the scene's, from the first")
+      ->capture_default_str();
+  const auto count = [&](const char* name, int& value, int low, int high, const char* what) {
+    command->add_option(name, value, what)->check(CLI::Range(low, high))->capture_default_str();
+  };
+  count("--gazes", words->gazes, 1, 16, "Gaze points at a checkpoint");
+  count("--repeats", words->repeats, 1, 1000, "Perturbed starts of each");
+  count("--frames-after", words->frames_after, 1, 1000, "Frames from a checkpoint to its picture");
+  count("--cumul-frames", words->cumul_frames, 0, 100000, "Frames of SSIM-cumul and flicker; 0 = neither");
+  count("--projections", words->projections, 1, 10000, "Density projections of a start, at most");
+  command->add_flag("--unperturbed", words->unperturbed,
+                    "Starts are not moved: HiRes must equal itself (a check of the bench)");
+  command->add_option("--size", words->size_word, "Pictures, px")->capture_default_str();
+  command->add_option("--pictures", words->pictures,
+                      "Folder for the methods side by side, painted by level below; made when missing");
+  command->callback([words] {
+    words->checkpoints = checkpoints_of(words->checkpoints_word);
+    words->size = parse_picture_size(words->size_word);
+    run_table1(*words);
+  });
+}
+
+}  // namespace apps

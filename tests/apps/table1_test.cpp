@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "libsim/render/png.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace {
+
+using apps::test::run_shell;
+using Row = std::map<std::string, std::string>;
+
+class Table1E2e : public ::testing::Test {
+ protected:
+  apps::test::Ended table1(const std::string& arguments) const {
+    return run_shell("env -u DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR "/vip-bench table1 --backend cpu " +
+                     arguments);
+  }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  std::vector<Row> rows(const std::string& name) const {
+    std::istringstream lines(base::read_file(path(name), 1 << 16));
+    const auto cells = [](const std::string& line) {
+      std::vector<std::string> out;
+      std::istringstream stream(line);
+      for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
+      return out;
+    };
+    std::string line;
+    std::getline(lines, line);
+    const auto head = cells(line);
+    std::vector<Row> out;
+    while (std::getline(lines, line)) {
+      const auto values = cells(line);
+      EXPECT_EQ(values.size(), head.size());
+      Row row;
+      for (std::size_t i = 0; i < head.size(); ++i) row[head[i]] = values[i];
+      out.push_back(row);
+    }
+    return out;
+  }
+  test::TemporaryFolder folder;
+};
+
+TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
+  const auto ended = table1(
+      "--scene SingleDam --n-star 128 --checkpoints 1 --gazes 2 --repeats 1 --frames-after 2 --cumul-frames 2"
+      " --size 400x225 --csv " +
+      path("t1.csv") + " --markdown " + path("t1.md") + " --svg " + path("figures") + " --pictures " +
+      path("pictures"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  std::map<std::string, std::map<std::string, Row>> table;
+  for (const auto& row : rows("t1.csv")) table[row.at("method")][row.at("metric")] = row;
+  ASSERT_EQ(table.size(), 5u);
+  for (const auto& [method, metrics] : table) {
+    ASSERT_EQ(metrics.size(), 7u) << method;
+    for (const auto& [name, row] : metrics) {
+      const bool film = name == "ssim_cumul" || name == "flicker";
+      EXPECT_EQ(std::stoi(row.at("cells")) + std::stoi(row.at("equal")) + std::stoi(row.at("skipped")),
+                film ? 1 : 2)
+          << method << ' ' << name;
+    }
+    EXPECT_EQ(metrics.at("psnr_overall").at("pixels"), "90000");
+    // Masks come from HiRes and are the same for all.
+    for (const char* mask : {"psnr_fov", "psnr_salient"}) {
+      EXPECT_EQ(metrics.at(mask).at("pixels"), table["HiRes"][mask]["pixels"]) << method;
+      EXPECT_EQ(metrics.at(mask).at("skipped"), "0") << method;
+    }
+    EXPECT_LE(std::stod(metrics.at("ssim_cumul").at("mean")), 1) << method;
+  }
+  // An ulp in two frames moves a picture less than coarse particles do.
+  const auto floor_db = table["HiRes"]["psnr_overall"]["mean"];
+  EXPECT_GT(floor_db == "inf" ? INFINITY : std::stod(floor_db),
+            std::stod(table["LoRes"]["psnr_overall"]["mean"]));
+  EXPECT_GT(std::stod(table["HiRes"]["ssim_static"]["mean"]),
+            std::stod(table["LoRes"]["ssim_static"]["mean"]));
+  std::map<std::string, std::string> verdicts;
+  for (const auto& row : rows("t1_paired.csv")) {
+    verdicts[row.at("metric") + " " + row.at("difference")] = row.at("verdict");
+    if (row.at("metric") != "psnr_overall" || row.at("difference") != "Ours - LoRes") continue;
+    EXPECT_NEAR(
+        std::stod(row.at("mean")),
+        std::stod(table["Ours"]["psnr_overall"]["mean"]) - std::stod(table["LoRes"]["psnr_overall"]["mean"]),
+        2e-3);
+  }
+  for (const char* gated : {"psnr_salient Ours - FovFluid", "psnr_overall FovFluid - LoRes",
+                            "ssim_static Ours - FovFluid", "psnr_fov Ours - FovFluid"})
+    EXPECT_TRUE(verdicts[gated] == "holds" || verdicts[gated] == "broken") << gated << verdicts[gated];
+  EXPECT_EQ(verdicts["psnr_salient Ours-TSp - Ours"], "-");
+  EXPECT_NE(base::read_file(path("figures/table1_psnr_salient.svg"), 1 << 20).find("Ours-TSp"),
+            std::string::npos);
+  EXPECT_NE(base::read_file(path("t1.md"), 1 << 20).find("HiRes (floor)"), std::string::npos);
+  const auto sheet = sim::read_png(path("pictures/SingleDam_128_tuned_f060.png"));
+  EXPECT_EQ(sheet.width, 5 * 400);
+  EXPECT_EQ(sheet.height, 2 * 225);
+}
+
+TEST_F(Table1E2e, HiResEqualsItselfFromTheSameStart) {
+  const auto ended = table1(
+      "--scene Faucet --n-star 64 --checkpoints 1 --gazes 1 --repeats 1 --frames-after 2 --cumul-frames 2"
+      " --size 160x90 --unperturbed --csv " +
+      path("t1.csv"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  std::map<std::string, Row> floor;
+  for (const auto& row : rows("t1.csv")) {
+    if (row.at("method") == "HiRes") floor[row.at("metric")] = row;
+  }
+  for (const char* metric : {"psnr_overall", "psnr_fluid"}) {
+    EXPECT_EQ(floor[metric]["mean"], "inf") << metric;
+    EXPECT_EQ(floor[metric]["equal"], "1") << metric;
+  }
+  EXPECT_EQ(floor["ssim_static"]["mean"], "1.00000");
+  EXPECT_EQ(floor["ssim_cumul"]["mean"], "1.00000");
+  EXPECT_EQ(floor["flicker"]["mean"], "0.000");
+  EXPECT_EQ(floor["psnr_fov"]["skipped"], "1") << "a fovea of fewer than 1000 px";
+}
+
+TEST_F(Table1E2e, RefusesUnknownWordsByName) {
+  for (const std::string wrong :
+       {"--scene Bathtub", "--checkpoints none", "--checkpoints 0", "--gazes 9", "--size 3x3",
+        "--tau fixed:nan", "--preset best", "--n-star 3", "--tau table2 --n-star 64"}) {
+    const auto ended = table1(wrong);
+    EXPECT_EQ(ended.exit_code, 1) << wrong << ended.out;
+    EXPECT_NE(ended.out.find("error"), std::string::npos) << wrong << ended.out;
+  }
+}
+
+}  // namespace
