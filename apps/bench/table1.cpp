@@ -96,7 +96,8 @@ Plan plan_of(const Table1Options& options) {
   return out;
 }
 
-/// Files are written anew after each scene and size: a run that is cut short leaves what it has.
+/// Files are written anew after each scene and size, and before its film: a run that is cut short leaves what
+/// it has.
 void run_table1(const Table1Options& options) {
   const Plan plan = plan_of(options);
   auto context = sim::GlContext::make_headless();
@@ -109,11 +110,13 @@ void run_table1(const Table1Options& options) {
   for (const auto& scene : plan.scenes) {
     for (const auto& size : plan.sizes) {
       auto stills = run_stills(scene, size, options, plan.presets, done, sheets);
-      for (auto& block : stills.blocks) {
-        if (options.cumul_frames > 0) run_film(scene, size, options, block);
-        table.blocks.push_back(block);
-      }
       table.notes += started(stills.starts, scene.name + " " + size.word);
+      const std::size_t first = table.blocks.size();
+      table.blocks.insert(table.blocks.end(), stills.blocks.begin(), stills.blocks.end());
+      write_outputs(options, table);
+      if (options.cumul_frames == 0) continue;
+      for (std::size_t b = first; b < table.blocks.size(); ++b)
+        run_film(scene, size, options, table.blocks[b]);
       write_outputs(options, table);
     }
   }

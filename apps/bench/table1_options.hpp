@@ -10,12 +10,12 @@
 namespace apps {
 
 struct Table1Options : TableOptions {
-  int checkpoints = 0;     ///< the scene's first so many; 0 = all
-  int gazes = 3;           ///< points at each
-  int repeats = 5;         ///< perturbed starts of each
-  int frames_after = 5;    ///< from a checkpoint to the picture that is compared
-  int cumul_frames = 200;  ///< of the film; 0 = no film
-  int projections = 50;    ///< of a start, at most
+  int checkpoints = 0;       ///< the scene's first so many; 0 = all
+  int gazes = 3;             ///< points at each
+  int repeats = 5;           ///< perturbed starts of each
+  int frames_after = 5;      ///< from a checkpoint to the picture that is compared
+  int cumul_frames = 200;    ///< of the film; 0 = no film
+  int projections = 50;      ///< of a start, at most
   bool unperturbed = false;  ///< starts are not moved: HiRes must then equal itself
   PictureSize size{1280, 720};
   std::string pictures;  ///< folder for side by side pictures; empty = none
