@@ -152,6 +152,7 @@ struct FrameReport {
   std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured; mass_units + reservoir is constant
   GuardCounts guards;
   TemporalReport temporal;
+  SeenReport seen;  ///< the picture that saliency was given last
 };
 
 /// A value of each particle, for pictures.
@@ -161,18 +162,35 @@ enum class ParticleField {
   Active         ///< 1 = solved in the last frame, 0 = moved by the velocity grid
 };
 
+/// What may change while the fluid runs.
+struct LiveNumbers {
+  double alpha = 0;    ///< Eq. 1: weight of the temporal feature, 0 .. 1
+  int iterations = 0;  ///< constraint projections a substep, 1 .. most_iterations
+
+  static constexpr int most_iterations = 64;
+};
+
 class Simulation {
  public:
   virtual ~Simulation() = default;
 
   /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods
   /// that follow no gaze ignore it; those that do look from the scene's own view along its axis until it is
-  /// called. base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is not whole.
-  virtual void look(const Looks& looks) = 0;
+  /// called. False, and nothing is taken, when a picture lies in GL buffers that this back end cannot reach
+  /// (EyeLook::shared; the CPU, or a context on another device): read it back and look again. base::Error: no
+  /// eye or more than two, a camera that is not finite, a G-buffer that is not whole.
+  virtual bool look(const Looks& looks) = 0;
+  /// Whether the method looks at the picture of the last frame; other pictures need not be read back.
+  virtual bool follows_picture() const = 0;
+  /// Frames since the gate opened.
+  virtual int frame() const = 0;
   /// Advances by one frame.
   virtual void step_frame() = 0;
   /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
   virtual void force_targets(const TargetRegion&) {}
+  virtual LiveNumbers live_numbers() const { return {}; }
+  /// Changes them from the next frame on; base::Error when one is out of range.
+  virtual void change(const LiveNumbers&) {}
   /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
@@ -182,6 +200,8 @@ class Simulation {
   virtual std::int64_t particle_capacity() const { return particle_count(); }
   /// Rest spacing d = 2 r of the finest particles that the method can hold, m.
   virtual double spacing_m() const = 0;
+  /// Every radius that read_particles may ever give, m, finest first.
+  virtual std::vector<float> radii_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
   /// Saliency behind the levels of the last frame, in the order of read_particles; what a particle became of
@@ -201,9 +221,9 @@ class Simulation {
   /// Everything about every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
   /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.
-  /// False when this back end cannot (the CPU, or a context on another device): read_particles and upload
-  /// instead.
-  virtual bool copy_to_gl(unsigned buffer) = 0;
+  /// False when this back end cannot (the CPU, or a context on another device) or the buffer is too small:
+  /// read_particles and upload instead.
+  virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
   /// Waits for all launched work.

@@ -81,8 +81,8 @@ struct RenderTimer::State {
         renderer(scene, timed_passes()) {}
 
   void transfer(sim::Simulation& fluid) {
-    buffer.reserve(fluid.particle_count());
-    uploaded = !fluid.copy_to_gl(buffer.gl_name());
+    buffer.reserve(fluid.particle_capacity());
+    uploaded = !fluid.copy_to_gl(buffer.gl());
     if (uploaded) {
       fluid.read_particles(particles);
       buffer.upload(particles);

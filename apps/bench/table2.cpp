@@ -37,7 +37,8 @@ struct Table2Options : TableOptions {
 /// One value a frame of one cell.
 struct CellRun {
   std::vector<double> particles, saliency_ms, levels_ms, activation_ms, solve_ms, render_ms, frame_ms, active;
-  double seen_ms = 0;  ///< mean way of the picture through the host, outside frame_ms
+  double seen_ms = 0;  ///< mean of handing the picture to saliency, outside frame_ms
+  sim::PictureWay seen_way = sim::PictureWay::None;
 };
 
 struct Moments {
@@ -80,6 +81,7 @@ CellRun run_cell(const CellScene& scene, const sim::SimulationOptions& choice, c
     run.frame_ms.push_back(drawn - looked);
     run.seen_ms += (looked - start) / (options.frames - options.warm_up);
   }
+  run.seen_way = fluid->report().seen.way;
   return run;
 }
 
@@ -121,6 +123,7 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           number(quantile(run.solve_ms, 0.5), 3),
           number(quantile(run.render_ms, 0.5), 3),
           number(run.seen_ms, 3),
+          picture_way_name(run.seen_way),
           number(fps.sd, 2),
           number(stats::ptpe_tolerance({}, fps.mean, fps.sd), 2),
           number(hires_ms / solver_ms(run), 3)};
@@ -129,7 +132,8 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
 const std::vector<std::string> head{
     "scene",        "n_star",         "method",       "preset",      "tau_rule",  "particles_mean",
     "particles_sd", "share_of_hires", "ms_median",    "ms_saliency", "ms_levels", "ms_activation",
-    "ms_solve",     "ms_render",      "ms_read_back", "fps_sd",      "tau",       "speedup"};
+    "ms_solve",     "ms_render",      "ms_read_back", "picture_by",  "fps_sd",    "tau",
+    "speedup"};
 
 void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, const Table2Options& options,
               TextTable& table, Progress& progress, std::size_t& done) {

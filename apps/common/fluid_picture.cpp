@@ -3,8 +3,8 @@
 namespace apps {
 
 void FluidPicture::draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer) {
-  buffer_.reserve(fluid.particle_count());
-  uploaded_ = !fluid.copy_to_gl(buffer_.gl_name());
+  buffer_.reserve(fluid.particle_capacity());
+  uploaded_ = !fluid.copy_to_gl(buffer_.gl());
   if (uploaded_) {
     fluid.read_particles(particles_);
     buffer_.upload(particles_);
@@ -12,17 +12,45 @@ void FluidPicture::draw(sim::Simulation& fluid, const sim::View& view, unsigned 
     buffer_.set_count(fluid.particle_count());
   }
   renderer_.draw(buffer_, {&view, 1}, framebuffer);
-  drawn_ = true;
+  drawn_frame_ = fluid.frame();
 }
 
 void FluidPicture::begin(const sim::GBuffer* seen) {
   before_ = seen;
-  drawn_ = false;
+  drawn_frame_.reset();
 }
 
 void FluidPicture::look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze) {
-  if (drawn_) seen_ = renderer_.read_gbuffer();
-  fluid.look({{{gaze, view, drawn_ ? &seen_ : before_}}});
+  sim::EyeLook eye{gaze, view};
+  if (!drawn_frame_ || !fluid.follows_picture()) {
+    eye.seen = before_;
+    fluid.look({{eye}});
+    return;
+  }
+  eye.seen_frame = *drawn_frame_;
+  const sim::GlPicture shared = renderer_.picture();
+  eye.shared = &shared;
+  if (fluid.look({{eye}})) return;
+  renderer_.read_picture(seen_);
+  eye.shared = nullptr;
+  eye.seen = &seen_;
+  fluid.look({{eye}});
+}
+
+std::string in_words(const sim::SeenReport& seen) {
+  if (seen.way == sim::PictureWay::None) return "no picture";
+  return "picture of frame " + std::to_string(seen.frame) + " by way of " + picture_way_name(seen.way);
+}
+
+std::string picture_way_name(sim::PictureWay way) {
+  switch (way) {
+    case sim::PictureWay::Device:
+      return "device";
+    case sim::PictureWay::Host:
+      return "host";
+    default:
+      return "none";
+  }
 }
 
 sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m) {

@@ -1,6 +1,8 @@
 #pragma once
 /// The present state of a simulation, drawn, and what its viewer tells it before the next frame.
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "libsim/render/fluid_renderer.hpp"
@@ -21,7 +23,8 @@ class FluidPicture {
   /// Takes the particles, on the device where the back end shares memory with GL, and draws them.
   void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer);
   /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
-  /// the last one. The picture takes a way through the host.
+  /// the last one. The picture stays on the device where the back end shares memory with GL, otherwise it
+  /// takes a way through the host; it is the last one drawn either way.
   void look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze);
   sim::FluidRenderer& renderer() { return renderer_; }
   const sim::FluidRenderer& renderer() const { return renderer_; }
@@ -33,10 +36,15 @@ class FluidPicture {
   sim::ParticleBuffer buffer_;
   sim::GBuffer seen_;
   const sim::GBuffer* before_ = nullptr;
-  bool drawn_ = false;
+  std::optional<int> drawn_frame_;  ///< of the simulation
   std::vector<sim::RenderParticle> particles_;
   bool uploaded_ = false;
 };
+
+/// "device", "host" or "none".
+std::string picture_way_name(sim::PictureWay way);
+/// "picture of frame 41 by way of device", or "no picture".
+std::string in_words(const sim::SeenReport& seen);
 
 /// A gaze from a camera's eye to a point.
 sim::Gaze gaze_at(const sim::Camera& camera, const sim::Vec3d& point_m);

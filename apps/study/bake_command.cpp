@@ -6,12 +6,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/common/fluid_stimulus.hpp"
+#include "apps/common/fluid_picture.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libsim/scene/gaze.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -34,13 +35,14 @@ class PictureTaker {
  public:
   PictureTaker(const sim::Scene& scene, const sim::Camera& camera, int width_px, int height_px)
       : context_(sim::GlContext::make_headless()),
-        renderer_(scene),
+        picture_of_fluid_(scene),
         target_(width_px, height_px),
         view_(sim::make_view(camera, width_px, height_px)) {}
 
-  const std::vector<std::uint8_t>& take(const std::vector<sim::RenderParticle>& particles) {
-    particles_.upload(particles);
-    renderer_.draw(particles_, {&view_, 1}, target_.framebuffer());
+  void look(sim::Simulation& fluid, const sim::Gaze& gaze) { picture_of_fluid_.look(fluid, view_, gaze); }
+
+  const std::vector<std::uint8_t>& take(sim::Simulation& fluid) {
+    picture_of_fluid_.draw(fluid, view_, target_.framebuffer());
     picture_ = target_.read().rgba;
     const auto row = static_cast<std::ptrdiff_t>(4 * target_.width());
     for (auto top = picture_.begin(), bottom = picture_.end() - row; top < bottom;
@@ -52,10 +54,9 @@ class PictureTaker {
 
  private:
   sim::GlContext context_;
-  sim::FluidRenderer renderer_;
+  FluidPicture picture_of_fluid_;
   sim::Offscreen target_;
   sim::View view_;
-  sim::ParticleBuffer particles_;
   std::vector<std::uint8_t> picture_;
 };
 
@@ -90,8 +91,6 @@ struct Work {
 };
 
 void fill_header(const BakeCommand& command, const sim::SimulationOptions& options, Work& work) {
-  std::vector<sim::RenderParticle> particles;
-  work.simulation->read_particles(particles);
   sim::BakeHeader& h = work.header;
   h.scene_name = work.scene.name;
   h.scene_sha256 = work.scene.sha256;
@@ -99,11 +98,11 @@ void fill_header(const BakeCommand& command, const sim::SimulationOptions& optio
   h.backend = sim::backend_name(options.backend);
   h.program_version = base::version();
   h.n_star = options.n_star;
-  h.max_particles = static_cast<std::int64_t>(particles.size());
+  h.max_particles = work.simulation->particle_capacity();
   h.frame_count = command.frames;
   h.frame_dt_s = options.frame_dt_s;
   h.tank_size_m = work.scene.tank_size_m;
-  h.radius_by_level_m = count_levels(particles).radius_m;
+  h.radius_by_level_m = work.simulation->radii_m();
   if (h.has_pictures()) h.camera = command.camera;
 }
 
@@ -142,9 +141,9 @@ void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
   const sim::BakeReader bake(out);
   const sim::BakeHeader& h = bake.header();
   const auto frames = static_cast<double>(h.frame_count);
-  std::printf("%s: %lld frames of %lld particles, %.0f bytes a frame for particles", out.c_str(),
-              static_cast<long long>(h.frame_count), static_cast<long long>(h.max_particles),
-              static_cast<double>(sizes.particle_bytes) / frames);
+  std::printf("%s: %lld frames of %s%lld particles, %.0f bytes a frame for particles", out.c_str(),
+              static_cast<long long>(h.frame_count), h.radius_by_level_m.size() > 1 ? "up to " : "",
+              static_cast<long long>(h.max_particles), static_cast<double>(sizes.particle_bytes) / frames);
   if (h.has_pictures()) {
     std::printf(" and %.0f for the picture", static_cast<double>(sizes.picture_bytes) / frames);
   }
@@ -152,18 +151,29 @@ void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
               bake.content_hash().c_str());
 }
 
+/// Levels that follow a gaze follow the scene's own, and the pictures where there are any.
+void look(Work& work, const sim::Camera& camera, int frame) {
+  const sim::Gaze gaze = gaze_at(camera, sim::gaze_point(work.scene, frame));
+  if (work.pictures) return work.pictures->look(*work.simulation, gaze);
+  work.simulation->look({{{gaze, sim::make_view(camera, 1280, 720)}}});
+}
+
 void bake(const BakeCommand& command) {
   const StopSignals signals;
   Work work = prepare(command);
+  const sim::Camera& camera = command.camera == "overview" ? work.scene.overview : work.scene.view;
   sim::BakeWriter writer(command.out, work.header, command.force);
   Progress progress("bake", static_cast<std::size_t>(command.frames));
   std::vector<sim::RenderParticle> particles;
   for (std::int64_t frame = 0; frame < command.frames; ++frame) {
     stop_if_wished(command.out);
-    if (frame > 0) work.simulation->step_frame();
+    if (frame > 0) {
+      look(work, camera, static_cast<int>(frame));
+      work.simulation->step_frame();
+    }
     work.simulation->read_particles(particles);
     writer.add_frame(static_cast<double>(frame) * work.header.frame_dt_s, particles);
-    if (work.pictures) writer.add_picture(work.pictures->take(particles));
+    if (work.pictures) writer.add_picture(work.pictures->take(*work.simulation));
     progress.update(static_cast<std::size_t>(frame + 1));
   }
   print_sizes(command.out, writer.finish());
@@ -193,8 +203,9 @@ void verify(const std::string& path) {
   std::printf("%s: %s, %s, n_* %lld, on %s, bake %s: all %lld frames are whole\n", path.c_str(),
               h.scene_name.c_str(), h.method.c_str(), static_cast<long long>(h.n_star), h.backend.c_str(),
               bake.content_hash().c_str(), static_cast<long long>(h.frame_count));
-  std::printf("  %lld particles a frame read, checked and decoded at %.0f frames/s\n",
-              static_cast<long long>(h.max_particles), particles);
+  std::printf("  %s%lld particles a frame read, checked and decoded at %.0f frames/s\n",
+              h.radius_by_level_m.size() > 1 ? "up to " : "", static_cast<long long>(h.max_particles),
+              particles);
   if (!h.has_pictures()) return;
   sim::PictureReader reader(bake);
   const double pictures = read_all("pictures", h.frame_count, [&](auto i) { reader.read(i); });

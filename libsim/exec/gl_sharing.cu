@@ -6,40 +6,63 @@
 
 namespace sim::SIM_BACKEND {
 
+namespace {
+
+cudaGraphicsResource_t resource_of(void* pointer) { return static_cast<cudaGraphicsResource_t>(pointer); }
+
+/// cudaGraphicsMapResources takes an array of the driver's own pointers.
+std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& pointers) {
+  std::vector<cudaGraphicsResource_t> out;
+  for (void* pointer : pointers) out.push_back(resource_of(pointer));
+  return out;
+}
+
+}  // namespace
+
 GlSharing::~GlSharing() { forget(); }
 
 void GlSharing::forget() {
-  if (resource_) cudaGraphicsUnregisterResource(static_cast<cudaGraphicsResource_t>(resource_));
-  resource_ = nullptr;
+  for (void* resource : resources_) {
+    // The context may be gone already; then there is nothing left to give back.
+    if (cudaGraphicsUnregisterResource(resource_of(resource)) != cudaSuccess) cudaGetLastError();
+  }
+  resources_.clear();
 }
 
-void* GlSharing::map(unsigned buffer, std::size_t bytes) {
-  if (refused_ && buffer == buffer_) return nullptr;
-  if (buffer != buffer_ || !resource_) {
-    forget();
-    buffer_ = buffer;
+bool GlSharing::accept(const std::vector<GlBufferRef>& buffers) {
+  if (buffers == buffers_) return !resources_.empty();
+  forget();
+  buffers_ = buffers;
+  const unsigned flags =
+      access_ == Access::Read ? cudaGraphicsRegisterFlagsReadOnly : cudaGraphicsRegisterFlagsWriteDiscard;
+  for (const GlBufferRef& buffer : buffers) {
     cudaGraphicsResource_t resource = nullptr;
-    refused_ =
-        cudaGraphicsGLRegisterBuffer(&resource, buffer, cudaGraphicsRegisterFlagsWriteDiscard) != cudaSuccess;
-    if (refused_) {
+    if (cudaGraphicsGLRegisterBuffer(&resource, buffer.name, flags) != cudaSuccess) {
       cudaGetLastError();  // said by the return value; not an error of the next launch
-      return nullptr;
+      forget();
+      return false;
     }
-    resource_ = resource;
+    resources_.push_back(resource);
   }
-  auto resource = static_cast<cudaGraphicsResource_t>(resource_);
-  check(cudaGraphicsMapResources(1, &resource), "map GL buffer");
-  void* pointer = nullptr;
-  std::size_t size = 0;
-  check(cudaGraphicsResourceGetMappedPointer(&pointer, &size, resource), "map GL buffer");
-  if (size >= bytes) return pointer;
-  unmap();
-  return nullptr;
+  return true;
+}
+
+std::vector<void*> GlSharing::map() {
+  auto resources = resources_of(resources_);
+  check(cudaGraphicsMapResources(static_cast<int>(resources.size()), resources.data()), "map GL buffers");
+  std::vector<void*> out;
+  for (const auto& resource : resources) {
+    void* pointer = nullptr;
+    std::size_t size = 0;
+    check(cudaGraphicsResourceGetMappedPointer(&pointer, &size, resource), "map GL buffers");
+    out.push_back(pointer);
+  }
+  return out;
 }
 
 void GlSharing::unmap() {
-  auto resource = static_cast<cudaGraphicsResource_t>(resource_);
-  check(cudaGraphicsUnmapResources(1, &resource), "unmap GL buffer");
+  auto resources = resources_of(resources_);
+  check(cudaGraphicsUnmapResources(static_cast<int>(resources.size()), resources.data()), "unmap GL buffers");
 }
 
 }  // namespace sim::SIM_BACKEND

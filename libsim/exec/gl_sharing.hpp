@@ -1,28 +1,35 @@
 #pragma once
-/// A GL buffer seen as memory of the back end, where the back end can.
+/// GL buffers seen as memory of the back end, where the back end can.
 
-#include <cstddef>
+#include <vector>
+
+#include "libsim/exec/gl_buffer_ref.hpp"
 
 namespace sim::SIM_BACKEND {
 
 class GlSharing {
  public:
-  GlSharing() = default;
+  enum class Access { Read, Overwrite };
+
+  explicit GlSharing(Access access) : access_(access) {}
   ~GlSharing();
   GlSharing(const GlSharing&) = delete;
   GlSharing& operator=(const GlSharing&) = delete;
 
-  /// Registers the GL buffer of the current context at its first use and maps it. Null when it cannot be
-  /// shared or holds fewer than `bytes`.
-  void* map(unsigned buffer, std::size_t bytes);
+  /// Registers buffers of the current context in place of those before, unless they are the same. False when
+  /// one cannot be shared: the back end is the CPU, or GL runs on another device.
+  bool accept(const std::vector<GlBufferRef>& buffers);
+  /// What was accepted as memory, in the same order, until unmap(). What GL was told before comes first, and
+  /// GL waits for what is launched meanwhile.
+  std::vector<void*> map();
   void unmap();
 
  private:
   void forget();
 
-  void* resource_ = nullptr;
-  unsigned buffer_ = 0;
-  bool refused_ = false;
+  Access access_;
+  std::vector<GlBufferRef> buffers_;
+  std::vector<void*> resources_;  ///< one a buffer; none when they were refused
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -119,9 +119,10 @@ float maximum(const Array<float>& values, int n) {
   return most;
 }
 
-// The CPU's particles reach GL by an upload.
+// The CPU's particles reach GL by an upload, and pictures the CPU by a read-back.
 GlSharing::~GlSharing() = default;
-void* GlSharing::map(unsigned, std::size_t) { return nullptr; }
+bool GlSharing::accept(const std::vector<GlBufferRef>&) { return false; }
+std::vector<void*> GlSharing::map() { return {}; }
 void GlSharing::unmap() {}
 
 }  // namespace sim::SIM_BACKEND

@@ -359,6 +359,29 @@ const ViewTargets& FluidRenderer::State::drawn(std::size_t view) const {
   return targets[view];
 }
 
+GlPicture FluidRenderer::picture(std::size_t view) const {
+  const ViewTargets& t = state_->drawn(view);
+  return {t.width, t.height, t.view, state_->options.radius_scale, t.depth.ref(), t.normals.ref()};
+}
+
+void FluidRenderer::read_picture(GBuffer& out, std::size_t view) const {
+  const ViewTargets& t = state_->drawn(view);
+  const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
+  out.width = t.width;
+  out.height = t.height;
+  out.view = t.view;
+  out.radius_scale = state_->options.radius_scale;
+  for (auto* unread : {&out.filtered_depth, &out.thickness, &out.radius}) unread->clear();
+  out.front.clear();
+  out.depth.resize(pixels);
+  t.depth.read(out.depth.data(), static_cast<std::int64_t>(4 * pixels));
+  // Normal and radius of a pixel lie together; the radii are squeezed out in place.
+  out.normal.resize(4 * pixels);
+  t.normals.read(out.normal.data(), static_cast<std::int64_t>(16 * pixels));
+  for (std::size_t p = 1; p < pixels; ++p) std::copy_n(&out.normal[4 * p], 3, &out.normal[3 * p]);
+  out.normal.resize(3 * pixels);
+}
+
 std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
   const ViewTargets& t = state_->drawn(view);
   std::vector<float> out(static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height));
@@ -371,26 +394,20 @@ GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
   const ViewTargets& t = s.drawn(view);
   const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
   GBuffer g;
-  g.width = t.width;
-  g.height = t.height;
-  g.view = t.view;
-  g.radius_scale = s.options.radius_scale;
+  read_picture(g, view);
   const auto fetch = [](const GlBuffer& buffer, auto& out, std::size_t count) {
     out.resize(count);
     buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
   };
-  fetch(t.depth, g.depth, pixels);
   fetch(t.filter_a, g.filtered_depth, pixels);
   fetch(t.front, g.front, pixels);
   std::vector<float> normals;
   std::vector<std::uint32_t> cells;
   fetch(t.normals, normals, 4 * pixels);
   fetch(t.thickness, cells, static_cast<std::size_t>(t.cells_x) * static_cast<std::size_t>(t.cells_y));
-  g.normal.resize(3 * pixels);
   g.radius.resize(pixels);
   g.thickness.resize(pixels);
   for (std::size_t p = 0; p < pixels; ++p) {
-    std::copy_n(&normals[4 * p], 3, &g.normal[3 * p]);
     g.radius[p] = normals[4 * p + 3];
     const std::size_t x = p % static_cast<std::size_t>(t.width), y = p / static_cast<std::size_t>(t.width);
     const auto step = static_cast<std::size_t>(s.options.thickness_step);

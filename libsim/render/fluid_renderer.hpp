@@ -98,6 +98,10 @@ class FluidRenderer {
   /// drawn or the range is empty.
   void paint(const Overlay& overlay, unsigned framebuffer);
 
+  /// What saliency reads of a view of the last draw, where it lies. base::Error when that view was not drawn.
+  GlPicture picture(std::size_t view = 0) const;
+  /// The same on the host, in the storage of `out`, whose other arrays are emptied; waits for the device.
+  void read_picture(GBuffer& out, std::size_t view = 0) const;
   /// The G-buffer of a view of the last draw; waits for the device. base::Error when that view was not drawn.
   GBuffer read_gbuffer(std::size_t view = 0) const;
   /// Its depth alone (GBuffer::depth).

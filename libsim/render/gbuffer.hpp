@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "libsim/exec/gl_buffer_ref.hpp"
 #include "libsim/render/camera.hpp"
 
 namespace sim {
@@ -30,6 +31,16 @@ struct GBuffer {
   std::vector<float> thickness;
   std::vector<std::uint32_t> front;  ///< index of the particle in front, or no_particle
   std::vector<float> radius;         ///< that particle's own radius, m; 0 where there is no fluid
+};
+
+/// A picture that is still in the GL buffers it was drawn into (FluidRenderer::picture), until the renderer
+/// draws again. Only what saliency reads of a GBuffer.
+struct GlPicture {
+  int width = 0, height = 0;
+  View view;  ///< camera of this picture
+  float radius_scale = 1;
+  GlBufferRef depth;   ///< a float a pixel: GBuffer::depth
+  GlBufferRef normal;  ///< four floats a pixel: GBuffer::normal and GBuffer::radius
 };
 
 /// A versioned binary file, written by rename; reading checks magic, version, size and that every array is

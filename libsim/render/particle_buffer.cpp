@@ -1,32 +1,23 @@
 #include "libsim/render/particle_buffer.hpp"
 
-#include <epoxy/gl.h>
-
 #include "stats/base/error.hpp"
 
 namespace sim {
 
 static_assert(sizeof(RenderParticle) == 16, "the shaders read a particle as one vec4");
 
-ParticleBuffer::~ParticleBuffer() {
-  if (name_) glDeleteBuffers(1, &name_);
-}
-
 void ParticleBuffer::upload(std::span<const RenderParticle> particles) {
   const auto count = static_cast<std::int64_t>(particles.size());
   reserve(count);
-  if (count > 0)
-    glNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(particles.size_bytes()), particles.data());
+  if (count > 0) buffer_.write(particles.data(), static_cast<std::int64_t>(particles.size_bytes()));
   count_ = count;
 }
 
 void ParticleBuffer::reserve(std::int64_t capacity) {
-  if (name_ && capacity <= capacity_) return;
-  if (name_) glDeleteBuffers(1, &name_);
+  if (gl_name() && capacity <= capacity_) return;
   capacity_ = capacity < 1 ? 1 : capacity;
   count_ = 0;
-  glCreateBuffers(1, &name_);
-  glNamedBufferData(name_, static_cast<GLsizeiptr>(capacity_ * 16), nullptr, GL_DYNAMIC_DRAW);
+  buffer_.reserve(capacity_ * 16);
 }
 
 void ParticleBuffer::set_count(std::int64_t count) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "libsim/render/gl_buffer.hpp"
 #include "libsim/simulation.hpp"
 
 namespace sim {
@@ -12,27 +13,23 @@ namespace sim {
 /// Needs a current context at every call and when it is destroyed.
 class ParticleBuffer {
  public:
-  ParticleBuffer() = default;
-  ~ParticleBuffer();
-  ParticleBuffer(const ParticleBuffer&) = delete;
-  ParticleBuffer& operator=(const ParticleBuffer&) = delete;
-
   /// Replaces the contents; grows the buffer when needed.
   void upload(std::span<const RenderParticle> particles);
 
-  /// For writers on the device (CUDA interop): makes room for `capacity` particles, then gl_name() may be
+  /// For writers on the device (CUDA interop): makes room for `capacity` particles, then gl() may be
   /// registered; it stays the same until reserve() or upload() asks for more than capacity(). The old
   /// contents are lost when it grows.
   void reserve(std::int64_t capacity);
   /// Says how many particles a writer on the device has put there, at most capacity() (base::Error).
   void set_count(std::int64_t count);
 
-  unsigned gl_name() const { return name_; }  ///< 0 before the first reserve or upload
+  unsigned gl_name() const { return buffer_.name(); }  ///< 0 before the first reserve or upload
+  GlBufferRef gl() const { return buffer_.ref(); }
   std::int64_t count() const { return count_; }
   std::int64_t capacity() const { return capacity_; }
 
  private:
-  unsigned name_ = 0;
+  GlBuffer buffer_;
   std::int64_t count_ = 0;
   std::int64_t capacity_ = 0;
 };

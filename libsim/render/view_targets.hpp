@@ -4,27 +4,9 @@
 #include <cstdint>
 
 #include "libsim/render/camera.hpp"
+#include "libsim/render/gl_buffer.hpp"
 
 namespace sim {
-
-/// A GL buffer of a fixed size; moved, never copied.
-class GlBuffer {
- public:
-  GlBuffer() = default;
-  GlBuffer(GlBuffer&& other) noexcept;
-  GlBuffer& operator=(GlBuffer&& other) noexcept;
-  ~GlBuffer();
-  /// Makes room for at least `bytes`; the contents are lost when it grows.
-  void reserve(std::int64_t bytes);
-  /// Sets every 32-bit word of the first `bytes` (all when negative).
-  void fill(std::uint32_t word, std::int64_t bytes = -1);
-  void read(void* out, std::int64_t bytes) const;
-  unsigned name() const { return name_; }
-
- private:
-  unsigned name_ = 0;
-  std::int64_t bytes_ = 0;
-};
 
 /// Everything that a view's passes write, on grids of width x height px and of the coarser thickness cells.
 struct ViewTargets {

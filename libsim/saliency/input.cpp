@@ -14,21 +14,40 @@ bool finite(const Mat4& m) {
   return std::all_of(m.begin(), m.end(), [](float value) { return std::isfinite(value); });
 }
 
+template <class Picture>
+std::size_t pixels_of(const Picture& picture) {
+  return static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+}
+
 void check(const EyeLook& look) {
   const View& v = look.view;
   if (!finite(v.view) || !finite(v.projection)) {
     throw base::Error("look", "the camera of an eye is not finite",
                       "give each eye a rigid view and a perspective");
   }
+  const auto check_camera = [](const View& view) {
+    if (!finite(view.view) || view.projection[0] == 0 || view.projection[5] == 0)
+      throw base::Error("look", "the camera of the G-buffer is not a perspective", "");
+  };
+  if (look.shared) {
+    const std::size_t pixels = pixels_of(*look.shared);
+    if (pixels == 0 || look.shared->depth.bytes < 4 * pixels || look.shared->normal.bytes < 16 * pixels)
+      throw base::Error("look", "the GL buffers of a picture are smaller than its pixels", "");
+    check_camera(look.shared->view);
+  }
   if (!look.seen || look.seen->width == 0) return;
   const GBuffer& g = *look.seen;
-  const auto pixels = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
+  const std::size_t pixels = pixels_of(g);
   if (g.depth.size() != pixels || g.normal.size() != 3 * pixels) {
     throw base::Error("look", "the depth or the normals of the G-buffer are not whole", "");
   }
-  if (!finite(g.view.view) || g.view.projection[0] == 0 || g.view.projection[5] == 0) {
-    throw base::Error("look", "the camera of the G-buffer is not a perspective", "");
-  }
+  check_camera(g.view);
+}
+
+/// The way of a picture that an eye gives.
+PictureWay way_of(const EyeLook& look) {
+  if (look.shared) return PictureWay::Device;
+  return look.seen && look.seen->width > 0 ? PictureWay::Host : PictureWay::None;
 }
 
 /// The direction with length 1, or 0 when the gaze is lost.
@@ -51,25 +70,54 @@ EyeSpace eye_space(const Mat4& m) {
 
 }  // namespace
 
-void SaliencyInput::look(const Looks& looks) {
+void SaliencyInput::OneEye::take(const GBuffer& seen) {
+  depth.from_host(seen.depth);
+  normal.from_host(seen.normal);
+  picture_view = seen.view;
+  picture = {depth.data(), normal.data(), 3, seen.width, seen.height, seen.radius_scale};
+}
+
+/// A copy, so that GL may draw the next picture while this one is looked at.
+void SaliencyInput::OneEye::take(const GlPicture& shared) {
+  depth.resize(pixels_of(shared));
+  normal.resize(4 * pixels_of(shared));
+  const auto memory = sharing.map();
+  copy_within(depth.data(), memory[0], depth.size() * sizeof(float));
+  copy_within(normal.data(), memory[1], normal.size() * sizeof(float));
+  sharing.unmap();
+  picture_view = shared.view;
+  picture = {depth.data(), normal.data(), 4, shared.width, shared.height, shared.radius_scale};
+}
+
+bool SaliencyInput::look(const Looks& looks) {
   if (looks.eyes.empty() || looks.eyes.size() > Eyes::most) {
     throw base::Error("look", std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
   }
   for (const auto& look : looks.eyes) check(look);
+  for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
+    const GlPicture* shared = looks.eyes[k].shared;
+    if (shared && !eyes_[k].sharing.accept({shared->depth, shared->normal})) return false;
+  }
   count_ = static_cast<int>(looks.eyes.size());
+  seen_ = {};
   for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
     const EyeLook& look = looks.eyes[k];
     OneEye& eye = eyes_[k];
     eye.gaze = look.gaze;
     eye.view = look.view;
     eye.picture = {};
-    if (!look.seen || look.seen->width == 0) continue;
-    const GBuffer& g = *look.seen;
-    eye.depth.from_host(g.depth);
-    eye.normal.from_host(g.normal);
-    eye.picture_view = g.view;
-    eye.picture = {eye.depth.data(), eye.normal.data(), 3, g.width, g.height, g.radius_scale};
+    const PictureWay way = way_of(look);
+    if (way == PictureWay::None) continue;
+    if (look.shared) {
+      eye.take(*look.shared);
+    } else {
+      eye.take(*look.seen);
+    }
+    const bool first = seen_.way == PictureWay::None;
+    seen_.frame = first ? look.seen_frame : std::min(seen_.frame, look.seen_frame);
+    seen_.way = first ? way : std::max(seen_.way, way);
   }
+  return true;
 }
 
 void SaliencyInput::look_by_default(const View& view) { look({{{{}, view, nullptr}}}); }

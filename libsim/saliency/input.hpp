@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "libsim/exec/gl_sharing.hpp"
 #include "libsim/saliency/eye.hpp"
 #include "libsim/saliency/looks.hpp"
 
@@ -18,9 +19,10 @@ struct Eyes {
 
 class SaliencyInput {
  public:
-  /// Takes gazes and cameras and copies the pictures. base::Error: no eye or more than two, a camera that is
-  /// not finite, a G-buffer whose arrays are not whole.
-  void look(const Looks& looks);
+  /// Takes gazes and cameras and copies the pictures. False, and nothing is taken, when a picture lies in GL
+  /// buffers that cannot be shared. base::Error: no eye or more than two, a camera that is not finite, a
+  /// G-buffer whose arrays are not whole.
+  bool look(const Looks& looks);
   /// The eye of a program that never calls look().
   void look_by_default(const View& view);
 
@@ -29,6 +31,8 @@ class SaliencyInput {
   Eyes next_frame(double dt_s, double hold_s);
   /// Eye-frames without a valid gaze.
   std::uint64_t gaze_lost() const { return gaze_lost_; }
+  /// How the pictures of the last look() came.
+  SeenReport seen() const { return seen_; }
   /// Bytes of the pictures.
   std::size_t bytes() const;
 
@@ -41,10 +45,15 @@ class SaliencyInput {
     View picture_view;
     GBufferView picture;
     Array<float> depth, normal;
+    GlSharing sharing{GlSharing::Access::Read};
+
+    void take(const GBuffer& seen);
+    void take(const GlPicture& shared);
   };
   std::array<OneEye, Eyes::most> eyes_;
   int count_ = 0;
   std::uint64_t gaze_lost_ = 0;
+  SeenReport seen_;
 };
 
 }  // namespace sim::SIM_BACKEND

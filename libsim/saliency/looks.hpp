@@ -1,6 +1,6 @@
 #pragma once
 /// Who looks at the fluid, from where and whereto: what a program gives a simulation before a frame. Plain
-/// host data, no back end, no GL.
+/// host data, no back end, no GL calls.
 
 #include <vector>
 
@@ -24,6 +24,22 @@ struct EyeLook {
   /// What this eye saw last; its own camera may be an older one. nullptr: nothing was drawn yet, then no
   /// particle has a manifold feature and none is hidden. Copied by Simulation::look.
   const GBuffer* seen = nullptr;
+  /// The same where the renderer left it, for a back end on GL's device; goes before `seen`.
+  const GlPicture* shared = nullptr;
+  int seen_frame = -1;  ///< of the simulation that the picture shows; -1: not known
+};
+
+/// How the last picture reached saliency.
+enum class PictureWay {
+  None,    ///< no picture was given, or the method looks at none
+  Device,  ///< from GL's memory to the back end's on one device
+  Host     ///< read back, and uploaded where the back end is not the CPU
+};
+
+/// What saliency saw, for the record.
+struct SeenReport {
+  PictureWay way = PictureWay::None;
+  int frame = -1;  ///< EyeLook::seen_frame; the older one of two eyes
 };
 
 /// One eye or two. Each is evaluated for itself and the larger saliency counts.

@@ -158,11 +158,14 @@ LevelEvents events_of(const LevelCounts& counts) {
           counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
 }
 
+constexpr float radius_per_support = 0.25f;  // h = 4 r
+
 struct PackForDrawing {
   const Vec4* position;
   Vec4* out;
-  // h = 4 r
-  SIM_FN void operator()(int i) const { out[i] = with_w(xyz(position[i]), 0.25f * position[i].w); }
+  SIM_FN void operator()(int i) const {
+    out[i] = with_w(xyz(position[i]), radius_per_support * position[i].w);
+  }
 };
 
 class FluidSimulation final : public Simulation {
@@ -202,9 +205,21 @@ class FluidSimulation final : public Simulation {
     }
   }
 
-  void look(const Looks& looks) override {
-    if (follows_gaze()) state_.saliency.input.look(looks);
+  bool look(const Looks& looks) override {
+    if (!follows_gaze()) return true;
+    if (follows_picture()) return state_.saliency.input.look(looks);
+    Looks gazes = looks;
+    for (EyeLook& eye : gazes.eyes) {
+      eye.seen = nullptr;
+      eye.shared = nullptr;
+    }
+    return state_.saliency.input.look(gazes);
   }
+
+  bool follows_picture() const override {
+    return traits_of(options_.method).target == TargetSource::Saliency && !options_.forced_targets;
+  }
+  int frame() const override { return frame_; }
 
   void step_frame() override {
     state_.jets.frame = frame_;
@@ -221,6 +236,20 @@ class FluidSimulation final : public Simulation {
                         "set SimulationOptions::forced_targets");
     }
     state_.levels.forced = sphere_of(region);
+  }
+
+  LiveNumbers live_numbers() const override {
+    return {state_.saliency.readings.alpha, state_.parameters.iterations};
+  }
+
+  void change(const LiveNumbers& to) override {
+    if (!(to.alpha >= 0 && to.alpha <= 1)) throw base::Error("alpha", "is a weight", "use 0 to 1");
+    if (to.iterations < 1 || to.iterations > LiveNumbers::most_iterations) {
+      throw base::Error("iterations", std::to_string(to.iterations) + " a substep are out of range",
+                        "use 1 to " + std::to_string(LiveNumbers::most_iterations));
+    }
+    state_.saliency.readings.alpha = to.alpha;
+    state_.parameters.iterations = to.iterations;
   }
 
   void frame_time(double ms) override { tolerance_.frame_time(ms); }
@@ -251,6 +280,7 @@ class FluidSimulation final : public Simulation {
     out.guards.saliency_not_finite = met.saliency_not_finite;
     out.guards.gaze_lost = state_.saliency.input.gaze_lost();
     out.temporal = temporal;
+    out.seen = state_.saliency.input.seen();
     return out;
   }
 
@@ -268,7 +298,14 @@ class FluidSimulation final : public Simulation {
     out.resize(static_cast<std::size_t>(state_.particles.size()));
     static_assert(sizeof(RenderParticle) == sizeof(Vec4));
     copy_to_host(out.data(), state_.particles.position.data(), out.size() * sizeof(Vec4));
-    for (auto& particle : out) particle.radius_m *= 0.25f;  // h = 4 r
+    for (auto& particle : out) particle.radius_m *= radius_per_support;
+  }
+
+  std::vector<float> radii_m() const override {
+    std::vector<float> out;
+    for (int level = finest_level_; level <= coarsest_level_; ++level)
+      out.push_back(radius_per_support * state_.supports.h[level]);
+    return out;
   }
 
   void read_saliency(std::vector<ParticleSaliency>& out) const override {
@@ -286,7 +323,10 @@ class FluidSimulation final : public Simulation {
     SaliencyState observer;
     observer.readings = options_.readings;
     observer.levels = options_.levels;
-    observer.input.look(looks);
+    if (!observer.input.look(looks)) {
+      throw base::Error("look", "a picture's GL buffers are out of this back end's reach",
+                        "read the G-buffer back");
+    }
     Array<float> s;
     Array<std::uint8_t> target;
     Array<SaliencyParts> parts;
@@ -321,10 +361,10 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  bool copy_to_gl(unsigned buffer) override {
+  bool copy_to_gl(const GlBufferRef& buffer) override {
     const int n = state_.particles.size();
-    Vec4* target = static_cast<Vec4*>(gl_.map(buffer, static_cast<std::size_t>(n) * sizeof(Vec4)));
-    if (!target) return false;
+    if (buffer.bytes < static_cast<std::size_t>(n) * sizeof(Vec4) || !gl_.accept({buffer})) return false;
+    auto* target = static_cast<Vec4*>(gl_.map()[0]);
     for_each("pack for drawing", n, PackForDrawing{state_.particles.position.data(), target});
     gl_.unmap();
     return true;
@@ -374,9 +414,11 @@ class FluidSimulation final : public Simulation {
     p.allocate(schedule_.columns, static_cast<int>(start.size()), capacity);
     const auto [finest, coarsest] = levels_of(start, resolution_.level);
     state_.one_level = !adaptive() && finest == coarsest;
+    finest_level_ = adaptive() ? 0 : finest;
+    coarsest_level_ = adaptive() ? std::max(coarsest, options_.levels - 1) : coarsest;
     state_.supports = level_supports(2 * resolution_.finest_spacing_m);
     state_.finest_support = state_.supports.h[0];
-    state_.lightest_support = state_.supports.h[adaptive() ? 0 : finest];
+    state_.lightest_support = state_.supports.h[finest_level_];
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
@@ -451,8 +493,9 @@ class FluidSimulation final : public Simulation {
   FluidState state_;
   Schedule schedule_;
   ToleranceSwitch tolerance_;
-  GlSharing gl_;
+  GlSharing gl_{GlSharing::Access::Overwrite};
   int frame_;
+  int finest_level_ = 0, coarsest_level_ = 0;  ///< that particles can have
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <thread>
 
@@ -67,6 +68,35 @@ TEST_F(BakeE2e, BakesBothMethodsAndVerifies) {
     bake.read_frame(4, frame);
     EXPECT_EQ(frame.particles.size(), static_cast<std::size_t>(std::stoi(count)));
     EXPECT_NEAR(frame.facts.time_s, 4.0 / 60, 1e-12);
+  }
+}
+
+TEST_F(BakeE2e, ParticlesThatSplitAndMergeKeepTheirLevels) {
+  for (const std::string pictures : {"", "64x36"}) {
+    std::vector<std::string> more{"--frames", "12", "--method", "Ours", "--force"};
+    if (!pictures.empty()) more.insert(more.end(), {"--pictures", pictures});
+    const Ended baked = apps::test::run_program(command(more));
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    EXPECT_THAT(baked.out, HasSubstr("12 frames of up to 512 particles"));
+    const sim::BakeReader bake(target_);
+    const auto& radii = bake.header().radius_by_level_m;
+    ASSERT_EQ(radii.size(), 4u);
+    for (std::size_t k = 1; k < 4; ++k) EXPECT_NEAR(std::pow(radii[k] / radii[k - 1], 3), 2, 1e-5);
+    bool merged = false;
+    for (int i = 0; i < 12; ++i) {
+      sim::BakeFrame frame;
+      bake.read_frame(i, frame);
+      ASSERT_EQ(frame.facts.particles_by_level.size(), 4u);
+      std::int64_t mass = 0, counted = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        mass += frame.facts.particles_by_level[k] << k;
+        counted += frame.facts.particles_by_level[k];
+      }
+      EXPECT_EQ(mass, 512) << "frame " << i << ": no level may be taken for another";
+      EXPECT_EQ(frame.particles.size(), static_cast<std::size_t>(counted));
+      merged = merged || counted < 512;
+    }
+    EXPECT_TRUE(merged) << "otherwise the first frame's radii would do";
   }
 }
 

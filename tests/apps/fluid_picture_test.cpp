@@ -4,7 +4,39 @@
 
 #include <cmath>
 
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+
 namespace {
+
+TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
+  const auto context = sim::GlContext::make_headless();
+  sim::Scene scene;
+  scene.tank_size_m = {4.8, 4, 2.4};
+  scene.fill_max_m = {2.4, 2.4, 1.2};
+  scene.gate = false;
+  scene.settle_frames = 0;
+  scene.v_ref_m_s = 4;
+  scene.view.eye_m = {2.4, 1.6, 5.2};
+  scene.view.target_m = {2.4, 1, 1.2};
+  const sim::View view = sim::make_view(scene.view, 64, 48);
+  const sim::Offscreen target(64, 48);
+  for (const auto method : {sim::MethodKind::Ours, sim::MethodKind::FovFluid, sim::MethodKind::LoRes}) {
+    sim::SimulationOptions options;
+    options.method = method;
+    options.n_star = 64;
+    const auto fluid = sim::make_simulation(scene, options);
+    apps::FluidPicture picture(scene);
+    for (int frame = 0; frame < 3; ++frame) {
+      picture.look(*fluid, view, apps::gaze_at(scene.view, {2.4, 1, 1.2}));
+      fluid->step_frame();
+      picture.draw(*fluid, view, target.framebuffer());
+    }
+    const std::string seen = apps::in_words(fluid->report().seen);
+    // The third step looked at the picture of the second.
+    EXPECT_EQ(seen, method == sim::MethodKind::Ours ? "picture of frame 2 by way of host" : "no picture");
+  }
+}
 
 TEST(Gaze, ThroughAPixelIsTheRayThatTheCameraDraws) {
   sim::Camera camera;

@@ -20,11 +20,14 @@ sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 /// A block of the test bake's particles, one frame further with each step.
 class FakeSimulation final : public sim::Simulation {
  public:
-  void look(const sim::Looks&) override {}
+  bool look(const sim::Looks&) override { return true; }
+  bool follows_picture() const override { return false; }
+  int frame() const override { return frame_; }
   void step_frame() override { ++frame_; }
   sim::FrameReport report() override { return {}; }
   std::int64_t particle_count() const override { return 960; }
   double spacing_m() const override { return 0.1; }
+  std::vector<float> radii_m() const override { return {}; }
   void read_particles(std::vector<sim::RenderParticle>& out) const override {
     out = bake_test::particles(frame_);
   }
@@ -37,13 +40,13 @@ class FakeSimulation final : public sim::Simulation {
   void read_field(sim::ParticleField, std::vector<float>& out) const override { out.clear(); }
   std::vector<sim::ParticleState> read_state() const override { return {}; }
   sim::PartTimes part_times() const override { return {}; }
-  bool copy_to_gl(unsigned) override { return false; }
+  bool copy_to_gl(const sim::GlBufferRef&) override { return false; }
   void synchronize() override {}
   std::size_t particle_bytes() const override { return 0; }
   std::string explain() const override { return ""; }
 
  private:
-  std::int64_t frame_ = 0;
+  int frame_ = 0;
 };
 
 TEST(FluidStimulus, LevelsAreCountedFinestFirst) {

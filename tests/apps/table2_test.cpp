@@ -66,6 +66,10 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
   EXPECT_EQ(by_method["Ours"]["ms_activation"], "0.000");
   EXPECT_GT(std::stod(by_method["Ours-TSp"]["ms_activation"]), 0);
   for (const auto& [method, row] : by_method) EXPECT_GT(std::stod(row.at("ms_solve")), 0) << method;
+  for (const auto& [method, row] : by_method) {
+    const bool looks = method == "Ours" || method == "Ours-TSp";
+    EXPECT_EQ(row.at("picture_by"), looks ? "host" : "none") << method;
+  }
   EXPECT_NE(base::read_file(path("figures/table2_speedup.svg"), 1 << 20).find("Ours-TSp"), std::string::npos);
   EXPECT_NE(base::read_file(path("t2.md"), 1 << 20).find("| Faucet |"), std::string::npos);
 }

@@ -151,9 +151,30 @@ TEST_F(ViewE2e, PaintsEachValueOverTheWater) {
   EXPECT_NE(none.out.find("computes none"), std::string::npos) << none.out;
 }
 
+TEST_F(ViewE2e, SeveralOverlaysMakeAPictureEach) {
+  const auto ended = small_run("--overlay none,level --every 2 --png " + (folder / "both").string());
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  EXPECT_NE(ended.out.find("4 pictures"), std::string::npos) << ended.out;
+  const auto plain = sim::read_png(folder / "both" / "frame_0002.png");
+  const auto painted = sim::read_png(folder / "both" / "frame_0002_level.png");
+  EXPECT_NE(plain.rgba, painted.rgba);
+  const auto alone = small_run("--overlay none --every 2 --png " + (folder / "alone").string());
+  ASSERT_EQ(alone.exit_code, 0) << alone.out;
+  EXPECT_EQ(sim::read_png(folder / "alone" / "frame_0002.png").rgba, plain.rgba)
+      << "the plain picture must not know of the painted one";
+}
+
+TEST_F(ViewE2e, AlphaAndIterationsReachTheFluid) {
+  const auto two = small_run("--explain --iterations 7 --alpha 0.25");
+  ASSERT_EQ(two.exit_code, 0) << two.out;
+  EXPECT_NE(two.out.find("x 7 iterations"), std::string::npos) << two.out;
+  EXPECT_EQ(small_run("--alpha 1.5").exit_code, 2);
+  EXPECT_EQ(small_run("--iterations 0").exit_code, 2);
+}
+
 TEST_F(ViewE2e, RefusesUnknownOverlaysPresetsLevelsAndTau) {
-  for (const std::string wrong :
-       {"--overlay glow", "--preset best", "--levels 5", "--tau fixed:", "--method Theirs"}) {
+  for (const std::string wrong : {"--overlay glow", "--overlay level,glow", "--overlay level,",
+                                  "--preset best", "--levels 5", "--tau fixed:", "--method Theirs"}) {
     const auto ended = view("--headless " + scene() + " --n-star 64 --frames 1 " + wrong);
     EXPECT_EQ(ended.exit_code, 1) << wrong << ended.out;
     EXPECT_NE(ended.out.find("error"), std::string::npos) << wrong;

@@ -91,6 +91,42 @@ void parts_make_up_the_whole(Backend backend) {
 TEST(SaliencyInSimulations, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cpu); }
 TEST(SaliencyInSimulationsGpu, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cuda); }
 
+/// A fluid whose numbers change on the way does from then on what one that was made with them does.
+void numbers_change_while_it_runs(Backend backend) {
+  const auto changed = make(backend, MethodKind::Ours, true);
+  const auto before = changed->live_numbers();
+  EXPECT_NEAR(before.alpha, 2.0 / 3, 1e-12);
+  for (const sim::LiveNumbers wrong : {sim::LiveNumbers{-0.1, 4},
+                                       {1.1, 4},
+                                       {std::numeric_limits<double>::quiet_NaN(), 4},
+                                       {0.5, 0},
+                                       {0.5, 65}}) {
+    EXPECT_THROW(changed->change(wrong), base::Error);
+  }
+  EXPECT_EQ(changed->live_numbers().iterations, before.iterations) << "a refused change changes nothing";
+  sim::SimulationOptions options;
+  options.method = MethodKind::Ours;
+  options.backend = backend;
+  options.n_star = 256;
+  options.readings.alpha = 0.25;
+  options.iterations = 7;
+  const auto made = sim::make_simulation(scene(), options);
+  const auto still = make(backend, MethodKind::Ours);
+  changed->change({0.25, 7});
+  for (auto* fluid : {changed.get(), made.get(), still.get()}) {
+    fluid->look({{eye_at(ahead)}});
+    for (int frame = 0; frame < 3; ++frame) fluid->step_frame();
+  }
+  const auto same = [](const auto& a, const auto& b) {
+    return a.id == b.id && a.x_m == b.x_m && a.y_m == b.y_m && a.level == b.level;
+  };
+  const auto one = changed->read_state(), other = made->read_state(), third = still->read_state();
+  EXPECT_TRUE(std::equal(one.begin(), one.end(), other.begin(), other.end(), same));
+  EXPECT_FALSE(std::equal(one.begin(), one.end(), third.begin(), third.end(), same));
+}
+TEST(SaliencyInSimulations, NumbersChangeWhileItRuns) { numbers_change_while_it_runs(Backend::Cpu); }
+TEST(SaliencyInSimulationsGpu, NumbersChangeWhileItRuns) { numbers_change_while_it_runs(Backend::Cuda); }
+
 void lost_gaze_is_counted_and_does_no_harm(Backend backend) {
   const auto fluid = make(backend, MethodKind::Ours);
   fluid->step_frame();

@@ -1,0 +1,17 @@
+#pragma once
+/// A GL buffer by name, for those who call no GL.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sim {
+
+struct GlBufferRef {
+  unsigned name = 0;         ///< 0: none
+  std::uint64_t serial = 0;  ///< tells it from a deleted buffer whose name GL gave away again
+  std::size_t bytes = 0;
+
+  friend bool operator==(const GlBufferRef&, const GlBufferRef&) = default;
+};
+
+}  // namespace sim

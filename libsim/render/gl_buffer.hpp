@@ -1,0 +1,33 @@
+#pragma once
+/// Memory on GL's device.
+
+#include <cstdint>
+
+#include "libsim/exec/gl_buffer_ref.hpp"
+
+namespace sim {
+
+/// A GL buffer of a fixed size; moved, never copied. Needs a current context at every call and when it is
+/// destroyed.
+class GlBuffer {
+ public:
+  GlBuffer() = default;
+  GlBuffer(GlBuffer&& other) noexcept;
+  GlBuffer& operator=(GlBuffer&& other) noexcept;
+  ~GlBuffer();
+  /// Makes room for at least `bytes`; when it grows, the contents are lost and the name may change.
+  void reserve(std::int64_t bytes);
+  void write(const void* from, std::int64_t bytes);
+  /// Sets every 32-bit word of the first `bytes` (all when negative).
+  void fill(std::uint32_t word, std::int64_t bytes = -1);
+  void read(void* out, std::int64_t bytes) const;
+  unsigned name() const { return name_; }  ///< 0 before the first reserve
+  GlBufferRef ref() const { return {name_, serial_, static_cast<std::size_t>(bytes_)}; }
+
+ private:
+  unsigned name_ = 0;
+  std::uint64_t serial_ = 0;
+  std::int64_t bytes_ = 0;
+};
+
+}  // namespace sim
