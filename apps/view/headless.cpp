@@ -22,17 +22,55 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::filesystem::path picture_path(const std::string& folder, int frame) {
-  char name[32];
-  std::snprintf(name, sizeof name, "frame_%04d.png", frame);
-  return std::filesystem::path(folder) / name;
+/// frame_0040.png; of several overlays, those that paint have their name in it: frame_0040_level.png.
+std::filesystem::path picture_path(const std::string& folder, int frame, OverlayKind overlay, bool several) {
+  char number[32];
+  std::snprintf(number, sizeof number, "frame_%04d", frame);
+  std::string name = number;
+  if (several && overlay != OverlayKind::None)
+    name += "_" + overlay_names()[static_cast<std::size_t>(overlay)];
+  return std::filesystem::path(folder) / (name + ".png");
 }
+
+/// The pictures of a frame, one an overlay, on their way to the disk.
+class PictureFolder {
+ public:
+  explicit PictureFolder(const ViewOptions& options)
+      : folder_(options.png_folder), overlays_(parse_overlays(options.overlay)) {
+    if (!folder_.empty()) make_folder(folder_);
+  }
+
+  /// Of the frame that `picture` has just drawn.
+  void write(int frame, const PreparedFluid& prepared, FluidPicture& picture, const sim::View& view,
+             const sim::Offscreen& target) {
+    sim::Simulation& fluid = *prepared.fluid;
+    OverlayPainter painter(prepared.finest_spacing_m);
+    legends_.clear();
+    for (std::size_t i = 0; i < overlays_.size(); ++i) {
+      if (i > 0) picture.draw(fluid, view, target.framebuffer());
+      painter.paint(overlays_[i], fluid, picture, target.framebuffer());
+      if (!painter.legend().empty()) legends_.push_back(painter.legend());
+      sim::write_png(picture_path(folder_, frame, overlays_[i], overlays_.size() > 1), target.read());
+      ++written_;
+    }
+  }
+  void print() const {
+    for (const auto& legend : legends_) std::printf("paint  %s\n", legend.c_str());
+    if (written_) std::printf("%d picture%s in %s\n", written_, written_ == 1 ? "" : "s", folder_.c_str());
+  }
+
+ private:
+  std::string folder_;
+  std::vector<OverlayKind> overlays_;
+  std::vector<std::string> legends_;  // of the last frame
+  int written_ = 0;
+};
 
 /// Frame intervals without the time that pictures take on their way to the disk.
 struct Timing {
   stats::FpsWindow window{30};
   double step_s = 0, draw_s = 0;
-  int steps = 0, draws = 0, pictures = 0;
+  int steps = 0, draws = 0;
 };
 
 void print_timing(const Timing& timing) {
@@ -65,14 +103,12 @@ void print_render_counts(const sim::RenderCounts& c) {
 void run_headless(const ViewOptions& options) {
   auto context = sim::GlContext::make_headless();
   const sim::Offscreen target(options.width_px, options.height_px);
-  if (!options.png_folder.empty()) make_folder(options.png_folder);
+  PictureFolder pictures(options);
   const PreparedFluid prepared = prepare_fluid(options);
   std::printf("OpenGL: %s\n", sim::gl_description().c_str());
   FluidPicture picture(prepared.scene);
   const sim::View view = sim::make_view(prepared.camera, options.width_px, options.height_px);
 
-  const OverlayKind overlay = parse_overlay(options.overlay);
-  OverlayPainter painter(prepared.finest_spacing_m);
   Timing timing;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
   for (int frame = 0; frame < options.frames; ++frame) {
@@ -91,7 +127,6 @@ void run_headless(const ViewOptions& options) {
     // tau speaks of frames that are shown, so --ptpe draws them all; saliency reads each picture.
     if (kept || prepared.ptpe || prepared.follows_picture || options.png_folder.empty()) {
       picture.draw(*prepared.fluid, view, target.framebuffer());
-      if (kept) painter.paint(overlay, *prepared.fluid, picture, target.framebuffer());
       glFinish();
       ++timing.draws;
     }
@@ -102,20 +137,14 @@ void run_headless(const ViewOptions& options) {
       timing.step_s += stepped - start;
     }
     timing.draw_s += drawn - stepped;
-    if (kept) {
-      sim::write_png(picture_path(options.png_folder, frame), target.read());
-      ++timing.pictures;
-    }
+    if (kept) pictures.write(frame, prepared, picture, view, target);
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   print_timing(timing);
-  if (!painter.legend().empty()) std::printf("paint  %s\n", painter.legend().c_str());
+  if (prepared.follows_picture) std::printf("seen   %s\n", in_words(prepared.fluid->report().seen).c_str());
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
-  if (timing.pictures) {
-    std::printf("%d picture%s in %s\n", timing.pictures, timing.pictures == 1 ? "" : "s",
-                options.png_folder.c_str());
-  }
+  pictures.print();
 }
 
 }  // namespace apps

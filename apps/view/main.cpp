@@ -27,7 +27,15 @@ int main(int argc, char** argv) {
   app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")->capture_default_str();
   app.add_option("--levels", options.levels, "N: levels of methods that split and merge (1 to 4)")
       ->capture_default_str();
-  app.add_option("--overlay", options.overlay, "Painted over the water: " + joined(apps::overlay_names()))
+  app.add_option("--alpha", options.alpha,
+                 "Weight of the temporal feature, 0 to 1; the preset's when left out")
+      ->check(apps::number_in(0, 1));
+  app.add_option("--iterations", options.iterations,
+                 "Constraint projections a substep; the scene's when left out")
+      ->check(CLI::Range(1, sim::LiveNumbers::most_iterations));
+  app.add_option("--overlay", options.overlay,
+                 "Painted over the water: " + joined(apps::overlay_names()) +
+                     "; headless, several with commas make a picture each")
       ->capture_default_str();
   app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
       ->capture_default_str();

@@ -1,6 +1,7 @@
 #pragma once
 /// What vip-view was asked for.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,9 +17,11 @@ struct ViewOptions {
   std::string n_star = "16k";
   std::string backend = "auto";
   std::string preset = "tuned";
-  std::string overlay = "none";  ///< what is painted over the water
+  std::string overlay = "none";  ///< what is painted over the water; headless, several with commas
   std::string tau = "live";      ///< live or fixed:X
   int levels = 4;                ///< N
+  std::optional<double> alpha;   ///< weight of the temporal feature; none = the preset's
+  std::optional<int> iterations;  ///< a substep; none = the scene's
   std::string camera = "view";   ///< view | overview
   std::string ptpe;              ///< fitted.toml; empty = none
   std::string png_folder;        ///< empty = no pictures
@@ -32,7 +35,7 @@ struct ViewOptions {
 /// "1280x720"; 16 to 16384 px a side, otherwise a base::Error.
 void parse_size(const std::string& text, ViewOptions& options);
 
-/// Reads the scene, settles it with a progress bar and prints the schedule when asked to.
+/// A scene with its fluid at frame 0.
 struct PreparedFluid {
   sim::Scene scene;
   sim::Camera camera;
@@ -41,7 +44,9 @@ struct PreparedFluid {
   double finest_spacing_m = 0;   ///< 2 r_*
   bool follows_picture = false;  ///< levels come from what was drawn last
 };
-PreparedFluid prepare_fluid(const ViewOptions& options);
+/// Reads the scene, settles it and prints what came of it, the schedule too when asked to. `settling` hears
+/// of each frame of that with (done, total); when it is empty a progress bar shows them.
+PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling = {});
 
 /// Runs the frames and writes the pictures, without a display.
 void run_headless(const ViewOptions& options);

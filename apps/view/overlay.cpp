@@ -15,7 +15,7 @@ constexpr float densest_error = 0.05F;
 
 std::string range_text(const char* what, double low, double high, const char* unit) {
   char out[96];
-  std::snprintf(out, sizeof out, "%s %g to %g%s", what, low, high, unit);
+  std::snprintf(out, sizeof out, "%s %.3g to %.3g%s", what, low, high, unit);
   return out;
 }
 
@@ -27,6 +27,13 @@ const std::vector<std::string>& overlay_names() {
   return names;
 }
 
+const std::vector<std::string>& overlay_titles() {
+  static const std::vector<std::string> titles{"none",       "acuity f_a", "manifold f_m", "temporal f_T",
+                                               "combined F", "saliency s", "level",        "speed",
+                                               "density",    "active"};
+  return titles;
+}
+
 OverlayKind parse_overlay(std::string_view name) {
   const auto& names = overlay_names();
   const auto found = std::find(names.begin(), names.end(), name);
@@ -34,6 +41,16 @@ OverlayKind parse_overlay(std::string_view name) {
   std::string known;
   for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
   throw base::Error("--overlay " + std::string(name), "is not known", "use one of " + known);
+}
+
+std::vector<OverlayKind> parse_overlays(std::string_view names) {
+  std::vector<OverlayKind> out;
+  for (std::size_t comma = 0; comma != std::string_view::npos; names.remove_prefix(comma + 1)) {
+    comma = names.find(',');
+    out.push_back(parse_overlay(names.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+  }
+  return out;
 }
 
 bool OverlayPainter::take_saliency(OverlayKind kind, const sim::Simulation& fluid) {
@@ -65,7 +82,7 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
   sim::Overlay overlay;
   legend_.clear();
   const auto field = [&](sim::ParticleField which) { fluid.read_field(which, values_); };
-  const std::string name = overlay_names()[static_cast<std::size_t>(kind)];
+  const std::string name = overlay_titles()[static_cast<std::size_t>(kind)];
   switch (kind) {
     case OverlayKind::None:
       return;

@@ -25,8 +25,12 @@ enum class OverlayKind {
 /// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active";
 /// others are a base::Error.
 OverlayKind parse_overlay(std::string_view name);
+/// Several, separated by commas; at least one.
+std::vector<OverlayKind> parse_overlays(std::string_view names);
 /// In the order of the enum.
 const std::vector<std::string>& overlay_names();
+/// The same with the paper's symbols: "acuity f_a".
+const std::vector<std::string>& overlay_titles();
 
 /// Takes the values of a simulation and paints them over the picture that was just drawn of it.
 class OverlayPainter {

@@ -24,7 +24,7 @@ void parse_size(const std::string& text, ViewOptions& options) {
   options.height_px = height;
 }
 
-PreparedFluid prepare_fluid(const ViewOptions& options) {
+PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));
   prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
@@ -35,18 +35,20 @@ PreparedFluid prepare_fluid(const ViewOptions& options) {
   choice.n_star = sim::parse_n_star(options.n_star);
   choice.readings = sim::readings_of(sim::parse_preset(options.preset));
   choice.levels = options.levels;
+  if (options.alpha) choice.readings.alpha = *options.alpha;
+  choice.iterations = options.iterations.value_or(0);
   // In a window they may be chosen later.
-  choice.saliency_parts = parse_overlay(options.overlay) != OverlayKind::None || !options.headless;
+  choice.saliency_parts = options.overlay != "none" || !options.headless;
   choice.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
   choice.backend = sim::choose_backend(options.backend);
-  if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   {
     Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
-    choice.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
+    choice.settling =
+        settling ? settling : [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
     prepared.fluid = sim::make_simulation(prepared.scene, choice);
   }
   std::printf("%s, %s, n_* %s: %lld particles on %s\n", prepared.scene.name.c_str(),

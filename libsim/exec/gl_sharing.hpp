@@ -1,6 +1,7 @@
 #pragma once
 /// GL buffers seen as memory of the back end, where the back end can.
 
+#include <utility>
 #include <vector>
 
 #include "libsim/exec/gl_buffer_ref.hpp"
@@ -13,8 +14,13 @@ class GlSharing {
 
   explicit GlSharing(Access access) : access_(access) {}
   ~GlSharing();
-  GlSharing(const GlSharing&) = delete;
-  GlSharing& operator=(const GlSharing&) = delete;
+  GlSharing(GlSharing&& other) noexcept : GlSharing(other.access_) { *this = std::move(other); }
+  GlSharing& operator=(GlSharing&& other) noexcept {
+    std::swap(access_, other.access_);
+    buffers_.swap(other.buffers_);
+    resources_.swap(other.resources_);
+    return *this;
+  }
 
   /// Registers buffers of the current context in place of those before, unless they are the same. False when
   /// one cannot be shared: the back end is the CPU, or GL runs on another device.

@@ -2,214 +2,235 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
 
-#include <array>
 #include <cstdio>
 #include <string>
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "apps/view/window/glfw_window.hpp"
+#include "apps/view/window/panel.hpp"
+#include "libsim/methods/preset.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/render/png.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "stats/base/error.hpp"
-#include "stats/fps_window.hpp"
 
 namespace apps {
 
 namespace {
 
-/// A GLFW window with a current OpenGL 4.5 context.
-class Window {
+constexpr double progress_every_s = 0.1;
+
+/// Thrown out of a settling when the window was closed meanwhile.
+struct Closed {};
+
+/// A fluid that runs, and what is drawn of it.
+struct Running {
+  explicit Running(PreparedFluid fluid)
+      : prepared(std::move(fluid)), picture(prepared.scene), painter(prepared.finest_spacing_m) {}
+
+  PreparedFluid prepared;
+  FluidPicture picture;
+  OverlayPainter painter;
+  stats::FpsWindow fps{30};
+  double shown_s = -1;  ///< when the last frame was shown; < 0 when a pause lies between
+};
+
+/// Words as the choosers spell them.
+ViewOptions spelled_out(ViewOptions options) {
+  options.method = sim::method_name(sim::parse_method(options.method));
+  options.preset = sim::preset_name(sim::parse_preset(options.preset));
+  return options;
+}
+
+class Viewer {
  public:
-  Window(int width, int height, const std::string& title) {
-    if (!glfwInit()) fail("no display");
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-    if (!window_) {
-      glfwTerminate();
-      fail("no window with OpenGL 4.5");
-    }
-    glfwMakeContextCurrent(window_);
-    glfwSwapInterval(1);
+  explicit Viewer(const ViewOptions& options)
+      : running_(spelled_out(options)),
+        window_(options.width_px, options.height_px, "vip-view"),
+        panel_(window_.get(), running_),
+        fixed_tau_(sim::parse_tau(options.tau)) {
+    sim::require_gl45();
+    controls_.chosen = running_;
+    controls_.overlay = parse_overlay(options.overlay);
+    take(make_fluid(running_));
   }
-  ~Window() {
-    glfwDestroyWindow(window_);
-    glfwTerminate();
-  }
-  Window(const Window&) = delete;
-  Window& operator=(const Window&) = delete;
-  GLFWwindow* get() const { return window_; }
+
+  void run();
 
  private:
-  [[noreturn]] static void fail(const std::string& problem) {
-    const char* told = nullptr;
-    glfwGetError(&told);
-    throw base::Error("window", problem + (told ? std::string(": ") + told : std::string()),
-                      "use --headless --png FOLDER on a machine without a display");
+  std::unique_ptr<Running> make_fluid(const ViewOptions& options);
+  void take(std::unique_ptr<Running> fluid);
+  void begin_anew();
+  void follow_keys();
+  void follow_choices();
+  void step(const sim::View& view);
+  void note_time(bool stepped);
+  void save_screenshot(int width, int height);
+
+  ViewOptions running_;  ///< what the fluid was made with
+  GlfwWindow window_;
+  Panel panel_;
+  Controls controls_;
+  Figures figures_;
+  std::optional<double> fixed_tau_;
+  std::unique_ptr<Running> fluid_;
+};
+
+/// Settles it while a picture of how far it is stands in the window.
+std::unique_ptr<Running> Viewer::make_fluid(const ViewOptions& options) {
+  const std::string what = scene_title(options.scene) + ", " + options.method + ", n_* " + options.n_star;
+  double shown_s = -progress_every_s;
+  const auto show = [&](int done, int total) {
+    if (glfwGetTime() - shown_s < progress_every_s && done < total) return;
+    shown_s = glfwGetTime();
+    glfwPollEvents();
+    if (window_.asked_to_close()) throw Closed{};
+    const auto size = window_.size();
+    glViewport(0, 0, size.width, size.height);
+    glClearColor(0.08F, 0.09F, 0.10F, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    const std::string settled =
+        done > 0 ? ": settled " + std::to_string(done) + " of " + std::to_string(total) + " frames" : "";
+    panel_.draw_progress(what + settled, static_cast<float>(done) / static_cast<float>(total));
+    glfwSwapBuffers(window_.get());
+  };
+  show(0, 1);
+  return std::make_unique<Running>(prepare_fluid(options, show));
+}
+
+void Viewer::take(std::unique_ptr<Running> fluid) {
+  fluid_ = std::move(fluid);
+  const PreparedFluid& prepared = fluid_->prepared;
+  figures_.frame = 0;
+  figures_.fps = {};
+  figures_.frame_ms = 0;
+  figures_.strip.clear();
+  figures_.particles = prepared.fluid->particle_count();
+  figures_.model = fixed_tau_ ? "fixed" : prepared.ptpe ? "fitted" : "the paper's PTPE@4.0";
+  const sim::LiveNumbers numbers = prepared.fluid->live_numbers();
+  controls_.alpha = numbers.alpha;
+  controls_.iterations = numbers.iterations;
+}
+
+/// The old fluid stays when the new one cannot be made.
+void Viewer::begin_anew() {
+  try {
+    take(make_fluid(controls_.chosen));
+    running_ = controls_.chosen;
+    figures_.said.clear();
+  } catch (const base::Error& error) {
+    controls_.chosen = running_;
+    figures_.said = error.what();
   }
-  GLFWwindow* window_ = nullptr;
-};
+}
 
-/// Dear ImGui on a window.
-class Panel {
- public:
-  explicit Panel(GLFWwindow* window) {
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
-    ImGui_ImplOpenGL3_Init("#version 450 core");
+void Viewer::follow_keys() {
+  for (const int key : window_.take_keys()) {
+    if (panel_.has_keys()) continue;
+    if (key == GLFW_KEY_SPACE) controls_.paused = !controls_.paused;
+    if (key == GLFW_KEY_S) controls_.step_once = true;
+    if (key == GLFW_KEY_R) controls_.restart = true;
+    if (key == GLFW_KEY_P) controls_.screenshot = true;
   }
-  ~Panel() {
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
+}
+
+void Viewer::follow_choices() {
+  const Change change = controls_.restart ? Change::Fluid : change_between(running_, controls_.chosen);
+  controls_.restart = false;
+  if (change == Change::Fluid) return begin_anew();
+  if (change == Change::Nothing) return;
+  sim::Simulation& fluid = *fluid_->prepared.fluid;
+  sim::LiveNumbers numbers = fluid.live_numbers();
+  numbers.alpha = controls_.chosen.alpha.value_or(numbers.alpha);
+  numbers.iterations = controls_.chosen.iterations.value_or(numbers.iterations);
+  fluid.change(numbers);
+  controls_.alpha = numbers.alpha;
+  controls_.iterations = numbers.iterations;
+  running_ = controls_.chosen;
+}
+
+void Viewer::step(const sim::View& view) {
+  const PreparedFluid& prepared = fluid_->prepared;
+  sim::Gaze gaze = gaze_at(prepared.camera, sim::gaze_point(prepared.scene, figures_.frame + 1));
+  if (controls_.mouse_gaze) {
+    // Nowhere when the mouse is at the panel or outside: the gaze counts as lost.
+    double x = 0, y = 0;
+    const bool looks = window_.mouse(x, y) && !panel_.has_mouse();
+    gaze = looks ? gaze_through(view, x, y) : sim::Gaze{};
   }
-  Panel(const Panel&) = delete;
-  Panel& operator=(const Panel&) = delete;
-};
+  fluid_->picture.look(*prepared.fluid, view, gaze);
+  prepared.fluid->step_frame();
+  figures_.frame = prepared.fluid->frame();
+  controls_.step_once = false;
+}
 
-struct Controls {
-  bool paused = false;
-  bool step_once = false;
-  bool mouse_gaze = true;  ///< else the scene's gaze keys
-  bool screenshot = false;
-  OverlayKind overlay = OverlayKind::None;
-};
+/// Only the time from one step to the next is a frame's: no pause, no settling.
+void Viewer::note_time(bool stepped) {
+  const double now_s = glfwGetTime();
+  const double interval_s = now_s - fluid_->shown_s;
+  const bool whole = stepped && fluid_->shown_s >= 0 && interval_s > 0;
+  fluid_->shown_s = stepped ? now_s : -1;
+  if (!whole) return;
+  fluid_->fps.push(interval_s);
+  fluid_->prepared.fluid->frame_time(1e3 * interval_s);
+  figures_.frame_ms = 1e3 * interval_s;
+  figures_.strip.push(figures_.frame_ms);
+  figures_.fps = fluid_->fps.moments();
+  const auto model = fluid_->prepared.ptpe ? fluid_->prepared.ptpe->model : stats::PtpeModel{};
+  figures_.tau = fixed_tau_.value_or(stats::ptpe_tolerance(model, figures_.fps.mean, figures_.fps.sd));
+  figures_.beta = stats::activation_floor(model, figures_.tau);
+}
 
-/// The last frames' times, for the strip.
-struct Strip {
-  std::array<float, 120> ms{};
-  int next = 0;
-  void push(double value) {
-    ms[static_cast<std::size_t>(next)] = static_cast<float>(value);
-    next = (next + 1) % static_cast<int>(ms.size());
+void Viewer::save_screenshot(int width, int height) {
+  const std::string name = screenshot_name(running_, figures_.frame);
+  try {
+    sim::write_png(name, sim::read_framebuffer(0, width, height));
+    figures_.said = "saved " + name;
+  } catch (const base::Error& error) {
+    figures_.said = error.what();
   }
-};
+  fluid_->shown_s = -1;
+  controls_.screenshot = false;
+}
 
-struct Figures {
-  int frame = 0;
-  double frame_ms = 0;
-  std::int64_t particles = 0;
-  stats::FpsMoments fps;
-  stats::PtpeModel model;
-  const char* model_origin = "";
-};
-
-void draw_choices(Controls& controls, const std::string& legend) {
-  const auto& names = overlay_names();
-  const auto current = static_cast<std::size_t>(controls.overlay);
-  if (ImGui::BeginCombo("paint", names[current].c_str())) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (ImGui::Selectable(names[i].c_str(), i == current)) controls.overlay = static_cast<OverlayKind>(i);
+void Viewer::run() {
+  while (!window_.asked_to_close()) {
+    glfwPollEvents();
+    const auto [width, height] = window_.size();
+    if (width < 1 || height < 1) {  // minimised
+      glfwWaitEvents();
+      fluid_->shown_s = -1;
+      continue;
     }
-    ImGui::EndCombo();
+    const sim::View view = sim::make_view(fluid_->prepared.camera, width, height);
+    const bool stepped = !controls_.paused || controls_.step_once;
+    if (stepped) step(view);
+    sim::Simulation& fluid = *fluid_->prepared.fluid;
+    fluid_->picture.draw(fluid, view, 0);
+    fluid_->painter.paint(controls_.overlay, fluid, fluid_->picture, 0);
+    if (controls_.screenshot) save_screenshot(width, height);
+    figures_.particles = fluid.particle_count();
+    figures_.legend = fluid_->painter.legend();
+    panel_.draw(controls_, figures_);
+    glfwSwapBuffers(window_.get());
+    note_time(stepped);
+    follow_keys();
+    follow_choices();
   }
-  if (!legend.empty()) ImGui::TextUnformatted(legend.c_str());
-  ImGui::Checkbox("gaze follows the mouse", &controls.mouse_gaze);
-  if (ImGui::Button("screenshot (p)")) controls.screenshot = true;
-  if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) controls.screenshot = true;
-}
-
-void draw_panel(Controls& controls, const Figures& f, const Strip& strip, const std::string& legend) {
-  ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
-  ImGui::NewFrame();
-  ImGui::SetNextWindowPos({12, 12}, ImGuiCond_Once);
-  ImGui::Begin("vip-view", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::Text("frame %d, %lld particles", f.frame, static_cast<long long>(f.particles));
-  ImGui::Text("%.2f ms a frame", f.frame_ms);
-  ImGui::Text("mu %.2f  delta %.2f frames/s (last %zu)", f.fps.mean, f.fps.sd, f.fps.frames);
-  const double tau = stats::ptpe_tolerance(f.model, f.fps.mean, f.fps.sd);
-  ImGui::Text("tau %.2f  beta %.3f  (%s)", tau, stats::activation_floor(f.model, tau), f.model_origin);
-  ImGui::PlotLines("ms", strip.ms.data(), static_cast<int>(strip.ms.size()), strip.next, nullptr, 0, 50,
-                   {240, 48});
-  draw_choices(controls, legend);
-  ImGui::Checkbox("pause (space)", &controls.paused);
-  ImGui::SameLine();
-  if (ImGui::Button("step (s)")) controls.step_once = true;
-  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) controls.paused = !controls.paused;
-  if (ImGui::IsKeyPressed(GLFW_KEY_S, false)) controls.step_once = true;
-  ImGui::End();
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
-/// Where the mouse points, or nowhere when it is over the panel or outside.
-sim::Gaze mouse_gaze(GLFWwindow* window, const sim::View& view) {
-  sim::Gaze gaze;
-  double x = 0, y = 0;
-  glfwGetCursorPos(window, &x, &y);
-  int width = 0, height = 0;
-  glfwGetWindowSize(window, &width, &height);
-  const bool outside = x < 0 || y < 0 || x >= width || y >= height;
-  if (outside || ImGui::GetIO().WantCaptureMouse) return gaze;
-  const double scale = static_cast<double>(view.viewport.width) / width;
-  return gaze_through(view, scale * x, scale * (height - y));
-}
-
-void save_screenshot(int width, int height, int frame) {
-  const std::string path = "vip-view_" + std::to_string(frame) + ".png";
-  sim::write_png(path, sim::read_framebuffer(0, width, height));
-  std::printf("%s\n", path.c_str());
 }
 
 }  // namespace
 
 void run_window(const ViewOptions& options) {
-  const Window window(options.width_px, options.height_px, "vip-view");
-  sim::require_gl45();
-  const PreparedFluid prepared = prepare_fluid(options);
-  const Panel panel(window.get());
-  FluidPicture picture(prepared.scene);
-  stats::FpsWindow fps(30);
-  Controls controls;
-  controls.overlay = parse_overlay(options.overlay);
-  OverlayPainter painter(prepared.finest_spacing_m);
-  Strip strip;
-  Figures figures;
-  figures.particles = prepared.fluid->particle_count();
-  figures.model = prepared.ptpe ? prepared.ptpe->model : stats::PtpeModel{};
-  figures.model_origin = prepared.ptpe ? "fitted" : "the paper's PTPE@4.0";
-  double last_s = glfwGetTime();
-  while (!glfwWindowShouldClose(window.get())) {
-    glfwPollEvents();
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window.get(), &width, &height);
-    if (width < 1 || height < 1) {  // minimised
-      glfwWaitEvents();
-      last_s = glfwGetTime();
-      continue;
-    }
-    const sim::View view = sim::make_view(prepared.camera, width, height);
-    if (!controls.paused || controls.step_once) {
-      const auto by_keys = gaze_at(prepared.camera, sim::gaze_point(prepared.scene, figures.frame + 1));
-      picture.look(*prepared.fluid, view, controls.mouse_gaze ? mouse_gaze(window.get(), view) : by_keys);
-      prepared.fluid->step_frame();
-      ++figures.frame;
-      controls.step_once = false;
-    }
-    picture.draw(*prepared.fluid, view, 0);
-    painter.paint(controls.overlay, *prepared.fluid, picture, 0);
-    if (controls.screenshot) save_screenshot(width, height, figures.frame);
-    controls.screenshot = false;
-    draw_panel(controls, figures, strip, painter.legend());
-    glfwSwapBuffers(window.get());
-    const double now_s = glfwGetTime();
-    figures.frame_ms = 1e3 * (now_s - last_s);
-    strip.push(figures.frame_ms);
-    prepared.fluid->frame_time(figures.frame_ms);
-    figures.particles = prepared.fluid->particle_count();
-    if (now_s > last_s) fps.push(now_s - last_s);
-    figures.fps = fps.moments();
-    last_s = now_s;
+  try {
+    Viewer(options).run();
+  } catch (const Closed&) {
+    // Closed while a fluid settled: nothing is left to do.
   }
 }
 
