@@ -1,5 +1,5 @@
 // One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle. A wide
-// filter takes strided samples; a second, dense round smooths what they step over.
+// filter takes strided samples; a last, dense round smooths what they step over.
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
@@ -9,6 +9,7 @@ layout(std430, binding = 2) readonly buffer Front { uint front[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 uniform ivec2 direction;
 uniform int dense;
+uniform int counts;  // 1: the first time through this direction
 #include "narrow_range.glsl"
 
 void main() {
@@ -21,7 +22,7 @@ void main() {
     return;
   }
   if (front[at] == 0xffffffffu) {
-    if (direction.x == 1 && dense == 0) atomicAdd(front_missing, 1u);
+    if (direction.x == 1 && counts == 1) atomicAdd(front_missing, 1u);
     target[at] = centre;
     return;
   }
@@ -29,7 +30,7 @@ void main() {
   float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
   float reach = 3.0 * sigma;
   if (reach > narrow_range.w) {
-    if (dense == 0) atomicAdd(filter_capped, 1u);
+    if (counts == 1) atomicAdd(filter_capped, 1u);
     reach = narrow_range.w;
   }
   int taps = int(min(ceil(reach), thickness_rule.w));

@@ -39,9 +39,10 @@ void check_options(const RenderOptions& o) {
   const auto positive = [](float value) { return std::isfinite(value) && value > 0; };
   check(positive(o.radius_scale), "radius_scale must be positive", "use about 1.5");
   check(positive(o.filter_sigma_r) && positive(o.filter_delta_r) && positive(o.filter_mu_r),
-        "the filter's sigma, delta and mu must be positive", "use about 1.5, 10 and 1");
+        "the filter's sigma, delta and mu must be positive", "use about 1.1, 4 and 1");
   check(o.filter_max_px >= 1 && o.filter_max_taps >= 1, "the filter needs at least one sample and one px",
         "use about 256 px and 12 samples");
+  check(o.filter_rounds >= 1 && o.filter_rounds <= 8, "filter_rounds must be 1 to 8", "use 2");
   check(o.thickness_step == 1 || o.thickness_step == 2, "thickness_step must be 1 or 2", "use 2");
   check(positive(o.thickness_unit_m) && positive(o.packing), "thickness unit and packing must be positive",
         "use 1/65536 m and pi/6");
@@ -223,11 +224,13 @@ void FluidRenderer::State::find_front(std::int64_t count) {
 void FluidRenderer::State::smooth_depth(ViewTargets& t, unsigned particles) {
   filter_depth.use();
   const GlBuffer* source = &t.depth;
-  for (int round = 0; round < 4; ++round) {
-    GlBuffer* target = round % 2 == 0 ? &t.filter_a : &t.filter_b;
+  const int wide_passes = 2 * options.filter_rounds;
+  for (int pass = 0; pass < wide_passes + 2; ++pass) {
+    GlBuffer* target = pass % 2 == 0 ? &t.filter_a : &t.filter_b;
     bind({particles, source->name(), t.front.name(), target->name(), counters.name()});
-    glUniform1i(filter_depth.uniform("dense"), round / 2);
-    glUniform2i(filter_depth.uniform("direction"), round % 2 == 0, round % 2 == 1);
+    glUniform1i(filter_depth.uniform("dense"), pass >= wide_passes);
+    glUniform1i(filter_depth.uniform("counts"), pass < 2);
+    glUniform2i(filter_depth.uniform("direction"), pass % 2 == 0, pass % 2 == 1);
     dispatch_pixels(t.width, t.height);
     source = target;
   }

@@ -24,11 +24,16 @@ struct RenderOptions {
   /// Walls and floor cut the spheres, so that no water is seen outside the glass. Off: particles that leaked
   /// are drawn where they are.
   bool clip_to_tank = true;
-  float filter_sigma_r = 1.5F;  ///< standard deviation of the depth filter in the world (Truong and Yuksel)
+  /// Standard deviation of one round of the depth filter in the world (Truong and Yuksel); n rounds smooth as
+  /// one that is sqrt(n) times as wide.
+  float filter_sigma_r = 1.1F;
   /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
   /// layers of water and smears droplets over what lies behind them, so the default is two layers.
   float filter_delta_r = 4;
   float filter_mu_r = 1;  ///< what is far behind counts as this far behind
+  /// How often the filter goes through both directions (Truong and Yuksel iterate too). One round leaves
+  /// streaks: what the last direction meets at a crest stays in its column.
+  int filter_rounds = 2;
   /// The filter reaches 3 sigma, but at most this many px; pixels where it had to stop short are counted.
   int filter_max_px = 256;
   /// Samples a side and direction; a wider filter takes strided samples.
