@@ -21,4 +21,4 @@ for method in LoRes HiRes FovFluid Ours Ours-TSp; do
   painted="$painted -label $method ${name}_level.png"
 done
 # shellcheck disable=SC2086  # words on purpose
-montage $plain $painted -tile 5x2 -geometry 640x360+4+4 -pointsize 20 "$out"
+montage $plain $painted -tile 5x2 -geometry 400x225+2+2 -pointsize 14 "$out"

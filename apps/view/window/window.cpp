@@ -69,6 +69,9 @@ class Viewer {
   void follow_keys();
   void follow_choices();
   void step(const sim::View& view);
+  stats::PtpeModel model() const {
+    return fluid_->prepared.ptpe ? fluid_->prepared.ptpe->model : stats::PtpeModel{};
+  }
   void note_time(bool stepped);
   void save_screenshot(int width, int height);
 
@@ -112,6 +115,8 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
   figures_.strip.clear();
   figures_.particles = prepared.fluid->particle_count();
   figures_.model = fixed_tau_ ? "fixed" : prepared.ptpe ? "fitted" : "the paper's PTPE@4.0";
+  figures_.tau = fixed_tau_.value_or(0);
+  figures_.beta = stats::activation_floor(model(), figures_.tau);
   const sim::LiveNumbers numbers = prepared.fluid->live_numbers();
   controls_.alpha = numbers.alpha;
   controls_.iterations = numbers.iterations;
@@ -181,9 +186,8 @@ void Viewer::note_time(bool stepped) {
   figures_.frame_ms = 1e3 * interval_s;
   figures_.strip.push(figures_.frame_ms);
   figures_.fps = fluid_->fps.moments();
-  const auto model = fluid_->prepared.ptpe ? fluid_->prepared.ptpe->model : stats::PtpeModel{};
-  figures_.tau = fixed_tau_.value_or(stats::ptpe_tolerance(model, figures_.fps.mean, figures_.fps.sd));
-  figures_.beta = stats::activation_floor(model, figures_.tau);
+  figures_.tau = fixed_tau_.value_or(stats::ptpe_tolerance(model(), figures_.fps.mean, figures_.fps.sd));
+  figures_.beta = stats::activation_floor(model(), figures_.tau);
 }
 
 void Viewer::save_screenshot(int width, int height) {
