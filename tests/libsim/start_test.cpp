@@ -49,7 +49,9 @@ void projections_press_a_start_below_one_percent(Backend backend) {
     const std::string who = sim::method_name(method);
     const auto plain = dam.start(method, state, 0);
     const double before = plain->report().density_error_mean;
-    if (method != MethodKind::HiRes) EXPECT_GT(before, 0.01) << who << ": nothing to do";
+    if (method != MethodKind::HiRes) {
+      EXPECT_GT(before, 0.01) << who << ": nothing to do";
+    }
     const auto fluid = dam.start(method, state, 50);
     EXPECT_LT(fluid->report().density_error_mean, 0.01) << who;
     EXPECT_EQ(fluid->report().guards.wall_projected, 0u) << who << ": counts begin with the run";
@@ -72,7 +74,9 @@ void projections_press_a_start_below_one_percent(Backend backend) {
     }
     EXPECT_LT(most, 1) << who << ", spacings";
     EXPECT_LT(mean, 0.15) << who << ", spacings";
-    if (before > 0.01) EXPECT_GT(mean, 0) << who;
+    if (before > 0.01) {
+      EXPECT_GT(mean, 0) << who;
+    }
     EXPECT_EQ(fluid_test::outside(after, dam.scene.tank_size_m, 0), 0) << who;
   }
 }
