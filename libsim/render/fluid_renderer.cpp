@@ -368,56 +368,17 @@ GlPicture FluidRenderer::picture(std::size_t view) const {
 }
 
 void FluidRenderer::read_picture(GBuffer& out, std::size_t view) const {
-  const ViewTargets& t = state_->drawn(view);
-  const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
-  out.width = t.width;
-  out.height = t.height;
-  out.view = t.view;
-  out.radius_scale = state_->options.radius_scale;
-  for (auto* unread : {&out.filtered_depth, &out.thickness, &out.radius}) unread->clear();
-  out.front.clear();
-  out.depth.resize(pixels);
-  t.depth.read(out.depth.data(), static_cast<std::int64_t>(4 * pixels));
-  // Normal and radius of a pixel lie together; the radii are squeezed out in place.
-  out.normal.resize(4 * pixels);
-  t.normals.read(out.normal.data(), static_cast<std::int64_t>(16 * pixels));
-  for (std::size_t p = 1; p < pixels; ++p) std::copy_n(&out.normal[4 * p], 3, &out.normal[3 * p]);
-  out.normal.resize(3 * pixels);
+  state_->drawn(view).read_picture(state_->options, out);
 }
 
 std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
-  const ViewTargets& t = state_->drawn(view);
-  std::vector<float> out(static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height));
-  t.depth.read(out.data(), static_cast<std::int64_t>(4 * out.size()));
+  std::vector<float> out;
+  state_->drawn(view).read_depth(out);
   return out;
 }
 
 GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
-  const State& s = *state_;
-  const ViewTargets& t = s.drawn(view);
-  const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
-  GBuffer g;
-  read_picture(g, view);
-  const auto fetch = [](const GlBuffer& buffer, auto& out, std::size_t count) {
-    out.resize(count);
-    buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
-  };
-  fetch(t.filter_a, g.filtered_depth, pixels);
-  fetch(t.front, g.front, pixels);
-  std::vector<float> normals;
-  std::vector<std::uint32_t> cells;
-  fetch(t.normals, normals, 4 * pixels);
-  fetch(t.thickness, cells, static_cast<std::size_t>(t.cells_x) * static_cast<std::size_t>(t.cells_y));
-  g.radius.resize(pixels);
-  g.thickness.resize(pixels);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    g.radius[p] = normals[4 * p + 3];
-    const std::size_t x = p % static_cast<std::size_t>(t.width), y = p / static_cast<std::size_t>(t.width);
-    const auto step = static_cast<std::size_t>(s.options.thickness_step);
-    const std::uint32_t units = cells[y / step * static_cast<std::size_t>(t.cells_x) + x / step];
-    g.thickness[p] = static_cast<float>(units) * s.options.thickness_unit_m;
-  }
-  return g;
+  return state_->drawn(view).read_gbuffer(state_->options);
 }
 
 }  // namespace sim

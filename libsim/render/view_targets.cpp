@@ -1,5 +1,7 @@
 #include "libsim/render/view_targets.hpp"
 
+#include <algorithm>
+
 namespace sim {
 
 void ViewTargets::resize(const View& new_view, int thickness_step) {
@@ -22,6 +24,51 @@ void ViewTargets::follow(std::int64_t count) {
   touched.reserve(4 * count);
   touched.fill(0);
   followed_ = count;
+}
+
+void ViewTargets::read_depth(std::vector<float>& out) const {
+  out.resize(pixels());
+  depth.read(out.data(), static_cast<std::int64_t>(4 * out.size()));
+}
+
+void ViewTargets::read_picture(const RenderOptions& options, GBuffer& out) const {
+  out.width = width;
+  out.height = height;
+  out.view = view;
+  out.radius_scale = options.radius_scale;
+  for (auto* unread : {&out.filtered_depth, &out.thickness, &out.radius}) unread->clear();
+  out.front.clear();
+  read_depth(out.depth);
+  // Normal and radius of a pixel lie together; the radii are squeezed out in place.
+  out.normal.resize(4 * pixels());
+  normals.read(out.normal.data(), static_cast<std::int64_t>(16 * pixels()));
+  for (std::size_t p = 1; p < pixels(); ++p) std::copy_n(&out.normal[4 * p], 3, &out.normal[3 * p]);
+  out.normal.resize(3 * pixels());
+}
+
+GBuffer ViewTargets::read_gbuffer(const RenderOptions& options) const {
+  GBuffer g;
+  read_picture(options, g);
+  const auto fetch = [](const GlBuffer& buffer, auto& out, std::size_t count) {
+    out.resize(count);
+    buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
+  };
+  fetch(filter_a, g.filtered_depth, pixels());
+  fetch(front, g.front, pixels());
+  std::vector<float> with_radii;
+  std::vector<std::uint32_t> cells;
+  fetch(normals, with_radii, 4 * pixels());
+  fetch(thickness, cells, static_cast<std::size_t>(cells_x) * static_cast<std::size_t>(cells_y));
+  g.radius.resize(pixels());
+  g.thickness.resize(pixels());
+  const auto step = static_cast<std::size_t>(options.thickness_step);
+  for (std::size_t p = 0; p < pixels(); ++p) {
+    g.radius[p] = with_radii[4 * p + 3];
+    const std::size_t x = p % static_cast<std::size_t>(width), y = p / static_cast<std::size_t>(width);
+    const std::uint32_t units = cells[y / step * static_cast<std::size_t>(cells_x) + x / step];
+    g.thickness[p] = static_cast<float>(units) * options.thickness_unit_m;
+  }
+  return g;
 }
 
 }  // namespace sim

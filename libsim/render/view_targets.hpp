@@ -2,8 +2,9 @@
 /// The device buffers of one view. Internal to the renderer.
 
 #include <cstdint>
+#include <vector>
 
-#include "libsim/render/camera.hpp"
+#include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_buffer.hpp"
 
 namespace sim {
@@ -26,7 +27,14 @@ struct ViewTargets {
   /// Makes room for what is remembered of `count` particles; forgets it when their number changed.
   void follow(std::int64_t count);
 
+  // See FluidRenderer; a barrier must lie between the passes and these.
+  void read_depth(std::vector<float>& out) const;
+  void read_picture(const RenderOptions& options, GBuffer& out) const;
+  GBuffer read_gbuffer(const RenderOptions& options) const;
+
  private:
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
   std::int64_t followed_ = -1;
 };
 
