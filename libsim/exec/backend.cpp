@@ -56,14 +56,16 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
 }  // namespace
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
-  if (options.start || options.cache.empty() || scene.settle_frames == 0)
-    return make_on_backend(scene, options);
-  const std::string key = settled_key(scene, options);
-  SimulationOptions from_cache = options;
-  from_cache.start = read_settled(options.cache, key);
-  auto simulation = make_on_backend(scene, from_cache);
-  if (!from_cache.start) write_settled(options.cache, key, simulation->read_state());
-  return simulation;
+  if (options.start || scene.settle_frames == 0) return make_on_backend(scene, options);
+  const std::string key = options.cache.empty() ? "" : settled_key(scene, options);
+  SimulationOptions rested = options;
+  if (!key.empty()) rested.start = read_settled(options.cache, key);
+  if (!rested.start) {
+    rested.start = make_on_backend(scene, options)->read_state();
+    if (!key.empty()) write_settled(options.cache, key, *rested.start);
+  }
+  // Kept or settled just now, a run begins with its particles in one order, so that its files are the same.
+  return make_on_backend(scene, rested);
 }
 
 }  // namespace sim

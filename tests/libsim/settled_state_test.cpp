@@ -54,6 +54,23 @@ TEST_F(SettledState, SecondRunStartsFromTheKeptStateBitForBit) {
   EXPECT_EQ(settled_frames_, 20) << "without a folder every run settles";
 }
 
+TEST_F(SettledState, ParticlesBeginInOneOrderWhetherKeptOrJustSettled) {
+  const auto at_frame_0 = [&] {
+    std::vector<sim::RenderParticle> out;
+    sim::make_simulation(scene_, options_)->read_particles(out);
+    return out;
+  };
+  const auto just_settled = at_frame_0();
+  const auto kept = at_frame_0();
+  options_.cache.clear();
+  const auto never_kept = at_frame_0();
+  ASSERT_EQ(just_settled.size(), 512u);
+  for (const auto* other : {&kept, &never_kept}) {
+    ASSERT_EQ(other->size(), just_settled.size());
+    EXPECT_EQ(std::memcmp(other->data(), just_settled.data(), 512 * sizeof kept[0]), 0);
+  }
+}
+
 TEST_F(SettledState, EveryChoiceHasItsOwnState) {
   std::vector<std::string> keys{sim::settled_key(scene_, options_)};
   const auto add = [&] { keys.push_back(sim::settled_key(scene_, options_)); };
