@@ -106,7 +106,8 @@ struct GuardCounts {
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
 
-/// Splits and merges since the simulation was made. particles = particles at the start + born - merges.
+/// Splits and merges since the simulation was made. particles = particles at the start + born - merges +
+/// FrameReport::particles_in - particles_out.
 struct LevelEvents {
   std::uint64_t splits = 0;
   std::uint64_t born = 0;            ///< particles that splits added: 2^k - 1 each
@@ -149,6 +150,8 @@ struct FrameReport {
   double neighbours_mean = 0;     ///< without self, within h
   double speed_max_m_s = 0;
   std::int64_t poured = 0;     ///< by nozzles since the simulation was made, in units of m_*
+  std::int64_t particles_in = 0;   ///< particles that nozzles made
+  std::int64_t particles_out = 0;  ///< particles that they took; a nozzle of one level moves as many as it makes
   std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured; mass_units + reservoir is constant
   GuardCounts guards;
   TemporalReport temporal;

@@ -49,9 +49,10 @@ void Activation::list_active(Particles& p) {
 }
 
 std::size_t Activation::bytes() const {
-  return grid.bytes() + importance.bytes() + probability.bytes() + slope_x.bytes() + slope_y.bytes() +
-         slope_z.bytes() + across_levels.bytes() + total.bytes() + energy_slope.bytes() + before.bytes() +
-         after.bytes() + change.bytes() + flags.bytes() + ranks.bytes() + slots.bytes();
+  return grid.bytes() + near.bytes() + others_before.bytes() + others_after.bytes() + importance.bytes() +
+         probability.bytes() + slope_x.bytes() + slope_y.bytes() + slope_z.bytes() + across_levels.bytes() +
+         total.bytes() + energy_slope.bytes() + before.bytes() + after.bytes() + change.bytes() +
+         flags.bytes() + ranks.bytes() + slots.bytes();
 }
 
 }  // namespace sim::SIM_BACKEND

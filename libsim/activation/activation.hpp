@@ -18,9 +18,15 @@ struct ActivationRules {
   /// Particles that are not solved keep their own velocity and add the mean change that the solved particles
   /// of their cell met; false: they take the cell's mean velocity, as printed.
   bool inherit_change = true;
-  /// Of what they keep, this share times (1 - beta)^3 gives way to the cell's mean velocity each frame:
+  /// Gravity and the coarse pressure move the others in each substep, and they inherit what the projections
+  /// changed beyond that; false: the inherited change holds everything. Needs inherit_change.
+  bool pressed = true;
+  /// Edge of the cells that they inherit from, in d_*. On the cells of V, 10 d_*, the mean change of a dam's
+  /// front and of the water behind it is one number.
+  float near_spacings = 5;
+  /// Of what they keep, this share times (1 - beta)^2 gives way to the cell's mean velocity each frame:
   /// nothing slows them down when they run into others, which would feed the fluid energy.
-  float damping = 0.8f;
+  float damping = 0.25f;
   /// In the denominator of lambda the others count as if they could move; false: as if they had infinite
   /// mass.
   bool others_yield = true;
@@ -28,7 +34,7 @@ struct ActivationRules {
   /// rest), those within h of a wall and those faster than half an h a substep.
   bool keep_fragile_active = true;
   /// Frames in a row that a particle may be left out; 0 = no limit.
-  int longest_rest = 3;
+  int longest_rest = 1;
   /// epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2.
   float speed_floor = 0.1f;
 };
@@ -65,6 +71,8 @@ struct Activation {
   std::uint32_t frame = 0;  ///< number of the coming frame, part of the random numbers' key
 
   VelocityGrid grid;  ///< V^n and E^n
+  /// Mean velocities on the cells of which the others inherit; finer than those of V and E.
+  VelocityGrid near;
   PercentileRange range;
   Array<float> importance;   ///< F_pim, Eq. 12
   Array<float> probability;  ///< p_i, Algorithm 3 line 8
@@ -73,8 +81,9 @@ struct Activation {
 
   // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz a cell, dV/dl, sum over levels, dE.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
-  // Momentum of the active particles by the cell they started in, before and after the solve; its change.
-  Array<MomentumSum> before, after;
+  // Momentum of the active particles, and of the others, by the cell they started in, before and after the
+  // solve; what the others miss.
+  Array<MomentumSum> before, after, others_before, others_after;
   Array<Vec4> change;
 
   Array<int> flags, ranks, slots;

@@ -30,7 +30,7 @@ struct Choose {
   std::uint8_t* rest;
   int* start_cell;
   float* probability;
-  GridFrame grid;
+  GridFrame grid, near;
   const Vec4* mean_velocity;
   Walls walls;
   ActivationRules rules;
@@ -40,7 +40,7 @@ struct Choose {
   SIM_FN void operator()(int i) const {
     const float p = beta + (1 - beta) * range->normalised(importance[i]);
     probability[i] = p;
-    start_cell[i] = grid.cell_of(xyz(position[i]));
+    start_cell[i] = near.cell_of(xyz(position[i]));
     const int rested = rest[i] & rest_count_mask;
     const bool on = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p || must_be_solved(i);
     active[i] = on;
@@ -70,6 +70,7 @@ void choose(FluidState& state) {
   const int n = p.size();
   const auto& k = state.parameters;
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
+  a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
   state.all_active = a.beta >= 1 || n == 0;
   if (!a.columns_set || (state.all_active && !a.all_marked))
     for_each("activate all", n, ActivateAll{p.active.data(), p.rest.data()});
@@ -86,18 +87,39 @@ void choose(FluidState& state) {
   }
   a.probability.resize(static_cast<std::size_t>(n));
   for_each("choose active", n,
-           Choose{p.position.data(), p.id.data(), p.level.data(), a.importance.data(), a.range.range(),
-                  p.has(Column::Age) ? p.age.data() : nullptr, p.velocity.data(), p.active.data(),
-                  p.rest.data(), p.start_cell.data(), a.probability.data(), a.grid.frame(),
-                  a.grid.velocity().data(), state.walls, a.rules, a.beta, k.dt, a.frame, a.seed});
-  if (a.rules.inherit_change) add_momentum(p, p.active.data(), p.start_cell.data(), a.grid.frame(), a.before);
+           Choose{p.position.data(),
+                  p.id.data(),
+                  p.level.data(),
+                  a.importance.data(),
+                  a.range.range(),
+                  p.has(Column::Age) ? p.age.data() : nullptr,
+                  p.velocity.data(),
+                  p.active.data(),
+                  p.rest.data(),
+                  p.start_cell.data(),
+                  a.probability.data(),
+                  a.grid.frame(),
+                  a.near.frame(),
+                  a.grid.velocity().data(),
+                  state.walls,
+                  a.rules,
+                  a.beta,
+                  k.dt,
+                  a.frame,
+                  a.seed});
+  if (!a.rules.inherit_change) return;
+  add_momentum(p, p.active.data(), p.start_cell.data(), a.near.frame(), a.before);
+  if (a.rules.pressed)
+    add_momentum(p, p.active.data(), p.start_cell.data(), a.near.frame(), a.others_before, 0);
 }
 
-/// Mean change of velocity of a cell and level's active particles over the frame; what is empty takes the
-/// mean of the other levels.
+/// Mean change of velocity of a cell and level's active particles over the frame, less what the others of the
+/// cell have already met; what is empty takes the mean of the other levels.
 struct MeanChange {
   const MomentumSum* before;
   const MomentumSum* after;
+  const MomentumSum* others_before;  ///< nullptr unless something moved the others too
+  const MomentumSum* others_after;
   Vec4* change;
   int cells;
 
@@ -108,7 +130,10 @@ struct MeanChange {
   }
   SIM_FN Vec4 of(int i) const {
     if (before[i].mass == 0 || after[i].mass == 0) return {0, 0, 0, value_unknown};
-    return with_w(mean_velocity(after[i]) - mean_velocity(before[i]), value_measured);
+    Vec3 out = mean_velocity(after[i]) - mean_velocity(before[i]);
+    if (others_before && others_before[i].mass > 0 && others_after[i].mass > 0)
+      out += mean_velocity(others_before[i]) - mean_velocity(others_after[i]);
+    return with_w(out, value_measured);
   }
   SIM_FN Vec4 of_others(int cell) const {
     Vec3 sum{0, 0, 0};
@@ -164,20 +189,26 @@ void inherit(FluidState& state) {
   auto& a = state.activation;
   auto& p = state.particles;
   const auto& k = state.parameters;
-  const int cells = grid_levels * a.grid.cells();
+  const int cells = grid_levels * a.near.cells();
   if (a.rules.inherit_change) {
-    add_momentum(p, p.active.data(), p.start_cell.data(), a.grid.frame(), a.after);
+    add_momentum(p, p.active.data(), p.start_cell.data(), a.near.frame(), a.after);
     a.change.resize(static_cast<std::size_t>(cells));
+    if (a.rules.pressed)
+      add_momentum(p, p.active.data(), p.start_cell.data(), a.near.frame(), a.others_after, 0);
     for_each("mean change", cells,
-             MeanChange{a.before.data(), a.after.data(), a.change.data(), a.grid.cells()});
+             MeanChange{a.before.data(), a.after.data(), a.rules.pressed ? a.others_before.data() : nullptr,
+                        a.others_after.data(), a.change.data(), a.near.cells()});
   }
+  // As printed, the mean velocities are those of V.
+  const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
+  if (a.rules.inherit_change && a.rules.damping > 0) a.near.update_velocity(p, p.active.data());
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;
-  const float mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle * idle : 1;
+  const float mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1;
   const float frame_dt = k.dt * substeps;
   for_each("inherit", p.size(),
            Inherit{p.active.data(), p.level.data(), p.position.data(), p.velocity.data(), state.guard(),
-                   a.grid.frame(), a.change.data(), a.grid.velocity().data(), state.walls, frame_dt,
+                   from.frame(), a.change.data(), from.velocity().data(), state.walls, frame_dt,
                    frame_dt * (substeps + 1) / (2 * substeps), k.wall_gap, mean_share});
 }
 

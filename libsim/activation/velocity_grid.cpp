@@ -27,13 +27,14 @@ struct AddMomentum {
   GridFrame grid;
   MomentumSum* sums;
   int n;
+  std::uint8_t which;
 
   SIM_FN void operator()(int run) const {
     const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
     int place = -1;
     MomentumSum sum{};
     for (int i = run * run_length; i < end; ++i) {
-      if (active && !active[i]) continue;
+      if (active && active[i] != which) continue;
       const Vec3 v = xyz(velocity[i]);
       const Vec3 x = xyz(position[i]);
       if (!all_finite(v) || !all_finite(x)) continue;
@@ -126,13 +127,13 @@ struct FinishEnergy {
 }  // namespace
 
 void add_momentum(const Particles& particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
-                  Array<MomentumSum>& sums) {
+                  Array<MomentumSum>& sums, std::uint8_t which) {
   sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
   sums.zero();
   const int n = particles.size();
   for_each("add momentum", runs_of(n),
            AddMomentum{particles.position.data(), particles.velocity.data(), particles.level.data(), active,
-                       cell_of, grid, sums.data(), n});
+                       cell_of, grid, sums.data(), n, which});
 }
 
 void VelocityGrid::fit(const Domain& domain, float edge) {

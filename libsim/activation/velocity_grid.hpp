@@ -107,10 +107,10 @@ class VelocityGrid {
   Array<float> energy_;
 };
 
-/// Adds mass and momentum of the particles with active != 0 (all when null) to sums[level x cells + cell],
-/// the cell given by cell_of (by position when null).
+/// Adds mass and momentum of the particles with active == which (all when null) to sums[level x cells +
+/// cell], the cell given by cell_of (by position when null).
 void add_momentum(const Particles& particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
-                  Array<MomentumSum>& sums);
+                  Array<MomentumSum>& sums, std::uint8_t which = 1);
 
 /// momentum / mass of a sum that is not empty.
 SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {

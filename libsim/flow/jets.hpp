@@ -23,6 +23,8 @@ struct Jets {
   Array<int> mass_by_target;   ///< near a mouth
   std::int64_t reservoir = 0;  ///< taken from the corners and not yet poured, in m_*
   std::int64_t poured = 0;     ///< since the run began, in m_*
+  std::int64_t made = 0;       ///< particles that this added since the run began
+  std::int64_t taken = 0;      ///< particles that it took from the corners
   std::uint64_t waited = 0;    ///< layers left out because the corners held too little
 };
 

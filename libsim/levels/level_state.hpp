@@ -21,15 +21,21 @@ struct LevelRules {
   /// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
   /// hold their neighbours back: when most have merged, a few are left without a partner in reach.
   int looks_farther = 6, lags = 32;
-  /// Neighbours from which a particle counts as inside the fluid: sheets and drops never merge from afar.
-  int inside_count = 20;
+  /// Neighbours in the list, beside a wall fewer, from which a particle counts as inside the fluid. Water has
+  /// 40, its surface 29, a sheet of two layers 26: sheets and drops never merge from afar.
+  float inside_count = 30;
+  /// A particle wants to be coarser only when Eq. 9, without its floor, lies this far beyond its level: what
+  /// hovers about a border neither splits nor merges. 0 = none.
+  float dead_band = 0.25f;
   bool relays = true;  ///< the stranded may merge through a coarser particle between them
+  /// What two stranded particles become keeps this share of the sum of radii from coarser ones: they have
+  /// been refused for long, and what is left of a level among much coarser water is worth an overlap.
+  float stranded_overlap = 0.5f;
   /// Share of its constraint that a particle enforces in a projection while the youngest within its support
   /// is 0, 1, ... frames old; what overlaps after a split or a merge parts slowly, not at once.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
-  float fresh_viscosity = 0.7f;  ///< XSPH c of pairs with a particle made in the last fresh_frames
-  int fresh_frames = 2;
+  float kick_filter = 0.9f;
 };
 
 /// What happened, counted on the device since the simulation was made.

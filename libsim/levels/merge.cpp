@@ -37,6 +37,7 @@ struct KeepSteps {
   std::uint8_t* out;
   LevelCounts* counts;
   int lags;
+  LevelSupports supports;
   SIM_FN void operator()(int i) const {
     out[i] = wish[i];
     if (!wish[i] || level[i] == 0) return;
@@ -47,7 +48,8 @@ struct KeepSteps {
       if (!finer && target[j] >= level[i]) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
-      const float h = 0.5f * (self.w + other.w);
+      // As wide as it will see once it is coarser.
+      const float h = 0.5f * (supports.h[level[i] + 1] + other.w);
       if (dot(offset, offset) >= h * h) continue;
       out[i] = 0;
       atomic_add(&counts->merge_step, std::uint64_t{1});
@@ -83,6 +85,7 @@ struct Propose {
   Neighbours neighbours;
   int* partner;
   LevelCounts* counts;
+  Walls walls;
   LevelRules rules;
   LevelSupports supports;
 
@@ -112,9 +115,10 @@ struct Propose {
   SIM_FN bool in_reach(int i, int j, float distance2) const {
     const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
     if (distance2 <= reach * reach) return true;
-    return (waiting[i] >= rules.looks_farther || waiting[j] >= rules.looks_farther) &&
-           neighbours.size(i) >= rules.inside_count && neighbours.size(j) >= rules.inside_count;
+    return (waiting[i] >= rules.looks_farther || waiting[j] >= rules.looks_farther) && inside(i) && inside(j);
   }
+
+  SIM_FN bool inside(int i) const { return inside_fluid(walls, position, neighbours, i, rules.inside_count); }
 
   /// Would the new particle overlap another of its size or larger? (Fig. 5 d2)
   SIM_FN bool overlaps(int i, int j) const {
@@ -210,12 +214,13 @@ void merge_pairs(FluidState& state) {
   if (l.rules.merge_keeps_steps) {
     for_each("keep steps", n,
              KeepSteps{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-                       neighbours, l.status.data(), l.counts.data(), l.rules.lags});
+                       neighbours, l.status.data(), l.counts.data(), l.rules.lags, state.supports});
     l.wish.swap(l.status);
   }
   for_each("propose merges", n,
            Propose{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-                   p.id.data(), neighbours, l.partner.data(), l.counts.data(), l.rules, state.supports});
+                   p.id.data(), neighbours, l.partner.data(), l.counts.data(), state.walls, l.rules,
+                   state.supports});
   for_each("keep merges apart", n,
            KeepApart{p.position.data(), p.level.data(), p.id.data(), l.partner.data(), neighbours,
                      l.places.data(), l.rules, state.supports});

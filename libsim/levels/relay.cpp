@@ -4,9 +4,10 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Two members of a merge that find each other through a particle of twice their mass between them: its
-/// halves join one each, and three particles of masses 1, 2, 1 become two of mass 2. No step is longer than a
-/// merge's, and the last few of a level, which are too far apart for pairs, need not stay behind.
+/// Two members of a merge that find each other through a coarser particle between them, so that the last few
+/// of a level, which are too far apart for pairs, need not stay behind. One of twice their mass gives each of
+/// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no step is longer than a merge's.
+/// A heavier one only makes them known to each other.
 struct Bid {
   const Vec4* position;
   const std::uint8_t* level;
@@ -19,36 +20,57 @@ struct Bid {
   Neighbours neighbours;
   int* first;
   int* second;
+  Walls walls;
   LevelRules rules;
+  LevelSupports supports;
 
   /// A particle that has waited without a partner and is still there.
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }
-  /// The relay names its nearest two stranded neighbours of half its mass that lie far enough from each
-  /// other.
+  /// The relay names its nearest two stranded neighbours of one level that may join.
   SIM_FN void operator()(int j) const {
     first[j] = second[j] = -1;
     if (level[j] == 0 || target[j] < level[j] || split_code[j] || gone[j] || age[j] == 0) return;
-    if (neighbours.size(j) < rules.inside_count) return;
     first[j] = nearest(j, -1);
     if (first[j] >= 0) second[j] = nearest(j, first[j]);
-    if (second[j] < 0) first[j] = -1;
+    if (second[j] < 0 || !inside_fluid(walls, position, neighbours, j, rules.inside_count))
+      first[j] = second[j] = -1;
   }
+  /// The nearest of the coarsest level that has any.
   SIM_FN int nearest(int j, int other) const {
-    const Vec4 self = position[j];
-    const float support = 0.5f * self.w * (1 + 0.7937f);  // hbar of levels l + 1 and l
     int best = -1;
     for (int k = 0; k < neighbours.size(j); ++k) {
       const int i = neighbours(j, k);
-      if (i == other || level[i] + 1 != level[j] || !stranded(i)) continue;
-      const Vec3 offset = xyz(self) - xyz(position[i]);
-      const float distance2 = dot(offset, offset);
-      if (distance2 >= support * support || (best >= 0 && distance2 >= dot_to(j, best))) continue;
-      if (other >= 0 && !apart(i, other, self.w)) continue;
+      if (i == other || level[i] >= level[j] || !stranded(i)) continue;
+      if (other >= 0 && (level[i] != level[other] || !may_join(j, i, other))) continue;
+      const float support = 0.5f * (position[j].w + position[i].w);
+      const float distance2 = dot_to(j, i);
+      if (distance2 >= support * support) continue;
+      if (best >= 0 && level[i] < level[best]) continue;
+      if (best >= 0 && level[i] == level[best] && distance2 >= dot_to(j, best)) continue;
       best = i;
     }
     return best;
+  }
+  SIM_FN bool may_join(int j, int a, int b) const {
+    return level[a] + 1 < level[j] ? free_between(j, a, b) : apart(a, b, position[j].w);
+  }
+  /// A merged particle between them keeps from the relay and from its neighbours what a merge keeps.
+  SIM_FN bool free_between(int j, int a, int b) const {
+    const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
+    const float h = supports.h[level[a] + 1];
+    if (!clear_of(j, centre, h)) return false;
+    for (int k = 0; k < neighbours.size(j); ++k) {
+      const int other = neighbours(j, k);
+      if (level[other] > level[a] && !clear_of(other, centre, h)) return false;
+    }
+    return true;
+  }
+  SIM_FN bool clear_of(int other, Vec3 centre, float h) const {
+    const Vec3 offset = xyz(position[other]) - centre;
+    const float least = rules.stranded_overlap * (position[other].w + h) / 4;
+    return dot(offset, offset) >= least * least;
   }
   SIM_FN float dot_to(int j, int i) const {
     const Vec3 offset = xyz(position[j]) - xyz(position[i]);
@@ -99,14 +121,21 @@ struct JoinHalves {
   const int* accepted;
   std::uint8_t* gone;
   LevelCounts* counts;
+  LevelSupports supports;
   float rest_density;
 
   SIM_FN void operator()(int j) const {
     const int a = first[j];
     const int b = second[j];
     if (a < 0 || accepted[a] != j || accepted[b] != j) return;
+    // A relay that has accepted a bid itself may be changed by it at this moment.
+    if (accepted[j] >= 0) return;
     const int kept = id[a] < id[b] ? a : b;
     const int left = kept == a ? b : a;
+    if (level[a] + 1 < level[j]) {
+      carry(kept, left);
+      return;
+    }
     const float lost = loss(j, kept) + loss(j, left);
     const Vec3 x_kept = 0.5f * (xyz(position[j]) + xyz(position[kept]));
     const Vec3 v_kept = 0.5f * (xyz(velocity[j]) + xyz(velocity[kept]));
@@ -114,6 +143,16 @@ struct JoinHalves {
     const Vec3 v = 0.5f * (xyz(velocity[j]) + xyz(velocity[left]));
     become(kept, x_kept, v_kept, position[j].w, level[j]);
     become(j, x, v, position[j].w, level[j]);
+    gone[left] = 1;
+    atomic_add(&counts->merges, std::uint64_t{1});
+    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
+  }
+  /// The two meet in the middle; the relay only made them known to each other.
+  SIM_FN void carry(int kept, int left) const {
+    const float lost = loss(left, kept);
+    const int now = level[kept] + 1;
+    become(kept, 0.5f * (xyz(position[kept]) + xyz(position[left])),
+           0.5f * (xyz(velocity[kept]) + xyz(velocity[left])), supports.h[now], now);
     gone[left] = 1;
     atomic_add(&counts->merges, std::uint64_t{1});
     atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
@@ -141,16 +180,16 @@ void relay_stranded(FluidState& state) {
   int* first = l.births.data();
   int* second = l.places.data();
   int* accepted = l.partner.data();
-  for_each(
-      "bid for stranded", n,
-      Bid{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-          l.split_code.data(), l.gone.data(), p.age.data(), state.neighbours.view(), first, second, l.rules});
+  for_each("bid for stranded", n,
+           Bid{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
+               l.split_code.data(), l.gone.data(), p.age.data(), state.neighbours.view(), first, second,
+               state.walls, l.rules, state.supports});
   for_each("accept bids", n,
            AcceptBid{p.id.data(), first, second, state.neighbours.view(), accepted, l.frame});
   for_each("join halves", n,
            JoinHalves{p.position.data(), p.velocity.data(), p.level.data(), p.history.data(), p.age.data(),
                       p.waiting.data(), p.id.data(), first, second, accepted, l.gone.data(), l.counts.data(),
-                      state.parameters.rest_density});
+                      state.supports, state.parameters.rest_density});
 }
 
 }  // namespace sim::SIM_BACKEND

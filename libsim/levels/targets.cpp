@@ -31,6 +31,19 @@ struct Force {
   }
 };
 
+/// Keeps the level of those that are not far enough beyond the border to a coarser one.
+struct Hold {
+  const std::uint8_t* level;
+  const float* saliency;
+  std::uint8_t* target;
+  float levels, dead_band;
+  SIM_FN void operator()(int i) const {
+    if (target[i] <= level[i]) return;
+    const float border = static_cast<float>(level[i] + 1) + dead_band;
+    if (levels * (1 - saliency[i]) < border) target[i] = level[i];
+  }
+};
+
 /// l_i <= min_j l_j + 1 over the neighbours: one sweep carries a step one support radius far.
 struct Grade {
   const Vec4* position;
@@ -59,6 +72,12 @@ constexpr int sweeps = 3;
 void grade(FluidState& state) {
   auto& p = state.particles;
   auto& out = state.levels.graded;
+  const auto& rules = state.levels.rules;
+  if (rules.dead_band > 0 && p.has(Column::Saliency)) {
+    for_each("hold levels", p.size(),
+             Hold{p.level.data(), p.saliency.data(), p.target.data(), static_cast<float>(rules.coarsest + 1),
+                  rules.dead_band});
+  }
   if (!state.levels.rules.graded) return;
   out.reserve(static_cast<std::size_t>(p.capacity()));
   out.resize(static_cast<std::size_t>(p.size()));

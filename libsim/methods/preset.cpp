@@ -33,8 +33,10 @@ Readings readings_of(Preset preset) {
   out.merge_reach = 2;
   out.merge_overlap = 1;
   out.merge_keeps_steps = false;
+  out.merge_dead_band = 0;
   out.dimensionless_levels = false;
   out.inherit_change = false;
+  out.inactive_pressed = false;
   out.inactive_yield = false;
   out.longest_rest_frames = 0;
   out.keep_fragile_active = false;

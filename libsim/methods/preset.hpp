@@ -67,15 +67,29 @@ struct Readings {
   double merge_overlap = 0.8;
   /// A merge may not leave a neighbour two levels finer.
   bool merge_keeps_steps = true;
+  /// Who would become coarser must lie this far, in levels, beyond the border that Eq. 9 draws with s: what
+  /// hovers about a border neither splits nor merges. [0, 1)
+  double merge_dead_band = 0.25;
+  /// Share of the differences between neighbours' velocity changes that is evened out in a substep round
+  /// fresh particles, whose overlap would otherwise set energy free. [0, 1]; 0 = no filter.
+  double kick_filter = 0.9;
 
   // Algorithm 3: temporal acceleration
   /// Eq. 14: dV/dl over |V| + epsilon, without unit; false leaves m/s.
   bool dimensionless_levels = true;
-  int longest_rest_frames = 3;  ///< frames that a particle may stay inactive in a row; 0 = no limit
+  /// Frames that a particle may stay inactive in a row; 0 = no limit. With 1 the centre of mass of a dam of
+  /// 32,768 particles stays within 1.7 % of the full solve's for 10 s at beta 0.3 to 0.9; with 2 or 3 no one
+  /// damping held at all of them. At beta 0.3 it solves 76 % of the particles, with 2 68 %, with 3 66 %.
+  int longest_rest_frames = 1;
   /// Inactive particles add the mean change that their cell's solved ones met; false: take the mean velocity.
   bool inherit_change = true;
-  /// This share times (1 - beta)^3 of what they keep gives way to the mean velocity each frame.
-  double inactive_damping = 0.8;
+  /// Gravity and the coarse pressure move inactive particles in each substep, and what they inherit is what
+  /// the projections changed beyond that; false: nothing moves them within the frame. Needs inherit_change.
+  bool inactive_pressed = true;
+  /// Edge of the cells that changes are inherited on, in d_*; the paper's cells for V and E have 10.
+  double inherit_cell_spacings = 5;
+  /// This share times (1 - beta)^2 of what they keep gives way to the mean velocity each frame.
+  double inactive_damping = 0.25;
   /// The others count in lambda's denominator as if they could move; false: with no inverse mass.
   bool inactive_yield = true;
   /// Spray, particles at walls, fast ones and those just split or merged are never inactive.

@@ -41,6 +41,8 @@ LevelRules level_rules(const SimulationOptions& options) {
   out.merge_reach = static_cast<float>(from.merge_reach);
   out.merge_overlap = static_cast<float>(from.merge_overlap);
   out.merge_keeps_steps = from.merge_keeps_steps;
+  out.dead_band = static_cast<float>(from.merge_dead_band);
+  out.kick_filter = static_cast<float>(from.kick_filter);
   return out;
 }
 
@@ -63,6 +65,8 @@ ActivationRules activation_rules(const Readings& readings) {
   out.relative_level_change = readings.dimensionless_levels;
   out.robust_range = readings.normalisation == Normalisation::Percentile;
   out.inherit_change = readings.inherit_change;
+  out.pressed = readings.inactive_pressed && readings.inherit_change;
+  out.near_spacings = static_cast<float>(readings.inherit_cell_spacings);
   out.damping = static_cast<float>(readings.inactive_damping);
   out.others_yield = readings.inactive_yield;
   out.keep_fragile_active = readings.keep_fragile_active;
@@ -276,6 +280,8 @@ class FluidSimulation final : public Simulation {
     out.guards = {met.speed_limited,      met.coincident_pairs, met.not_finite,
                   met.neighbours_dropped, met.wall_projected,   state_.jets.waited};
     out.poured = state_.jets.poured;
+    out.particles_in = state_.jets.made;
+    out.particles_out = state_.jets.taken;
     out.reservoir = state_.jets.reservoir;
     out.guards.saliency_not_finite = met.saliency_not_finite;
     out.guards.gaze_lost = state_.saliency.input.gaze_lost();

@@ -15,6 +15,7 @@ struct Gather {
   Selection select;
   const Vec4* predicted;
   const float* density;
+  const float* ease;  ///< of its constraint; nullptr where nothing splits or merges
   CellFrame frame;
   CellBlock block;
   CellSum* sums;
@@ -29,7 +30,9 @@ struct Gather {
     if (!block.holds(x, y, z)) return;
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
-    const float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
+    float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
+    // Not less than half: the cells are what keeps a whole tank that splits from getting too dense.
+    if (ease) excess *= 0.5f + 0.5f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
     };
@@ -76,6 +79,7 @@ template <class Selection>
 struct Shift {
   Selection select;
   Vec4* predicted;
+  Vec4* next;
   CellFrame frame;
   GridView grid;
   Walls walls;
@@ -83,9 +87,12 @@ struct Shift {
   float wall_gap;
 
   SIM_FN void operator()(int slot) const {
-    const int i = select(slot);
+    int i = select(slot);
+    bool rests = false;
     if constexpr (!Selection::everyone) {
-      if (i < 0) return;
+      rests = i < 0;
+      if (rests && !select.others_pressed) return;
+      if (rests) i = ~i;
     }
     const Vec4 p = predicted[i];
     const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
@@ -93,6 +100,8 @@ struct Shift {
     x += (1 / frame.edge) * Vec3{along<1, 0, 0>(at), along<0, 1, 0>(at), along<0, 0, 1>(at)};
     if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, p.w);
+    // No projection moves it: both buffers hold its place.
+    if (rests) next[i] = predicted[i];
   }
 
   /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
@@ -125,19 +134,21 @@ template <class Selection>
 void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   auto& coarse = state.coarse;
+  // While the water settles at one level, nobody has written the shares.
+  const float* ease = p.has(Column::Ease) && !state.one_level ? p.ease.data() : nullptr;
   density_stage().run(state);
   coarse.fit(state.domain, state.parameters.coarse_edge * state.lightest_support);
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),
-           Gather<Selection>{select, p.predicted.data(), p.density.data(), coarse.frame, grid.block,
+           Gather<Selection>{select, p.predicted.data(), p.density.data(), ease, coarse.frame, grid.block,
                              coarse.sums.data(), mass_of(state.lightest_support, 1)});
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);
   for_each("shift", p.size(),
-           Shift<Selection>{select, p.predicted.data(), coarse.frame, grid, state.walls, state.guard(),
-                            state.parameters.wall_gap});
+           Shift<Selection>{select, p.predicted.data(), p.predicted_next.data(), coarse.frame, grid,
+                            state.walls, state.guard(), state.parameters.wall_gap});
 }
 
 void run(FluidState& state) {

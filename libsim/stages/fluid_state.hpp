@@ -66,7 +66,9 @@ struct FluidState {
   const std::uint8_t* last_active() const {
     return activation.columns_set && !activation.all_marked ? particles.active.data() : nullptr;
   }
-  ActiveParticles active() { return {activation.slots.data(), particles.active.data()}; }
+  ActiveParticles active() {
+    return {activation.slots.data(), particles.active.data(), activation.rules.pressed};
+  }
   Guards* guard() { return guards.data(); }
 };
 

@@ -110,12 +110,16 @@ void run_nozzle(FluidState& state, const Nozzle& nozzle, Poured& before) {
   if (state.one_level) {
     layers = std::min(due.count, found / layer.sites);
     pour(state, nozzle, due, before.layers, layer.sites, layers, jets.columns.lowest_first(), 0);
+    jets.taken += static_cast<std::int64_t>(layers) * layer.sites;
   } else {
+    const int n = state.particles.size();
     layers = jets.exchange.run(state.particles, state.supports, jets.columns.lowest_first(), found,
                                layer.sites, due.count, jets.level, jets.reservoir);
     pour(state, nozzle, due, before.layers, layer.sites, layers, nullptr,
          state.particles.size() - layers * layer.sites);
+    jets.taken += n + layers * layer.sites - state.particles.size();
   }
+  jets.made += static_cast<std::int64_t>(layers) * layer.sites;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
   // Layers that waited are left out of the jet.

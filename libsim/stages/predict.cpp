@@ -25,7 +25,7 @@ struct Predict {
     if constexpr (Selection::everyone) {
       v.y -= gravity * dt;
     } else {
-      v.y -= select.moves(i) * gravity * dt;
+      v.y -= select.falls(i) * gravity * dt;
     }
     v = limited(v, longest_step * h / dt, guards);
     velocity[i] = with_w(v, 0);

