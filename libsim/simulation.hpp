@@ -75,8 +75,8 @@ struct SimulationOptions {
   /// Frames that lie behind the start: nozzles go on from there. >= 0.
   int start_frame = 0;
   /// For starts in the middle of a run: at most so many density projections move the particles of `start`,
-  /// until the mean of max(rho / rho_0 - 1, 0) is below 1 %; velocities stay. The velocity grid of temporal
-  /// acceleration is then made from the start as well. 0 = take the start as it is.
+  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 1 %; velocities stay. The velocity grid
+  /// of temporal acceleration is then made from the start as well. 0 = take the start as it is.
   int start_projections = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
@@ -136,6 +136,12 @@ struct PartTimes {
   double solve_ms = 0;       ///< everything else
 };
 
+/// What SimulationOptions::start_projections came to.
+struct RelaxedStart {
+  int projections = 0;
+  double compression = 0;  ///< mass-weighted mean of max(rho / rho_0 - 1, 0) that was left
+};
+
 /// State of the fluid after a frame.
 struct FrameReport {
   int frame = 0;  ///< frames since the gate opened
@@ -156,6 +162,7 @@ struct FrameReport {
   GuardCounts guards;
   TemporalReport temporal;
   SeenReport seen;  ///< the picture that saliency was given last
+  RelaxedStart start;
 };
 
 /// A value of each particle, for pictures.

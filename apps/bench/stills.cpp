@@ -219,15 +219,16 @@ class Stills {
     return out;
   }
 
-  /// Largest compression of a method's starts; measured on the first repeat, which the others equal to an
-  /// ulp.
+  /// The worst of a method's starts, of the first repeat, which the others equal to an ulp.
   void note_start(sim::Simulation& fluid, Method method, sim::Preset preset) {
     auto& starts = result_.starts;
     auto found = std::find_if(starts.begin(), starts.end(), [&](const auto& start) {
       return start.method == method && start.preset == preset;
     });
-    if (found == starts.end()) found = starts.insert(found, {method, preset, 0, 0, 0});
-    found->compression = std::max(found->compression, fluid.report().density_error_mean);
+    if (found == starts.end()) found = starts.insert(found, {method, preset, {}, 0, 0});
+    const sim::RelaxedStart start = fluid.report().start;
+    found->worst.projections = std::max(found->worst.projections, start.projections);
+    found->worst.compression = std::max(found->worst.compression, start.compression);
     found->particles_share +=
         static_cast<double>(fluid.particle_count()) / (8 * static_cast<double>(size_.n_star));
     ++found->starts;

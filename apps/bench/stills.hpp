@@ -14,7 +14,7 @@ namespace apps {
 struct StartQuality {
   sim::MethodKind method{};
   sim::Preset preset{};
-  double compression = 0;      ///< largest mean of max(rho / rho_0 - 1, 0) of a start
+  sim::RelaxedStart worst;     ///< most projections, largest compression
   double particles_share = 0;  ///< mean of n / (8 n_*)
   int starts = 0;
 };

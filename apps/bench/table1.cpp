@@ -35,11 +35,11 @@ int checkpoints_of(const std::string& word) {
 }
 
 std::string started(const std::vector<StartQuality>& starts, const std::string& what) {
-  std::string out = "starts of " + what + " (largest mean compression, mean n / (8 n_*)):";
+  std::string out = "starts of " + what + " (most projections, largest compression, mean n / (8 n_*)):";
   for (const auto& start : starts) {
     char text[96];
-    std::snprintf(text, sizeof text, " %s %.2f %%, %.3f;", sim::method_name(start.method).c_str(),
-                  100 * start.compression, start.particles_share);
+    std::snprintf(text, sizeof text, " %s %d, %.2f %%, %.3f;", sim::method_name(start.method).c_str(),
+                  start.worst.projections, 100 * start.worst.compression, start.particles_share);
     out += text;
   }
   out.back() = '\n';

@@ -287,6 +287,7 @@ class FluidSimulation final : public Simulation {
     out.guards.gaze_lost = state_.saliency.input.gaze_lost();
     out.temporal = temporal;
     out.seen = state_.saliency.input.seen();
+    out.start = relaxed_;
     return out;
   }
 
@@ -453,7 +454,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void prepare_start() {
-    relax_start(state_, options_.start_projections);
+    relaxed_ = relax_start(state_, options_.start_projections);
     if (state_.particles.has(Column::Active)) start_velocity_grid(state_);
     // What was met on the way is not part of the run.
     state_.guards.zero();
@@ -496,6 +497,7 @@ class FluidSimulation final : public Simulation {
   Scene scene_;
   SimulationOptions options_;
   Resolution resolution_;
+  RelaxedStart relaxed_;
   FluidState state_;
   Schedule schedule_;
   ToleranceSwitch tolerance_;

@@ -31,9 +31,9 @@ struct Measured {
 };
 Measured measure(FluidState& state);
 
-/// Position-only density projections, at most `most`, until the mean of max(rho / rho_0 - 1, 0) is below 1 %.
-/// Velocities stay. Returns how many it took.
-int relax_start(FluidState& state, int most);
+/// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
+/// is below 1 %. Velocities stay.
+RelaxedStart relax_start(FluidState& state, int most);
 /// V^n and E^n of temporal acceleration from the present particles, as the frame before would have left them.
 /// Call after relax_start: spray is told by its density.
 void start_velocity_grid(FluidState& state);

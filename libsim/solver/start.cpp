@@ -4,38 +4,47 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr double enough = 0.01;  ///< mean compression of a start
+constexpr double enough = 0.01;  ///< mean compression of a start's mass
 
+/// Weighted by mass: a mean over particles would let many fine ones outvote coarse water that is still
+/// compressed.
 struct Excess {
   const float* density;
+  const std::uint8_t* level;
   float* excess;
-  SIM_FN void operator()(int i) const { excess[i] = fmaxf(density[i] - 1, 0.0f); }
+  float* mass;
+  SIM_FN void operator()(int i) const {
+    mass[i] = static_cast<float>(1 << level[i]);
+    excess[i] = mass[i] * fmaxf(density[i] - 1, 0.0f);
+  }
 };
 
-double mean_compression(FluidState& state, Array<float>& excess) {
+double mean_compression(FluidState& state, Array<float>& excess, Array<float>& mass) {
   auto& p = state.particles;
   copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
   neighbours_stage().run(state);
   state.neighbours.grow();
   density_stage().run(state);
-  for_each("start compression", p.size(), Excess{p.density.data(), excess.data()});
-  return fixed_order_sum(excess, p.size()) / p.size();
+  for_each("start compression", p.size(),
+           Excess{p.density.data(), p.level.data(), excess.data(), mass.data()});
+  return fixed_order_sum(excess, p.size()) / fixed_order_sum(mass, p.size());
 }
 
 }  // namespace
 
-int relax_start(FluidState& state, int most) {
+RelaxedStart relax_start(FluidState& state, int most) {
   auto& p = state.particles;
-  if (p.size() == 0) return 0;
+  RelaxedStart out;
+  if (p.size() == 0) return out;
   Array<float> excess(static_cast<std::size_t>(p.size()));
+  Array<float> mass(static_cast<std::size_t>(p.size()));
   state.iteration = 0;  // no momentum
-  int done = 0;
-  while (!(mean_compression(state, excess) < enough) && done < most) {
+  for (;; ++out.projections) {
+    out.compression = mean_compression(state, excess, mass);
+    if (out.compression < enough || out.projections == most) return out;
     displacement_stage().run(state);
     copy_within(p.position.data(), p.predicted.data(), p.position.size() * sizeof(Vec4));
-    ++done;
   }
-  return done;
 }
 
 void start_velocity_grid(FluidState& state) {
