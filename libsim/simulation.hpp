@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libsim/exec/launch_time.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/saliency/looks.hpp"
@@ -236,6 +237,11 @@ class Simulation {
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
+  /// Switches the clock round every launch of this back end on, forgetting what it had measured, or off. It
+  /// costs a few microseconds a launch.
+  virtual void profile_launches(bool) {}
+  /// What each pass took since then, longest first.
+  virtual std::vector<LaunchTime> launch_times() const { return {}; }
   /// Waits for all launched work.
   virtual void synchronize() = 0;
   /// Bytes of memory that particles and their choice for the nozzles hold.

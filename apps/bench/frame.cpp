@@ -33,6 +33,7 @@ struct FrameOptions {
   sim::SimulationOptions
       fluid;  ///< the solver's numbers; method, n_* and back end are read from the words above
   bool no_render = false;
+  bool passes = false;
   std::string size = "1280x720";
   int views = 1;
 };
@@ -97,6 +98,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
   fluid->synchronize();
   if (pictures.timer) pictures.timer->warm_up(*fluid);
 
+  fluid->profile_launches(options.passes);
   std::vector<double> solve_ms, frame_ms;
   Accuracy accuracy;
   double solved = 0;
@@ -120,6 +122,12 @@ nlohmann::json run_frames(const FrameOptions& options) {
       solved += (share - solved) / accuracy.samples;
     }
     progress.update(static_cast<std::size_t>(frame) + 1);
+  }
+  nlohmann::json launches = nlohmann::json::array();
+  for (const auto& pass : fluid->launch_times()) {
+    launches.push_back({{"pass", pass.label},
+                        {"launches_a_frame", static_cast<double>(pass.launches) / options.frames},
+                        {"ms_a_frame", pass.ms / options.frames}});
   }
   const auto report = fluid->report();
   const double mean =
@@ -155,6 +163,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
                           {"neighbours_dropped", report.guards.neighbours_dropped},
                           {"wall_projected", report.guards.wall_projected},
                           {"nozzle_waited", report.guards.nozzle_waited}}},
+                        {"launches", launches},
                         {"schedule", fluid->explain()}};
   if (pictures.timer) {
     result.update(pictures.timer->figures());
@@ -190,6 +199,10 @@ void print_table(const nlohmann::json& result) {
               temporal["tau_fps"].get<double>(), temporal["tau_given"].get<std::string>().c_str(),
               temporal["beta"].get<double>(), 100 * temporal["solved_share_mean"].get<double>());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
+  for (const auto& pass : result["launches"]) {
+    std::printf("  %-32s %8.4f ms a frame in %6.1f launches\n", pass["pass"].get<std::string>().c_str(),
+                pass["ms_a_frame"].get<double>(), pass["launches_a_frame"].get<double>());
+  }
 }
 
 }  // namespace
@@ -232,6 +245,7 @@ void add_frame_command(CLI::App& app) {
       ->check(CLI::Range(0, 16));
   command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
       ->check(number_in(0.5, 8.0));
+  command->add_flag("--passes", options->passes, "Also time every launch of the solver (slows it down)");
   command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
   command->add_option("--views", options->views, "1, or 2 eyes side by side")

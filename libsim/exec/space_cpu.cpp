@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <new>
 
@@ -32,6 +34,38 @@ void fill_zero(void* device, std::size_t bytes) {
   if (bytes) std::memset(device, 0, bytes);
 }
 void synchronize() {}
+
+int grain_of(int n) {
+  constexpr int least = 64;
+  constexpr int most = 512;
+  constexpr int turns = 8;
+  return std::clamp(n / (turns * omp_get_max_threads()), least, most);
+}
+
+namespace {
+using Clock = std::chrono::steady_clock;
+std::map<std::string, LaunchTime> measured;
+const char* running = "";
+Clock::time_point since;
+}  // namespace
+
+bool LaunchTimer::on = false;
+
+void profile_launches(bool on) {
+  measured.clear();
+  LaunchTimer::on = on;
+}
+std::vector<LaunchTime> launch_times() { return longest_first(measured); }
+
+void LaunchTimer::begin(const char* label) {
+  running = label;
+  since = Clock::now();
+}
+void LaunchTimer::end() {
+  LaunchTime& pass = measured[running];
+  ++pass.launches;
+  pass.ms += std::chrono::duration<double, std::milli>(Clock::now() - since).count();
+}
 
 namespace {
 
@@ -71,6 +105,7 @@ bool place_digits(Histogram& counts, int n) {
 }  // namespace
 
 void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
+  const LaunchTimer timer("sort");
   const int n = static_cast<int>(keys.size());
   keys_.resize(keys.size());
   order_.resize(keys.size());
@@ -97,6 +132,7 @@ void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
 }
 
 void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
+  const LaunchTimer timer("scan");
   sums.resize(values.size());
   int sum = 0;
   for (std::size_t i = 0; i < values.size(); ++i) sums.data()[i] = sum += values.data()[i];

@@ -1,6 +1,9 @@
 // CUB's headers cost seconds to compile: sort, scan and sums stand in this one file.
 #include <cub/cub.cuh>
 
+#include <deque>
+#include <map>
+
 #include "libsim/exec/space.hpp"
 #include "stats/base/error.hpp"
 
@@ -11,6 +14,10 @@ void check(cudaError_t status, const char* what) {
   throw base::Error(std::string("CUDA, ") + what, cudaGetErrorString(status),
                     status == cudaErrorMemoryAllocation ? "use a smaller --n-star or a GPU with more memory"
                                                         : "check the driver, or use --backend cpu");
+}
+
+int team_wish(int n) {
+  return n < 150'000 ? 8 : n < 600'000 ? 4 : 1;
 }
 
 std::string device_problem() {
@@ -42,9 +49,52 @@ void fill_zero(void* device, std::size_t bytes) {
 }
 void synchronize() { check(cudaDeviceSynchronize(), "synchronise"); }
 
+namespace {
+struct TimedLaunch {
+  const char* label;
+  cudaEvent_t begin, end;
+};
+std::deque<TimedLaunch> launches;
+
+cudaEvent_t now() {
+  cudaEvent_t event = nullptr;
+  cudaEventCreate(&event);
+  cudaEventRecord(event);
+  return event;
+}
+}  // namespace
+
+bool LaunchTimer::on = false;
+
+void profile_launches(bool on) {
+  LaunchTimer::on = on;
+  for (const auto& launch : launches) {
+    cudaEventDestroy(launch.begin);
+    cudaEventDestroy(launch.end);
+  }
+  launches.clear();
+}
+
+std::vector<LaunchTime> launch_times() {
+  synchronize();
+  std::map<std::string, LaunchTime> measured;
+  for (const auto& launch : launches) {
+    float ms = 0;
+    check(cudaEventElapsedTime(&ms, launch.begin, launch.end), "timer");
+    LaunchTime& pass = measured[launch.label];
+    ++pass.launches;
+    pass.ms += static_cast<double>(ms);
+  }
+  return longest_first(measured);
+}
+
+void LaunchTimer::begin(const char* label) { launches.push_back({label, now(), nullptr}); }
+void LaunchTimer::end() { launches.back().end = now(); }
+
 void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
   const int n = static_cast<int>(keys.size());
   if (n == 0) return;
+  const LaunchTimer timer("sort");
   keys_.resize(keys.size());
   order_.resize(keys.size());
   cub::DoubleBuffer<std::uint64_t> key_buffer(keys.data(), keys_.data());
@@ -62,6 +112,7 @@ void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
   const int n = static_cast<int>(values.size());
   sums.resize(values.size());
   if (n == 0) return;
+  const LaunchTimer timer("scan");
   std::size_t bytes = 0;
   check(cub::DeviceScan::InclusiveSum(nullptr, bytes, values.data(), sums.data(), n), "scan");
   if (bytes > scratch_.size()) scratch_.resize(bytes);

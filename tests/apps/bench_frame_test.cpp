@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -55,6 +56,19 @@ TEST_F(BenchFrameE2e, TimesTheSolverWithoutPictures) {
   EXPECT_NE(text.find("left out"), std::string::npos);
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_EQ(figures()["render_left_out"], "--no-render");
+}
+
+TEST_F(BenchFrameE2e, TimesEveryLaunch) {
+  ASSERT_EQ(bench("--no-render --passes"), 0) << text;
+  const auto launches = figures()["launches"];
+  const auto density = std::find_if(launches.begin(), launches.end(),
+                                    [](const auto& pass) { return pass["pass"] == "density"; });
+  ASSERT_NE(density, launches.end());
+  EXPECT_GT((*density)["ms_a_frame"].get<double>(), 0);
+  EXPECT_GE((*density)["launches_a_frame"].get<double>(), 4);
+  EXPECT_NE(text.find("ms a frame in"), std::string::npos);
+  ASSERT_EQ(bench("--no-render"), 0) << text;
+  EXPECT_TRUE(figures()["launches"].empty());
 }
 
 TEST_F(BenchFrameE2e, RefusesBadPictures) {

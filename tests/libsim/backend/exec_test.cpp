@@ -52,6 +52,107 @@ SIM_TEST(Scanner, SumsInclusively) {
   EXPECT_EQ(sums.to_host(), values);
 }
 
+/// Adds 0 ... i % 50 by lanes and lists the odd ones of them in order.
+struct SumOdd {
+  int* sums;
+  int* last_place;
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    const int steps = i % 50;
+    int sum = 0;
+    int found = 0;
+    int own_place = -1;
+    for (int first = 0; first <= steps; first += Team::size) {
+      const int k = first + team.rank();
+      const bool odd = k <= steps && k % 2 == 1;
+      if (k <= steps) sum += k;
+      int all;
+      const int place = found + team.before(odd, all);
+      if (odd) own_place = place;
+      found += all;
+    }
+    // The last odd number, 2 place + 1, was some lane's.
+    const bool last = own_place >= 0 && own_place == found - 1;
+    const int total = team.sum(sum);
+    const int place = team.sum(last ? own_place : 0);
+    if (team.rank() > 0) return;
+    sums[i] = total;
+    last_place[i] = place;
+  }
+};
+
+SIM_TEST(ForEachTeam, SumsAndCountsForEverySizeOfTeam) {
+  // On a device these run with eight lanes, four and one.
+  for (const int n : {1, 1000, 200'001, 700'003}) {
+    Array<int> sums(static_cast<std::size_t>(n));
+    Array<int> places(static_cast<std::size_t>(n));
+    for_each_team("test", n, SumOdd{sums.data(), places.data()});
+    const auto sum = sums.to_host();
+    const auto place = places.to_host();
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) {
+      const int steps = i % 50;
+      const auto at = static_cast<std::size_t>(i);
+      wrong += sum[at] != steps * (steps + 1) / 2 || place[at] != std::max((steps + 1) / 2 - 1, 0);
+    }
+    EXPECT_EQ(wrong, 0) << n;
+  }
+}
+
+struct Fill {
+  int* values;
+  int value;
+  SIM_FN void operator()(int i) const { values[i] = value + i; }
+};
+/// Each step reads what other threads wrote in the one before.
+struct Rotate {
+  int* a;
+  int* b;
+  int n;
+  template <class Block>
+  SIM_FN void operator()(Block block) const {
+    block.each(n, Fill{a, 0});
+    for (int step = 0; step < 4; ++step) {
+      block.each(n, Shift{a, b, n});
+      block.each(n, Shift{b, a, n});
+    }
+  }
+  struct Shift {
+    const int* from;
+    int* to;
+    int n;
+    SIM_FN void operator()(int i) const { to[i] = from[(i + 1) % n]; }
+  };
+};
+
+SIM_TEST(InOneBlock, StepsWaitForEachOther) {
+  for (const int n : {1, 700, 5000}) {
+    Array<int> a(static_cast<std::size_t>(n));
+    Array<int> b(static_cast<std::size_t>(n));
+    in_one_block("test", Rotate{a.data(), b.data(), n});
+    const auto values = a.to_host();
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) wrong += values[static_cast<std::size_t>(i)] != (i + 8) % n;
+    EXPECT_EQ(wrong, 0) << n;
+  }
+}
+
+SIM_TEST(LaunchTimes, TellEachLabelOnlyWhileTheyAreOn) {
+  Array<int> values(2000);
+  for_each("before", 2000, Fill{values.data(), 1});
+  profile_launches(true);
+  for_each("within", 2000, Fill{values.data(), 1});
+  for_each("within", 2000, Fill{values.data(), 2});
+  const auto times = launch_times();
+  profile_launches(false);
+  for_each("after", 2000, Fill{values.data(), 1});
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_EQ(times[0].label, "within");
+  EXPECT_EQ(times[0].launches, 2);
+  EXPECT_GE(times[0].ms, 0);
+  EXPECT_TRUE(launch_times().empty());
+}
+
 SIM_TEST(FixedOrderSum, IsExactWhereDoubleIs) {
   std::vector<float> values(100001, 0.25f);
   Array<float> device;

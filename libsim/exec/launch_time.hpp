@@ -1,0 +1,26 @@
+#pragma once
+/// Where a frame's time goes, launch by launch; for benches.
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// What the launches of one label took since the profile was switched on.
+struct LaunchTime {
+  std::string label;
+  int launches = 0;
+  double ms = 0;  ///< from handing over to end, on the device's own clock where it has one
+};
+
+/// The entries by falling time, each with its label.
+inline std::vector<LaunchTime> longest_first(const std::map<std::string, LaunchTime>& passes) {
+  std::vector<LaunchTime> out;
+  for (const auto& [label, pass] : passes) out.push_back({label, pass.launches, pass.ms});
+  std::sort(out.begin(), out.end(), [](const LaunchTime& a, const LaunchTime& b) { return a.ms > b.ms; });
+  return out;
+}
+
+}  // namespace sim

@@ -1,0 +1,31 @@
+#pragma once
+/// The clock that stands round each launch; off unless a bench asks. Included by space.hpp.
+
+#include "libsim/exec/launch_time.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Switches the profile of this back end on (and forgets what was measured) or off.
+void profile_launches(bool on);
+/// One entry a label, longest first; waits for all launched work.
+std::vector<LaunchTime> launch_times();
+
+class LaunchTimer {
+ public:
+  explicit LaunchTimer(const char* label) {
+    if (on) begin(label);
+  }
+  ~LaunchTimer() {
+    if (on) end();
+  }
+  LaunchTimer(const LaunchTimer&) = delete;
+  LaunchTimer& operator=(const LaunchTimer&) = delete;
+
+ private:
+  friend void profile_launches(bool);
+  static void begin(const char* label);
+  static void end();
+  static bool on;
+};
+
+}  // namespace sim::SIM_BACKEND
