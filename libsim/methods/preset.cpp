@@ -24,8 +24,10 @@ Readings readings_of(Preset preset) {
   out.thickness = ThicknessWeight::Max;
   out.gradient = GradientReach::TwoSupports;
   out.temporal_follow = 1;
+  out.calm_out_of_view = false;
   out.dimensionless = false;
   out.normalisation = Normalisation::MinMax;
+  out.saliency_floor = 0;
   out.graded_targets = false;
   std::fill_n(out.split_offset, 3, 0.794);
   out.split_share = 1;

@@ -72,7 +72,8 @@ FeatureNumbers feature_numbers(const Readings& p) {
           {p.thickness, f(p.attenuation_per_m)},
           f(p.alpha),
           p.manifold_window_px,
-          p.hide_manifold_behind};
+          p.hide_manifold_behind,
+          p.calm_out_of_view};
 }
 
 void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec4* position,

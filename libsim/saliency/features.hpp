@@ -16,6 +16,7 @@ struct FeatureNumbers {
   float alpha;
   int window_max_px;
   bool manifold_occlusion;
+  bool calm_out_of_view;
 };
 FeatureNumbers feature_numbers(const Readings& readings);
 
@@ -33,7 +34,8 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
                         : manifold_feature(eye, spot, r, numbers.window_max_px) /
                               fmaxf(numbers.acuity.depth_factor(z), 1e-6f);
   if (numbers.manifold_occlusion) out.manifold /= attenuation;
-  out.temporal = temporal / attenuation;
+  const bool unseen = numbers.calm_out_of_view && spot.kind == Spot::Kind::OutOfView;
+  out.temporal = unseen ? 0 * temporal : temporal / attenuation;  // NaN stays
   out.combined = (1 - numbers.alpha) * (out.acuity + out.manifold) + numbers.alpha * out.temporal;
   return out;
 }

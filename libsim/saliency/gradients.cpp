@@ -37,6 +37,10 @@ struct Gradients {
     add(weight * offset.y, step, 1);
     add(weight * offset.z, step, 2);
   }
+  template <class Team>
+  SIM_FN void sum_over(Team team) {
+    for (Vec4& a : axis) a = {team.sum(a.x), team.sum(a.y), team.sum(a.z), team.sum(a.w)};
+  }
   /// f_T gamma_t, Eq. 6.
   SIM_FN float feature(const GradientFields& f, int i) const {
     float by_velocity = 0;
@@ -64,66 +68,78 @@ SIM_FN float average_weight(const GradientFields& f, int i, int j) {
 
 struct WithinH {
   GradientFields fields;
-  Neighbours neighbours;
-  SIM_FN void operator()(int i) const {
+  ParticleNeighbours neighbours;
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
     Gradients sum;
     const Vec4 own = quantities(fields, i);
-    for (int k = 0; k < neighbours.size(i); ++k) {
+    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) {
       const int j = neighbours(i, k);
       sum.add_pair(fields, i, j, pair_support(fields, i, j), own, quantities(fields, j));
     }
-    fields.out[i] = sum.feature(fields, i);
+    sum.sum_over(team);
+    if (team.rank() == 0) fields.out[i] = sum.feature(fields, i);
   }
 };
 
 struct AverageFields {
   GradientFields fields;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   Vec4* averages;
-  SIM_FN void operator()(int i) const {
-    float total = average_weight(fields, i, i);
-    const Vec4 own = quantities(fields, i);
-    Vec4 sum = {total * own.x, total * own.y, total * own.z, total * own.w};
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    float total = 0;
+    Vec4 sum = {0, 0, 0, 0};
+    const auto add = [&](int j) {
       const float weight = average_weight(fields, i, j);
       const Vec4 q = quantities(fields, j);
       sum = {sum.x + weight * q.x, sum.y + weight * q.y, sum.z + weight * q.z, sum.w + weight * q.w};
       total += weight;
-    }
+    };
+    if (team.rank() == 0) add(i);
+    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) add(neighbours(i, k));
+    sum = {team.sum(sum.x), team.sum(sum.y), team.sum(sum.z), team.sum(sum.w)};
+    total = team.sum(total);
+    if (team.rank() > 0) return;
     averages[i] = {sum.x / total, sum.y / total, sum.z / total, sum.w / total};
   }
 };
 
 struct GradientsOfAverages {
   GradientFields fields;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   const Vec4* averages;
   Gradients* gradients;
-  SIM_FN void operator()(int i) const {
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
     Gradients sum;
-    for (int k = 0; k < neighbours.size(i); ++k) {
+    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) {
       const int j = neighbours(i, k);
       sum.add_pair(fields, i, j, pair_support(fields, i, j), averages[i], averages[j]);
     }
-    gradients[i] = sum;
+    sum.sum_over(team);
+    if (team.rank() == 0) gradients[i] = sum;
   }
 };
 
 struct AverageGradients {
   GradientFields fields;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   const Gradients* gradients;
-  SIM_FN void operator()(int i) const {
-    float total = average_weight(fields, i, i);
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    float total = 0;
     Gradients sum;
-    sum.add(total, gradients[i]);
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    const auto add = [&](int j) {
       const float weight = average_weight(fields, i, j);
       sum.add(weight, gradients[j]);
       total += weight;
-    }
+    };
+    if (team.rank() == 0) add(i);
+    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) add(neighbours(i, k));
+    sum.sum_over(team);
+    total = team.sum(total);
+    if (team.rank() > 0) return;
     for (Vec4& a : sum.axis) a = {a.x / total, a.y / total, a.z / total, a.w / total};
     fields.out[i] = sum.feature(fields, i);
   }
@@ -179,15 +195,17 @@ struct WithinTwoH {
 
 }  // namespace
 
-void TemporalGradients::run_smoothed(const GradientFields& fields, const Neighbours& neighbours, int n) {
+void TemporalGradients::run_smoothed(const GradientFields& fields, const ParticleNeighbours& neighbours,
+                                     int n) {
   const auto size = static_cast<std::size_t>(n);
   averages_.resize(size);
   gradients_.resize(3 * size);
   static_assert(sizeof(Gradients) == 3 * sizeof(Vec4));
   auto* gradients = reinterpret_cast<Gradients*>(gradients_.data());
-  for_each("saliency averages", n, AverageFields{fields, neighbours, averages_.data()});
-  for_each("saliency gradients", n, GradientsOfAverages{fields, neighbours, averages_.data(), gradients});
-  for_each("saliency gradients, averaged", n, AverageGradients{fields, neighbours, gradients});
+  for_each_team("saliency averages", n, AverageFields{fields, neighbours, averages_.data()});
+  for_each_team("saliency gradients", n,
+                GradientsOfAverages{fields, neighbours, averages_.data(), gradients});
+  for_each_team("saliency gradients, averaged", n, AverageGradients{fields, neighbours, gradients});
 }
 
 void TemporalGradients::run_wide(const GradientFields& fields, int n, float finest_support) {
@@ -200,11 +218,11 @@ void TemporalGradients::run_wide(const GradientFields& fields, int n, float fine
   for_each("saliency wide gradients", n, WithinTwoH{fields, keys_.data(), order_.data(), n, edge});
 }
 
-void TemporalGradients::run(GradientReach reach, const GradientFields& fields, const Neighbours& neighbours,
-                            int n, float finest_support) {
+void TemporalGradients::run(GradientReach reach, const GradientFields& fields,
+                            const ParticleNeighbours& neighbours, int n, float finest_support) {
   switch (reach) {
     case GradientReach::OneSupport:
-      for_each("saliency gradients", n, WithinH{fields, neighbours});
+      for_each_team("saliency gradients", n, WithinH{fields, neighbours});
       return;
     case GradientReach::Smoothed:
       run_smoothed(fields, neighbours, n);

@@ -22,14 +22,14 @@ class TemporalGradients {
  public:
   /// Writes f_T gamma_t of n particles. TwoSupports sorts for itself and needs no list; no form changes an
   /// order.
-  void run(GradientReach reach, const GradientFields& fields, const Neighbours& neighbours, int n,
+  void run(GradientReach reach, const GradientFields& fields, const ParticleNeighbours& neighbours, int n,
            float finest_support);
   std::size_t bytes() const {
     return averages_.bytes() + gradients_.bytes() + keys_.bytes() + order_.bytes();
   }
 
  private:
-  void run_smoothed(const GradientFields& fields, const Neighbours& neighbours, int n);
+  void run_smoothed(const GradientFields& fields, const ParticleNeighbours& neighbours, int n);
   void run_wide(const GradientFields& fields, int n, float finest_support);
 
   Array<Vec4> averages_;   // velocity and density

@@ -11,6 +11,8 @@ using Selection = SaliencyNormaliser::Selection;
 constexpr int bins = SaliencyNormaliser::bins;
 constexpr int copies = SaliencyNormaliser::copies;
 constexpr float follow = 0.1f;
+constexpr int trim_low = 1;  // %
+constexpr int trim_high = 2;
 
 SIM_FN std::uint32_t bits_of(float value) {
   std::uint32_t bits;
@@ -26,6 +28,7 @@ SIM_FN float value_of(std::uint32_t bits) {
 /// Counts the next eight bits of the values whose higher bits are those of each end.
 struct CountBits {
   const float* values;
+  const std::uint8_t* level;
   const Selection* selection;
   int* histograms;
   int shift;
@@ -35,7 +38,7 @@ struct CountBits {
     int* own = histograms + (i / 256 % copies) * 2 * bins;
     for (int end = 0; end < 2; ++end) {
       if (bits >> (shift + 8) != selection->prefix[end]) continue;
-      atomic_add(&own[end * bins + static_cast<int>(bits >> shift & 255u)], 1);
+      atomic_add(&own[end * bins + static_cast<int>(bits >> shift & 255u)], 1 << level[i]);
     }
   }
 };
@@ -59,7 +62,7 @@ struct SelectBin {
   const int* totals;
   const Selection* selection;
   Selection* next;
-  int trim_percent;
+  int trim_low, trim_high;  ///< %
   bool first;
   SIM_FN void operator()(int b) const {
     const int end = b / bins;
@@ -74,8 +77,8 @@ struct SelectBin {
     if (b == 0) next->valid = valid;
     int rank = selection->rank[end];
     if (first) {
-      const int trimmed = static_cast<int>(static_cast<std::int64_t>(valid - 1) * trim_percent / 100);
-      rank = end == 0 ? trimmed : valid - 1 - trimmed;
+      const std::int64_t last = valid - 1;
+      rank = static_cast<int>(end == 0 ? last * trim_low / 100 : last - last * trim_high / 100);
     }
     if (rank < before || rank >= before + counts[b % bins]) return;
     next->prefix[end] = selection->prefix[end] << 8 | static_cast<std::uint32_t>(b % bins);
@@ -86,10 +89,10 @@ struct SelectBin {
 struct FollowRange {
   const Selection* found;
   SaliencyRange* range;
-  float share;
+  float share, floor;
   SIM_FN void operator()(int) const {
     const float low = value_of(found->prefix[0]);
-    const float high = value_of(found->prefix[1]);
+    const float high = fmaxf(value_of(found->prefix[1]), floor);
     // A spread of rounding errors tells nothing.
     range->usable = found->valid >= 2 && high - low > 1e-6f * high;
     if (!range->usable) return;
@@ -102,7 +105,8 @@ struct FollowRange {
 
 }  // namespace
 
-void SaliencyNormaliser::update(const Array<float>& values, int n, Normalisation reading) {
+void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* level, int n,
+                                Normalisation reading, float floor) {
   if (range_.size() == 0) {
     range_.resize(1);
     range_.zero();
@@ -116,14 +120,14 @@ void SaliencyNormaliser::update(const Array<float>& values, int n, Normalisation
   for (int round = 0; round < rounds; ++round) {
     const Selection* selection = selections_.data() + round;
     for_each("saliency histogram", n,
-             CountBits{values.data(), selection, histograms_.data(), 8 * (rounds - 1 - round)});
+             CountBits{values.data(), level, selection, histograms_.data(), 8 * (rounds - 1 - round)});
     for_each("saliency histogram sum", 2 * bins, AddCopies{histograms_.data(), totals_.data()});
-    for_each(
-        "saliency percentile", 2 * bins,
-        SelectBin{totals_.data(), selection, selections_.data() + round + 1, percentile ? 1 : 0, round == 0});
+    for_each("saliency percentile", 2 * bins,
+             SelectBin{totals_.data(), selection, selections_.data() + round + 1, percentile ? trim_low : 0,
+                       percentile ? trim_high : 0, round == 0});
   }
   for_each("saliency range", 1,
-           FollowRange{selections_.data() + rounds, range_.data(), percentile ? follow : 1.0f});
+           FollowRange{selections_.data() + rounds, range_.data(), percentile ? follow : 1.0f, floor});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -43,7 +43,8 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   const float* unrest = fluid.unrest ? fluid.unrest : state.temporal.data();
   combine_features(feature_numbers(p), state.eyes, fluid.position, unrest, state.combined.data(), fluid.parts,
                    fluid.n);
-  state.normaliser.update(state.combined, fluid.n, p.normalisation);
+  state.normaliser.update(state.combined, fluid.level, fluid.n, p.normalisation,
+                          static_cast<float>(p.saliency_floor));
   saliency_to_levels(state.combined.data(), state.normaliser.range(), state.levels, fluid.saliency,
                      fluid.target, fluid.guards, fluid.n);
 }

@@ -28,7 +28,8 @@ struct SaliencyFluid {
   const Vec4* position;
   const Vec4* velocity;
   const float* density;  ///< rho / rho_0
-  Neighbours neighbours;
+  const std::uint8_t* level;
+  ParticleNeighbours neighbours;
   int n;
   float finest_support;  ///< h_*, m
   float gravity;         ///< m/s2

@@ -7,19 +7,40 @@ namespace {
 SaliencyFluid fluid_of(FluidState& state) {
   auto& p = state.particles;
   const auto& k = state.parameters;
-  return {p.position.data(), p.velocity.data(),    p.density.data(), state.neighbours.view(),
-          p.size(),          state.finest_support, k.gravity,        k.dt * static_cast<float>(k.substeps),
-          p.unrest.data(),   p.saliency.data(),    p.target.data(),  nullptr,
+  return {p.position.data(),
+          p.velocity.data(),
+          p.density.data(),
+          p.level.data(),
+          state.particle_neighbours(),
+          p.size(),
+          state.finest_support,
+          k.gravity,
+          k.dt * static_cast<float>(k.substeps),
+          p.unrest.data(),
+          p.saliency.data(),
+          p.target.data(),
+          nullptr,
           state.guard()};
 }
 
-/// Neighbours and densities where the particles are now: those of the last substep belong to other places
-/// and, on the first frame, to nobody.
+/// Neighbours and densities where the particles are now.
 void find_surroundings(FluidState& state) {
   auto& p = state.particles;
   copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
   neighbours_stage().run(state);
   density_stage().run(state);
+}
+
+/// The same from the last substep, as far as it holds: nobody was listed before the first frame, nor what a
+/// nozzle has just moved, and who was not solved has no density of the last frame.
+void recall_surroundings(FluidState& state) {
+  if (!state.lists_hold) {
+    find_surroundings(state);
+  } else if (state.lists_by_slot) {
+    auto& p = state.particles;
+    copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
+    measure_density(state, EverySlot{state.activation.slots.data()});
+  }
 }
 
 }  // namespace
@@ -39,6 +60,7 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
   fluid.target = target.data();
   fluid.parts = parts.data();
   evaluate_saliency(observer, fluid);
+  state.lists_hold = false;
 }
 
 void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
@@ -62,7 +84,7 @@ Stage saliency_stage() {
               Column::Saliency, Column::Target),
       [](const Demand& demand) -> std::string { return demand.saliency ? "levels follow what is seen" : ""; },
       [](FluidState& state) {
-        find_surroundings(state);
+        recall_surroundings(state);
         evaluate_saliency(state.saliency, fluid_of(state));
       },
       Part::Saliency};

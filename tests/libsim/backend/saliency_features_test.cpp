@@ -202,11 +202,15 @@ SIM_TEST(Occlusion, TheSecondOfTwoOnARayIsAsDeepAsTheyAreApart) {
   }
 }
 
-SIM_TEST(Occlusion, OutOfViewCountsAsHiddenAndNoPictureAsOpen) {
+SIM_TEST(Occlusion, OutOfViewIsCalmOrHiddenAndNoPictureIsOpen) {
   const View view = view_along_z(64, 48);
   const GBuffer g = picture_of(view, plane(3));
-  EXPECT_EQ(parts_of({{40, 0, -3, 0.3f}}, one_eye(view, &g), 1)[0].temporal, 0.2f);
-  EXPECT_EQ(parts_of({{0, 0, 3, 0.3f}}, one_eye(view, &g), 1)[0].temporal, 0.2f);
+  Readings hidden;
+  hidden.calm_out_of_view = false;
+  for (const Vec4 unseen : {Vec4{40, 0, -3, 0.3f}, Vec4{0, 0, 3, 0.3f}}) {
+    EXPECT_EQ(parts_of({unseen}, one_eye(view, &g), 1)[0].temporal, 0);
+    EXPECT_EQ(parts_of({unseen}, one_eye(view, &g), 1, hidden)[0].temporal, 0.2f);
+  }
   EXPECT_EQ(parts_of({{0, 0, -3, 0.3f}}, one_eye(view, nullptr), 1)[0].temporal, 1);
 }
 

@@ -26,7 +26,9 @@ Judged judge(const std::vector<float>& F, SaliencyNormaliser& normaliser, Normal
   target.from_host(std::vector<std::uint8_t>(F.size(), 2));
   Array<Guards> guards(1);
   guards.zero();
-  normaliser.update(combined, n, reading);
+  Array<std::uint8_t> own;
+  own.from_host(std::vector<std::uint8_t>(F.size(), 0));
+  normaliser.update(combined, own.data(), n, reading);
   saliency_to_levels(combined.data(), normaliser.range(), 4, s.data(), target.data(), guards.data(), n);
   const auto levels = target.to_host();
   SaliencyRange range;
@@ -62,13 +64,49 @@ SIM_TEST(SaliencyLevels, PercentilesAreExact) {
     auto F = spread(n, 17);
     const auto range = judge(F, Normalisation::Percentile).range;
     std::sort(F.begin(), F.end());
-    const std::size_t trimmed = (n - 1) / 100;
-    EXPECT_EQ(range.low, F[trimmed]) << n;
-    EXPECT_EQ(range.high, F[n - 1 - trimmed]) << n;
+    EXPECT_EQ(range.low, F[(n - 1) / 100]) << n;
+    EXPECT_EQ(range.high, F[n - 1 - (n - 1) * 2 / 100]) << n;
     const auto ends = judge(F, Normalisation::MinMax).range;
     EXPECT_EQ(ends.low, F.front()) << n;
     EXPECT_EQ(ends.high, F.back()) << n;
   }
+}
+
+SIM_TEST(SaliencyLevels, PercentilesAreSharesOfTheWaterNotOfTheParticles) {
+  // One particle of level 3 is as much water as eight of level 0 at the same place.
+  auto divided = spread(800, 23);
+  std::sort(divided.begin(), divided.end());
+  std::vector<float> whole;
+  std::vector<std::uint8_t> level;
+  for (std::size_t i = 0; i < divided.size(); i += 8) {
+    std::fill_n(divided.begin() + static_cast<std::ptrdiff_t>(i), 8, divided[i]);
+    whole.push_back(divided[i]);
+    level.push_back(3);
+  }
+  Array<float> values;
+  Array<std::uint8_t> levels;
+  values.from_host(whole);
+  levels.from_host(level);
+  SaliencyNormaliser normaliser;
+  normaliser.update(values, levels.data(), static_cast<int>(whole.size()), Normalisation::Percentile);
+  SaliencyRange range;
+  copy_to_host(&range, normaliser.range(), sizeof range);
+  const auto fine = judge(divided, Normalisation::Percentile).range;
+  EXPECT_EQ(range.low, fine.low);
+  EXPECT_EQ(range.high, fine.high);
+}
+
+SIM_TEST(SaliencyLevels, WhereNothingStandsOutNothingIsFullySalient) {
+  const std::vector<float> calm{0.01f, 0.02f, 0.03f, 0.04f};
+  Array<float> values;
+  Array<std::uint8_t> levels;
+  values.from_host(calm);
+  levels.from_host(std::vector<std::uint8_t>(calm.size(), 0));
+  SaliencyNormaliser normaliser;
+  normaliser.update(values, levels.data(), static_cast<int>(calm.size()), Normalisation::Percentile, 0.1f);
+  SaliencyRange range;
+  copy_to_host(&range, normaliser.range(), sizeof range);
+  EXPECT_EQ(range.high, 0.1f);
 }
 
 SIM_TEST(SaliencyLevels, AnOutlierChangesAlmostNothing) {
@@ -237,7 +275,7 @@ SIM_TEST(Gradients, OfALinearFlowAreItsRate) {
   for (const auto reach : {GradientReach::OneSupport, GradientReach::Smoothed, GradientReach::TwoSupports}) {
     TemporalGradients gradients;
     gradients.run(reach, {p.position.data(), p.velocity.data(), uniform.data(), out.data(), 1e-3f, 1, false},
-                  fluid.state.neighbours.view(), p.size(), 0.3f);
+                  fluid.state.particle_neighbours(), p.size(), 0.3f);
     const auto found = out.to_host();
     int inside = 0;
     for (std::size_t i = 0; i < place.size(); ++i) {
