@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <sstream>
 
 #include "apps/bench/bar_chart.hpp"
 #include "apps/bench/cells.hpp"
@@ -32,6 +33,7 @@ constexpr int height_px = 720;
 struct Table2Options : TableOptions {
   int frames = 300;
   int warm_up = 60;
+  std::string methods = "all";  ///< or names separated by commas
 };
 
 /// One value a frame of one cell.
@@ -129,31 +131,56 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           number(hires_ms / solver_ms(run), 3)};
 }
 
+/// HiRes is what the others are compared with.
+bool wanted(sim::MethodKind method, const std::string& words) {
+  if (words == "all" || method == sim::MethodKind::HiRes) return true;
+  bool found = false;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, ',');) found |= sim::parse_method(word) == method;
+  return found;
+}
+
 const std::vector<std::string> head{
     "scene",        "n_star",         "method",       "preset",      "tau_rule",  "particles_mean",
     "particles_sd", "share_of_hires", "ms_median",    "ms_saliency", "ms_levels", "ms_activation",
     "ms_solve",     "ms_render",      "ms_read_back", "picture_by",  "fps_sd",    "tau",
     "speedup"};
 
+/// A row: a method, and what its tau goes by.
+struct RowPlan {
+  sim::MethodKind method;
+  std::string tau;
+};
+/// Where tau is given, a second row of each accelerated method shows what the frame rate alone would do.
+std::vector<RowPlan> rows_of(const Table2Options& options) {
+  std::vector<RowPlan> out;
+  for (const auto& traits : sim::all_methods()) {
+    if (!wanted(traits.kind, options.methods)) continue;
+    out.push_back({traits.kind, options.tau});
+    if (traits.temporal && options.tau != "live") out.push_back({traits.kind, "live"});
+  }
+  return out;
+}
+
 void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, const Table2Options& options,
               TextTable& table, Progress& progress, std::size_t& done) {
-  std::vector<std::pair<sim::MethodKind, CellRun>> runs;
+  std::vector<std::pair<RowPlan, CellRun>> runs;
   double hires_ms = 0;
-  for (const auto& traits : sim::all_methods()) {
+  for (const auto& row : rows_of(options)) {
     sim::SimulationOptions choice;
-    choice.method = traits.kind;
+    choice.method = row.method;
     choice.n_star = size.n_star;
     choice.backend = sim::choose_backend(options.backend);
     choice.readings = sim::readings_of(preset);
     choice.cache = sim::default_cache_folder();
     choice.time_parts = true;
-    choice.temporal.fixed_tau = tau_of(options.tau, scene.name, size.word, traits.kind);
-    runs.emplace_back(traits.kind, run_cell(scene, choice, options));
-    if (traits.kind == sim::MethodKind::HiRes) hires_ms = solver_ms(runs.back().second);
+    choice.temporal.fixed_tau = tau_of(row.tau, scene.name, size.word, row.method);
+    runs.emplace_back(row, run_cell(scene, choice, options));
+    if (row.method == sim::MethodKind::HiRes) hires_ms = solver_ms(runs.back().second);
     progress.update(++done);
   }
-  for (const auto& [method, run] : runs) {
-    table.rows.push_back(row_of(scene, size, method, preset, options.tau, run, hires_ms));
+  for (const auto& [row, run] : runs) {
+    table.rows.push_back(row_of(scene, size, row.method, preset, row.tau, run, hires_ms));
   }
 }
 
@@ -166,7 +193,8 @@ void write_outputs(const Table2Options& options, const TextTable& table) {
   chart.title = "Speed-up over HiRes: saliency, levels, activation and solve";
   chart.unit = "x";
   for (const auto& row : table.rows) {
-    chart.bars.push_back({row[0] + " " + row[1] + " " + row[3], row[2], std::stod(row.back())});
+    const std::string live = row[4] == "live" && options.tau != "live" ? ", tau live" : "";
+    chart.bars.push_back({row[0] + " " + row[1] + " " + row[3], row[2] + live, std::stod(row.back())});
   }
   base::write_file_atomically(std::filesystem::path(options.svg_folder) / "table2_speedup.svg",
                               to_svg(chart));
@@ -179,7 +207,7 @@ void run_table2(const Table2Options& options) {
   tau_of(options.tau, scenes.front().name, sizes.front().word, sim::MethodKind::OursTsp);
   auto context = sim::GlContext::make_headless();
   TextTable table{head, {}};
-  const std::size_t cells = scenes.size() * sizes.size() * presets.size() * sim::all_methods().size();
+  const std::size_t cells = scenes.size() * sizes.size() * presets.size() * rows_of(options).size();
   Progress progress("cells", cells);
   std::size_t done = 0;
   for (const auto& scene : scenes) {
@@ -200,6 +228,8 @@ void add_table2_command(CLI::App& app) {
   add_table_options(*command, *options);
   command->add_option("--frames", options->frames, "Frames of a cell")
       ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--methods", options->methods, "all, or names with commas; HiRes runs in any case")
       ->capture_default_str();
   command->add_option("--warm-up", options->warm_up, "Of these, left out of the figures")
       ->check(CLI::Range(0, 99999))

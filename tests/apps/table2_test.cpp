@@ -50,9 +50,15 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
                             " --markdown " + path("t2.md") + " --svg " + path("figures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto table = rows();
-  ASSERT_EQ(table.size(), 5u);
+  // Ours-TSp has a row with the given tau and one with the measured.
+  ASSERT_EQ(table.size(), 6u);
   std::map<std::string, Row> by_method;
-  for (const auto& row : table) by_method[row.at("method")] = row;
+  for (const auto& row : table) {
+    if (row.at("tau_rule") == "fixed:-6") by_method[row.at("method")] = row;
+  }
+  ASSERT_EQ(by_method.size(), 5u);
+  EXPECT_EQ(table.back().at("method"), "Ours-TSp");
+  EXPECT_EQ(table.back().at("tau_rule"), "live");
   EXPECT_EQ(by_method["LoRes"]["particles_mean"], "64");
   EXPECT_EQ(by_method["HiRes"]["particles_mean"], "512");
   EXPECT_EQ(by_method["HiRes"]["speedup"], "1.000");
