@@ -14,6 +14,7 @@ struct PlaceInSlots {
   const int* flags;
   const int* ranks;
   int* slots;
+  int* slot_of;
   const Vec4* predicted;
   Vec4* predicted_next;
   float* lambda;
@@ -21,11 +22,10 @@ struct PlaceInSlots {
   int n;
 
   SIM_FN void operator()(int i) const {
-    if (flags[i]) {
-      slots[ranks[i] - 1] = i;
-      return;
-    }
-    slots[n - 1 - (i - ranks[i])] = ~i;
+    const int slot = flags[i] ? ranks[i] - 1 : n - 1 - (i - ranks[i]);
+    slot_of[i] = slot;
+    slots[slot] = flags[i] ? i : ~i;
+    if (flags[i]) return;
     lambda[i] = 0;
     density[i] = 1;
     predicted_next[i] = predicted[i];
@@ -40,11 +40,12 @@ void Activation::list_active(Particles& p) {
   flags.resize(size);
   ranks.resize(size);
   slots.resize(size);
+  slot_of.resize(size);
   if (n == 0) return;
   for_each("active flags", n, CopyFlags{p.active.data(), flags.data()});
   scanner.inclusive_sum(flags, ranks);
   for_each("active slots", n,
-           PlaceInSlots{flags.data(), ranks.data(), slots.data(), p.predicted.data(), p.predicted_next.data(),
+           PlaceInSlots{flags.data(), ranks.data(), slots.data(), slot_of.data(), p.predicted.data(), p.predicted_next.data(),
                         p.lambda.data(), p.density.data(), n});
 }
 
@@ -52,7 +53,7 @@ std::size_t Activation::bytes() const {
   return grid.bytes() + near.bytes() + others_before.bytes() + others_after.bytes() + importance.bytes() +
          probability.bytes() + slope_x.bytes() + slope_y.bytes() + slope_z.bytes() + across_levels.bytes() +
          total.bytes() + energy_slope.bytes() + before.bytes() + after.bytes() + change.bytes() +
-         flags.bytes() + ranks.bytes() + slots.bytes();
+         flags.bytes() + ranks.bytes() + slots.bytes() + slot_of.bytes();
 }
 
 }  // namespace sim::SIM_BACKEND

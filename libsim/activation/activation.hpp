@@ -86,11 +86,11 @@ struct Activation {
   Array<MomentumSum> before, after, others_before, others_after;
   Array<Vec4> change;
 
-  Array<int> flags, ranks, slots;
+  Array<int> flags, ranks, slots, slot_of;
   Scanner scanner;
 
   /// Lists the active particles for the passes of a substep and puts what the passes read of the others in
-  /// place: lambda 0, the rest density, the predicted position in both buffers.
+  /// place: lambda 0, the rest density, the predicted position in both buffers. slot_of is slots' inverse.
   void list_active(Particles& particles);
   std::size_t bytes() const;
 };

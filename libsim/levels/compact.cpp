@@ -152,6 +152,7 @@ void compact(FluidState& state, bool any_split) {
   l.child.resize(size);
   for_each("list sources", n, ListSources{l.births.data(), l.places.data(), l.order.data(), l.child.data()});
   p.reorder(l.order);
+  state.lists_hold = false;
   if (!any_split) return;
   l.flags.resize(size);
   for_each("mark new", after, MarkNew{l.child.data(), l.flags.data()});

@@ -33,7 +33,7 @@ struct KeepSteps {
   const std::uint8_t* target;
   const std::uint8_t* waiting;
   const std::uint8_t* wish;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   std::uint8_t* out;
   LevelCounts* counts;
   int lags;
@@ -82,7 +82,7 @@ struct Propose {
   const std::uint8_t* waiting;
   const std::uint8_t* wish;
   const int* id;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   int* partner;
   LevelCounts* counts;
   Walls walls;
@@ -141,7 +141,7 @@ struct KeepApart {
   const std::uint8_t* level;
   const int* id;
   const int* partner;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   int* out;
   LevelRules rules;
   LevelSupports supports;
@@ -207,7 +207,7 @@ void merge_pairs(FluidState& state) {
   auto& p = state.particles;
   auto& l = state.levels;
   const int n = p.size();
-  const Neighbours neighbours = state.neighbours.view();
+  const ParticleNeighbours neighbours = state.particle_neighbours();
   for_each("remember levels", n,
            Remember{p.level.data(), p.target.data(), l.split_code.data(), state.last_active(),
                     p.history.data(), p.age.data(), p.waiting.data(), l.wish.data(), l.gone.data()});

@@ -17,7 +17,7 @@ struct Bid {
   const std::uint8_t* split_code;
   const std::uint8_t* gone;
   const std::uint8_t* age;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   int* first;
   int* second;
   Walls walls;
@@ -89,7 +89,7 @@ struct AcceptBid {
   const int* id;
   const int* first;
   const int* second;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   int* accepted;
   std::uint32_t frame;
   SIM_FN void operator()(int i) const {
@@ -182,10 +182,10 @@ void relay_stranded(FluidState& state) {
   int* accepted = l.partner.data();
   for_each("bid for stranded", n,
            Bid{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-               l.split_code.data(), l.gone.data(), p.age.data(), state.neighbours.view(), first, second,
+               l.split_code.data(), l.gone.data(), p.age.data(), state.particle_neighbours(), first, second,
                state.walls, l.rules, state.supports});
   for_each("accept bids", n,
-           AcceptBid{p.id.data(), first, second, state.neighbours.view(), accepted, l.frame});
+           AcceptBid{p.id.data(), first, second, state.particle_neighbours(), accepted, l.frame});
   for_each("join halves", n,
            JoinHalves{p.position.data(), p.velocity.data(), p.level.data(), p.history.data(), p.age.data(),
                       p.waiting.data(), p.id.data(), first, second, accepted, l.gone.data(), l.counts.data(),

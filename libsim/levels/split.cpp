@@ -36,7 +36,7 @@ struct ChooseApart {
   const std::uint8_t* target;
   const int* id;
   const std::uint8_t* status;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   std::uint8_t* out;
   std::uint32_t frame;
 
@@ -176,7 +176,7 @@ bool choose_splits(FluidState& state) {
   for (int round = 0; round < rounds && throttled; ++round) {
     for_each("choose splits", n,
              ChooseApart{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),
-                         state.neighbours.view(), l.status_next.data(), l.frame});
+                         state.particle_neighbours(), l.status_next.data(), l.frame});
     l.status.swap(l.status_next);
   }
   for_each("fit children", n,

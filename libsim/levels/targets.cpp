@@ -48,7 +48,7 @@ struct Hold {
 struct Grade {
   const Vec4* position;
   const std::uint8_t* target;
-  Neighbours neighbours;
+  ParticleNeighbours neighbours;
   std::uint8_t* out;
   SIM_FN void operator()(int i) const {
     int wish = target[i];
@@ -83,7 +83,7 @@ void grade(FluidState& state) {
   out.resize(static_cast<std::size_t>(p.size()));
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for_each("grade targets", p.size(),
-             Grade{p.position.data(), p.target.data(), state.neighbours.view(), out.data()});
+             Grade{p.position.data(), p.target.data(), state.particle_neighbours(), out.data()});
     p.target.swap(out);
   }
 }
@@ -108,6 +108,7 @@ Stage frame_neighbours_stage() {
             return demand.levels && !demand.saliency ? "levels compare neighbours" : "";
           },
           [](FluidState& state) {
+            if (state.lists_hold) return;
             auto& p = state.particles;
             copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
             neighbours_stage().run(state);

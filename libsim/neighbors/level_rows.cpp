@@ -62,8 +62,8 @@ struct FindLevelRows {
   const std::uint64_t* line_keys;
   const int* line_begin;
   const int* line_count;
-  IndexRange* rows;
-  int* row_count;
+  LevelRow* rows;
+  LevelBox* boxes;
   LevelSupports supports;
   float margin;
 
@@ -79,15 +79,20 @@ struct FindLevelRows {
     const float edge = margin * supports.h[c.level];
     const float other_edge = margin * supports.h[other];
     const float radius = 0.5f * (edge + other_edge);
-    const CellSpan x = reach(c.x, edge, other_edge, radius, cell_limit_xz);
-    const CellSpan y = reach(c.y, edge, other_edge, radius, cell_limit_y);
-    const CellSpan z = reach(c.z, edge, other_edge, radius, cell_limit_xz);
-    row_count[index] =
-        find(other, x, y, z, rows + static_cast<std::size_t>(index) * LevelRowsView::most_rows);
+    const bool same = other == c.level;
+    const CellSpan x = same ? beside(c.x) : reach(c.x, edge, other_edge, radius, cell_limit_xz);
+    const CellSpan y = same ? beside(c.y) : reach(c.y, edge, other_edge, radius, cell_limit_y);
+    const CellSpan z = same ? beside(c.z) : reach(c.z, edge, other_edge, radius, cell_limit_xz);
+    const int found = find(other, x, y, z, rows + static_cast<std::size_t>(index) * LevelRowsView::most_rows);
+    boxes[index] = {found, other_edge, static_cast<float>(y.first) * other_edge,
+                    static_cast<float>(z.first) * other_edge};
   }
 
+  /// Particles of one level that are near each other lie in cells that touch.
+  SIM_FN static CellSpan beside(int cell) { return {cell - 1, cell + 1}; }
+
   /// Walks the occupied lines of the box only; an absent level costs one search.
-  SIM_FN int find(int level, CellSpan x, CellSpan y, CellSpan z, IndexRange* out) const {
+  SIM_FN int find(int level, CellSpan x, CellSpan y, CellSpan z, LevelRow* out) const {
     const int lines = *line_count;
     const std::uint64_t last = line_key(level, y.last, z.last);
     int found = 0;
@@ -106,18 +111,27 @@ struct FindLevelRows {
       const std::uint64_t last_cell = cell_key({level, x.last, line.y, line.z});
       int after = begin;
       while (after < end && cells.key[after] <= last_cell) ++after;
-      if (after > begin) add({cells.begin[begin], cells.begin[after]}, found, out);
+      if (after > begin) {
+        // The outermost cells hold everything beyond them.
+        const bool inside = within(line.y, cell_limit_y) && within(line.z, cell_limit_xz);
+        const int far = LevelRow::anywhere;
+        add({cells.begin[begin], cells.begin[after]}, inside ? line.y - y.first : far,
+            inside ? line.z - z.first : far, found, out);
+      }
       ++at;
     }
     return found;
   }
 
-  /// Runs that touch become one; when there is no more room, the last run grows over what lies between.
-  SIM_FN static void add(IndexRange run, int& found, IndexRange* out) {
-    if (found > 0 && (out[found - 1].end == run.begin || found == LevelRowsView::most_rows)) {
-      out[found - 1].end = run.end;
+  SIM_FN static bool within(int cell, int limit) { return cell > -(limit - 2) && cell < limit - 2; }
+
+  /// When there is no more room, the last run grows over what lies between.
+  SIM_FN static void add(IndexRange run, int y, int z, int& found, LevelRow* out) {
+    if (found < LevelRowsView::most_rows) {
+      out[found++] = LevelRow::make(run.begin, run.end - run.begin, y, z);
     } else {
-      out[found++] = run;
+      const int begin = out[found - 1].begin;
+      out[found - 1] = LevelRow::make(begin, run.end - begin, LevelRow::anywhere, LevelRow::anywhere);
     }
   }
 };
@@ -140,15 +154,15 @@ void LevelRows::find(const CellList& cells, int n, int capacity, const LevelSupp
            ListLines{cells, heads_.data(), line_of_.data(), line_keys_.data(), line_begin_.data(),
                      line_count_.data()});
   constexpr std::size_t levels = LevelSupports::most;
-  count_.reserve(room * levels);
-  count_.resize(size * levels);
+  boxes_.reserve(room * levels);
+  boxes_.resize(size * levels);
   // Rows are many a cell: room grows with the particles in use, not with the capacity.
   if (rows_.size() < size * levels * LevelRowsView::most_rows) {
     rows_.resize(size * 5 / 4 * levels * LevelRowsView::most_rows);
   }
   for_each("find level rows", n * LevelSupports::most,
            FindLevelRows{cells, line_keys_.data(), line_begin_.data(), line_count_.data(), rows_.data(),
-                         count_.data(), supports, margin});
+                         boxes_.data(), supports, margin});
 }
 
 }  // namespace sim::SIM_BACKEND

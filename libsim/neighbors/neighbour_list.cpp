@@ -10,19 +10,27 @@ namespace {
 struct OneLevelRows {
   const IndexRange* rows;
   template <class Visit>
-  SIM_FN void operator()(int cell, Visit visit) const {
-    for (int row = 0; row < Grid::rows_per_cell; ++row) visit(rows[cell * Grid::rows_per_cell + row]);
+  SIM_FN void operator()(int cell, Vec4, float, Visit visit) const {
+    for (int row = 0; row < Grid::rows_per_cell; ++row) {
+      const IndexRange range = rows[cell * Grid::rows_per_cell + row];
+      visit(range.begin, range.end);
+    }
   }
 };
 
-/// or those of every level.
+/// or those of every level, without the lines of cells beyond the particle's own reach.
 struct MixedRows {
   LevelRowsView rows;
   template <class Visit>
-  SIM_FN void operator()(int cell, Visit visit) const {
+  SIM_FN void operator()(int cell, Vec4 self, float margin, Visit visit) const {
     for (int level = 0; level < LevelSupports::most; ++level) {
-      const int count = rows.size(cell, level);
-      for (int row = 0; row < count; ++row) visit(rows(cell, level, row));
+      const LevelBox box = rows.box(cell, level);
+      const float reach = 0.5f * (margin * self.w + box.edge);
+      for (int row = 0; row < box.rows; ++row) {
+        const LevelRow run = rows(cell, level, row);
+        if (box.misses(run, self, reach)) continue;
+        visit(run.begin, run.begin + run.size());
+      }
     }
   }
 };
@@ -41,29 +49,38 @@ struct ListNeighbours {
   float margin;
 
   /// Takes the near ones of a run.
+  template <class Team>
   struct Take {
     const ListNeighbours& task;
+    Team team;
     int slot, i;
     Vec4 self;
     int& found;
-    SIM_FN void operator()(IndexRange range) const {
-      for (int j = range.begin; j < range.end; ++j) {
-        const Vec4 other = task.predicted[j];
+    SIM_FN void operator()(int begin, int end) const {
+      for (int first = begin; first < end; first += Team::size) {
+        const int j = first + team.rank();
+        const Vec4 other = task.predicted[j < end ? j : begin];
         const Vec3 offset = xyz(self) - xyz(other);
         const float radius = task.margin * 0.5f * (self.w + other.w);
-        const bool near = dot(offset, offset) < radius * radius && j != i;
-        task.append(slot, found, j, near);
+        const bool near = dot(offset, offset) < radius * radius && j != i && j < end;
+        int all;
+        const int place = found + team.before(near, all);
+        task.append(slot, place, j, near);
+        found += all;
       }
     }
   };
 
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
     }
     int found = 0;
-    rows(cell_of[i], Take{*this, slot, i, predicted[i], found});
+    const Vec4 self = predicted[i];
+    rows(cell_of[i], self, margin, Take<Team>{*this, team, slot, i, self, found});
+    if (team.rank() > 0) return;
     // The last slot only takes what is not kept.
     const int kept = list.capacity - 1;
     if (found > kept) {
@@ -73,15 +90,13 @@ struct ListNeighbours {
     count[slot] = found < kept ? found : kept;
   }
 
-  SIM_FN void append(int slot, int& found, int j, bool near) const {
+  SIM_FN void append(int slot, int place, int j, bool near) const {
 #ifdef SIM_CUDA
-    if (!near) return;
-    if (found < list.capacity) entry[list.place(slot, found)] = j;
-    ++found;
+    if (near && place < list.capacity) entry[list.place(slot, place)] = j;
 #else
     // Stored in any case and kept by the count: a branch here is mispredicted every third time.
-    entry[list.place(slot, found < list.capacity ? found : list.capacity - 1)] = j;
-    found += near;
+    entry[list.place(slot, place < list.capacity ? place : list.capacity - 1)] = j;
+    (void)near;
 #endif
   }
 };
@@ -105,10 +120,10 @@ void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows
     longest_.resize(1);
     longest_.zero();
   }
-  for_each("list neighbours", particles.size(),
-           ListNeighbours<Rows, Selection>{select, particles.predicted.data(), grid.cell_of_particle(), rows,
-                                           view(), entry_.data(), count_.data(), longest_.data(), dropped,
-                                           margin});
+  for_each_team("list neighbours", particles.size(),
+                ListNeighbours<Rows, Selection>{select, particles.predicted.data(), grid.cell_of_particle(),
+                                                rows, view(), entry_.data(), count_.data(), longest_.data(),
+                                                dropped, margin});
 }
 
 void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
@@ -129,6 +144,12 @@ void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, Ac
                                 std::uint64_t* dropped) {
   capacity_ = std::max(capacity_, mixed_capacity);
   list(particles, grid, MixedRows{grid.level_rows()}, active, dropped);
+}
+
+void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, EverySlot everyone,
+                                std::uint64_t* dropped) {
+  capacity_ = std::max(capacity_, mixed_capacity);
+  list(particles, grid, MixedRows{grid.level_rows()}, everyone, dropped);
 }
 
 void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {

@@ -32,6 +32,16 @@ struct Neighbours {
   SIM_FN int operator()(int i, int k) const { return entry[place(i, k)]; }
 };
 
+/// The list of particle i where lists belong to slots that were chosen in the last substep; slot_of is null
+/// where a slot is a particle. For passes at a frame's start, which are few.
+struct ParticleNeighbours {
+  Neighbours list;
+  const int* slot_of;
+  SIM_FN int slot(int i) const { return slot_of ? slot_of[i] : i; }
+  SIM_FN int size(int i) const { return list.size(slot(i)); }
+  SIM_FN int operator()(int i, int k) const { return list(slot(i), k); }
+};
+
 class NeighbourList {
  public:
   /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
@@ -46,6 +56,8 @@ class NeighbourList {
   void build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
   void build_mixed(const Particles& particles, const Grid& grid, ActiveParticles active,
                    std::uint64_t* dropped);
+  /// The same with lists for the others' slots too.
+  void build_mixed(const Particles& particles, const Grid& grid, EverySlot everyone, std::uint64_t* dropped);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }

@@ -29,12 +29,18 @@ struct Gather {
   }
 };
 
+/// The columns of one type that a method has besides, all in one launch.
 template <class T>
-struct GatherOne {
+struct GatherExtras {
+  static constexpr int most = 8;
   const int* order;
-  const T* in;
-  T* out;
-  SIM_FN void operator()(int i) const { out[i] = in[order[i]]; }
+  const T* in[most];
+  T* out[most];
+  int count;
+  SIM_FN void operator()(int i) const {
+    const int from = order[i];
+    for (int k = 0; k < count; ++k) out[k][i] = in[k][from];
+  }
 };
 
 }  // namespace
@@ -79,18 +85,27 @@ void Particles::for_each_column(Self& self, Visit visit) {
   visit(self.start_cell, self.has(Column::StartCell));
 }
 
-template <class Visit>
-void Particles::for_each_lasting_extra(Visit visit) {
-  if (has(Column::Target)) visit(target, spare_byte_);
-  if (has(Column::History)) visit(history, spare_byte_);
-  if (has(Column::Saliency)) visit(saliency, spare_float_);
-  if (has(Column::Unrest)) visit(unrest, spare_float_);
-  if (has(Column::SaliencyParts)) visit(saliency_parts, spare_parts_);
-  if (has(Column::Waiting)) visit(waiting, spare_byte_);
-  if (has(Column::Age)) visit(age, spare_byte_);
-  if (has(Column::Active)) visit(active, spare_byte_);
-  if (has(Column::Rest)) visit(rest, spare_byte_);
-  if (has(Column::StartCell)) visit(start_cell, spare_id_);
+template <class T>
+void Particles::reorder_extras(const Array<int>& order,
+                               std::initializer_list<std::pair<Column, Array<T>*>> extras,
+                               std::vector<Array<T>>& spares) {
+  GatherExtras<T> gather{order.data(), {}, {}, 0};
+  spares.resize(extras.size());
+  for (const auto& [column, values] : extras) {
+    if (!has(column)) continue;
+    Array<T>& spare = spares[static_cast<std::size_t>(gather.count)];
+    spare.reserve(static_cast<std::size_t>(capacity_));
+    spare.resize(order.size());
+    gather.in[gather.count] = values->data();
+    gather.out[gather.count] = spare.data();
+    ++gather.count;
+  }
+  if (gather.count == 0) return;
+  for_each("reorder", static_cast<int>(order.size()), gather);
+  auto spare = spares.begin();
+  for (const auto& [column, values] : extras) {
+    if (has(column)) values->swap(*spare++);
+  }
 }
 
 void Particles::allocate(ColumnSet set, int n, int capacity) {
@@ -114,8 +129,15 @@ void Particles::resize(int n) {
 }
 
 std::size_t Particles::bytes() const {
-  std::size_t sum = spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() +
-                    spare_level_.bytes() + spare_byte_.bytes() + spare_float_.bytes() + spare_parts_.bytes();
+  std::size_t sum =
+      spare_a_.bytes() + spare_b_.bytes() + spare_c_.bytes() + spare_id_.bytes() + spare_level_.bytes();
+  const auto add = [&](const auto& spares) {
+    for (const auto& spare : spares) sum += spare.bytes();
+  };
+  add(spare_bytes_);
+  add(spare_floats_);
+  add(spare_ints_);
+  add(spare_parts_);
   for_each_column(*this, [&](const auto& column, bool) { sum += column.bytes(); });
   return sum;
 }
@@ -135,12 +157,17 @@ void Particles::reorder(const Array<int>& order) {
   velocity.swap(spare_c_);
   id.swap(spare_id_);
   level.swap(spare_level_);
-  for_each_lasting_extra([&](auto& column, auto& spare) {
-    for_each("reorder", n,
-             GatherOne<std::remove_reference_t<decltype(*column.data())>>{order.data(), column.data(),
-                                                                          room(spare)});
-    column.swap(spare);
-  });
+  reorder_extras<std::uint8_t>(order,
+                               {{Column::Target, &target},
+                                {Column::History, &history},
+                                {Column::Waiting, &waiting},
+                                {Column::Age, &age},
+                                {Column::Active, &active},
+                                {Column::Rest, &rest}},
+                               spare_bytes_);
+  reorder_extras<float>(order, {{Column::Saliency, &saliency}, {Column::Unrest, &unrest}}, spare_floats_);
+  reorder_extras<int>(order, {{Column::StartCell, &start_cell}}, spare_ints_);
+  reorder_extras<SaliencyParts>(order, {{Column::SaliencyParts, &saliency_parts}}, spare_parts_);
   if (n != n_) resize(n);
 }
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include "libsim/exec/vec.hpp"
 #include "libsim/simulation.hpp"
@@ -97,9 +100,10 @@ class Particles {
   /// Gives each column to visit(column, declared), in one fixed order.
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit visit);
-  /// Columns beyond position, predicted, velocity, id and level that outlive a substep: visit(column, spare).
-  template <class Visit>
-  void for_each_lasting_extra(Visit visit);
+  /// Permutes those of the columns that are declared.
+  template <class T>
+  void reorder_extras(const Array<int>& order, std::initializer_list<std::pair<Column, Array<T>*>> extras,
+                      std::vector<Array<T>>& spares);
 
   int n_ = 0;
   int capacity_ = 0;
@@ -107,9 +111,11 @@ class Particles {
   // Targets of the permutation, swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
-  Array<std::uint8_t> spare_level_, spare_byte_;
-  Array<float> spare_float_;
-  Array<SaliencyParts> spare_parts_;
+  Array<std::uint8_t> spare_level_;
+  std::vector<Array<std::uint8_t>> spare_bytes_;
+  std::vector<Array<float>> spare_floats_;
+  std::vector<Array<int>> spare_ints_;
+  std::vector<Array<SaliencyParts>> spare_parts_;
 };
 
 /// sim::ParticleField on the host, in the particles' order; 0 where its column is not there, 1 for Active.

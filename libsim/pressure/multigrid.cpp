@@ -120,6 +120,52 @@ constexpr int coarsest_sweeps = 4;
 
 }  // namespace
 
+/// The grids from `first` down to the coarsest, small enough for one block: their part of a V-cycle.
+struct SmallGrids {
+  static constexpr int most = 16;
+  GridView grid[most];
+  int count;
+  bool first_is_finest;
+
+  SIM_FN bool push_only(int level) const { return first_is_finest && level == 0; }
+
+  template <class Block>
+  SIM_FN void smooth(Block block, int level, int first_colour) const {
+    const GridView& at = grid[level];
+    for (int half = 0; half < 2; ++half) {
+      block.each(at.block.size(), Smooth{at, half == 0 ? first_colour : 1 - first_colour, push_only(level)});
+    }
+  }
+  template <class Block>
+  SIM_FN void operator()(Block block) const {
+    const int last = count - 1;
+    for (int level = 0; level < last; ++level) {
+      smooth(block, level, 0);
+      block.each(grid[level + 1].block.size(), Restrict{grid[level], grid[level + 1], push_only(level)});
+    }
+    for (int sweep = 0; sweep < coarsest_sweeps; ++sweep) smooth(block, last, 0);
+    for (int level = last - 1; level >= 0; --level) {
+      block.each(grid[level].block.size(), Prolong{grid[level], grid[level + 1], push_only(level)});
+      smooth(block, level, 1);
+    }
+  }
+};
+
+namespace {
+
+/// Kinds of the small grids below the first, each from the one before.
+struct CoarsenSmall {
+  SmallGrids grids;
+  template <class Block>
+  SIM_FN void operator()(Block block) const {
+    for (int level = 1; level < grids.count; ++level) {
+      block.each(grids.grid[level].block.size(), Coarsen{grids.grid[level - 1], grids.grid[level]});
+    }
+  }
+};
+
+}  // namespace
+
 void Multigrid::fit(CellBlock finest) {
   if (!levels_.empty()) {
     const CellBlock now = levels_.front().block;
@@ -150,9 +196,24 @@ void Multigrid::smooth(std::size_t level, int first_colour) {
   }
 }
 
+std::size_t Multigrid::first_small() const {
+  std::size_t level = levels_.size() - 1;
+  while (level > 0 && levels_.size() - level < SmallGrids::most &&
+         levels_[level - 1].block.size() <= one_block_cells)
+    --level;
+  return level;
+}
+
+SmallGrids Multigrid::small_grids() {
+  const std::size_t small = first_small();
+  SmallGrids out{{}, static_cast<int>(levels_.size() - small), small == 0};
+  for (std::size_t l = small; l < levels_.size(); ++l) out.grid[l - small] = view(l);
+  return out;
+}
+
 void Multigrid::cycle(std::size_t level) {
-  if (level + 1 == levels_.size()) {
-    for (int sweep = 0; sweep < coarsest_sweeps; ++sweep) smooth(level, 0);
+  if (level == first_small()) {
+    in_one_block("small grids", small_grids());
     return;
   }
   const GridView fine = view(level);
@@ -165,9 +226,11 @@ void Multigrid::cycle(std::size_t level) {
 }
 
 void Multigrid::solve(int cycles) {
-  for (std::size_t l = 1; l < levels_.size(); ++l) {
+  const std::size_t small = first_small();
+  for (std::size_t l = 1; l <= small; ++l) {
     for_each("coarsen", levels_[l].block.size(), Coarsen{view(l - 1), view(l)});
   }
+  in_one_block("coarsen small grids", CoarsenSmall{small_grids()});
   levels_.front().q.zero();
   for (int c = 0; c < cycles; ++c) cycle(0);
 }

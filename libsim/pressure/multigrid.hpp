@@ -46,6 +46,8 @@ struct GridView {
   }
 };
 
+struct SmallGrids;
+
 class Multigrid {
  public:
   /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed.
@@ -63,6 +65,9 @@ class Multigrid {
   };
 
   GridView view(std::size_t level);
+  /// The first of the grids that one block handles together, and these.
+  std::size_t first_small() const;
+  SmallGrids small_grids();
 
   void cycle(std::size_t level);
   void smooth(std::size_t level, int first_colour);

@@ -230,7 +230,8 @@ class FluidSimulation final : public Simulation {
     state_.activation.beta = static_cast<float>(tolerance_.beta());
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     run_frame(schedule_, state_);
-    state_.neighbours.grow();
+    // Longer lists lie elsewhere: what they held is gone.
+    if (state_.neighbours.grow()) state_.lists_hold = false;
     ++frame_;
   }
 
@@ -295,6 +296,8 @@ class FluidSimulation final : public Simulation {
   std::int64_t particle_count() const override { return state_.particles.size(); }
   std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }
+  void profile_launches(bool on) override { SIM_BACKEND::profile_launches(on); }
+  std::vector<LaunchTime> launch_times() const override { return SIM_BACKEND::launch_times(); }
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
     return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
@@ -433,7 +436,9 @@ class FluidSimulation final : public Simulation {
     std::vector<Vec4> velocity;
     std::vector<int> id;
     std::vector<std::uint8_t> level;
+    state_.mass_units = 0;
     for (const auto& particle : start) {
+      state_.mass_units += std::int64_t{1} << particle.level;
       const float h = state_.supports.h[particle.level];
       position.push_back({particle.x_m, particle.y_m, particle.z_m, h});
       velocity.push_back({particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0});
@@ -490,6 +495,7 @@ class FluidSimulation final : public Simulation {
     }
     state_.walls = walls_of(scene_, false);
     state_.one_level = !adaptive();
+    state_.lists_hold = false;
     // What was met on the way to rest is not part of the run.
     state_.guards.zero();
   }

@@ -73,6 +73,7 @@ Measured measure(FluidState& state) {
              MeasureJumps{p.position.data(), p.level.data(), state.neighbours.view(), near.data()});
     out.jump_share = fixed_order_sum(near, n) / pairs;
   }
+  state.lists_hold = false;  // A report leaves no trace in the run.
   out.density_max = static_cast<double>(maximum(p.density, n));
   out.speed_max_m_s = static_cast<double>(maximum(speed, n));
   return out;

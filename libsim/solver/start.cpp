@@ -23,7 +23,7 @@ double mean_compression(FluidState& state, Array<float>& excess, Array<float>& m
   auto& p = state.particles;
   copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
   neighbours_stage().run(state);
-  state.neighbours.grow();
+  if (state.neighbours.grow()) neighbours_stage().run(state);
   density_stage().run(state);
   for_each("start compression", p.size(),
            Excess{p.density.data(), p.level.data(), excess.data(), mass.data()});

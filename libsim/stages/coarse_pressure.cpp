@@ -130,6 +130,21 @@ struct Shift {
   }
 };
 
+/// Edge of the cells, for the particles that are there: those of a method that could hold finer ones would
+/// hold too few of them to tell a mean. It goes by the mean mass in half levels, so that it changes rarely,
+/// and leaves at least three cells across the tank where the lightest particles do.
+float cell_edge(const FluidState& state) {
+  const int n = state.particles.size();
+  const float finest = state.parameters.coarse_edge * state.lightest_support;
+  if (state.mass_units == 0 || n == 0) return finest;
+  const float mean = static_cast<float>(state.mass_units) / static_cast<float>(n);
+  const float half_levels = roundf(2 * log2f(fmaxf(mean, 1.0f)));
+  const float wish = state.parameters.coarse_edge * state.finest_support * exp2f(half_levels / 6);
+  const Vec3 size = state.domain.high - state.domain.low;
+  const float across = fminf(size.x, fminf(size.y, size.z)) / 3;
+  return fmaxf(finest, fminf(wish, across));
+}
+
 template <class Selection>
 void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
@@ -137,7 +152,7 @@ void launch(FluidState& state, Selection select) {
   // While the water settles at one level, nobody has written the shares.
   const float* ease = p.has(Column::Ease) && !state.one_level ? p.ease.data() : nullptr;
   density_stage().run(state);
-  coarse.fit(state.domain, state.parameters.coarse_edge * state.lightest_support);
+  coarse.fit(state.domain, cell_edge(state));
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),

@@ -20,14 +20,15 @@ struct Density {
   Guards* guards;
   float rest_density, relaxation;
 
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
     }
     const Vec4 self = predicted[i];
     const PairKernel<OneLevel> pair(self.w);
-    float rho = Kernel(self.w).density(0);
+    float rho = 0;
     float gx = 0;
     float gy = 0;
     float gz = 0;
@@ -35,7 +36,7 @@ struct Density {
     int zero = 0;
     const int count = neighbours.size(slot);
     SIM_LANES(rho, gx, gy, gz, squares, zero)
-    for (int k = 0; k < count; ++k) {
+    for (int k = team.rank(); k < count; k += Team::size) {
       const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
@@ -59,6 +60,13 @@ struct Density {
         squares += select.moves(j) * ratio * slope * slope;
       }
     }
+    rho = team.sum(rho) + Kernel(self.w).density(0);
+    gx = team.sum(gx);
+    gy = team.sum(gy);
+    gz = team.sum(gz);
+    squares = team.sum(squares);
+    zero = team.sum(zero);
+    if (team.rank() > 0) return;
     // A pair is met twice, once from either side.
     if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
     const float mass = mass_of(self.w, rest_density);
@@ -77,10 +85,11 @@ struct Density {
 template <bool OneLevel, bool OthersYield, class Selection>
 void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
-  for_each("density", p.size(),
-           Density<OneLevel, OthersYield, Selection>{
-               select, p.predicted.data(), state.neighbours.view(), state.walls, p.lambda.data(),
-               p.density.data(), state.guard(), state.parameters.rest_density, state.parameters.relaxation});
+  for_each_team(
+      "density", p.size(),
+      Density<OneLevel, OthersYield, Selection>{select, p.predicted.data(), state.neighbours.view(),
+                                                state.walls, p.lambda.data(), p.density.data(), state.guard(),
+                                                state.parameters.rest_density, state.parameters.relaxation});
 }
 
 template <bool OthersYield, class Selection>
@@ -99,6 +108,8 @@ void run(FluidState& state) {
 }
 
 }  // namespace
+
+void measure_density(FluidState& state, EverySlot everyone) { launch<true>(state, everyone); }
 
 Stage density_stage() {
   return {"density constraint",

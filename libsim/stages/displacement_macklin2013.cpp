@@ -18,7 +18,8 @@ struct Displace {
   Guards* guards;
   float rest_density, tensile, wall_gap, momentum;
 
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
@@ -32,7 +33,7 @@ struct Displace {
     int zero = 0;
     const int count = neighbours.size(slot);
     SIM_LANES(px, py, pz, zero)
-    for (int k = 0; k < count; ++k) {
+    for (int k = team.rank(); k < count; k += Team::size) {
       const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
@@ -50,6 +51,11 @@ struct Displace {
       py -= along * dy;
       pz -= along * dz;
     }
+    px = team.sum(px);
+    py = team.sum(py);
+    pz = team.sum(pz);
+    zero = team.sum(zero);
+    if (team.rank() > 0) return;
     Vec3 wall_gradient;
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
@@ -96,11 +102,11 @@ template <bool OneLevel, bool Tensile, class Selection>
 void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   const auto& k = state.parameters;
-  for_each("displacement", p.size(),
-           Displace<OneLevel, Tensile, Selection>{
-               select, p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(), state.walls,
-               p.predicted_next.data(), state.guard(), k.rest_density, k.tensile, k.wall_gap,
-               state.iteration > 0 ? k.momentum : 0.0f});
+  for_each_team("displacement", p.size(),
+                Displace<OneLevel, Tensile, Selection>{
+                    select, p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(),
+                    state.walls, p.predicted_next.data(), state.guard(), k.rest_density, k.tensile,
+                    k.wall_gap, state.iteration > 0 ? k.momentum : 0.0f});
   p.predicted.swap(p.predicted_next);
 }
 

@@ -44,13 +44,20 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
+  std::int64_t mass_units = 0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
   LevelSupports supports{};
   Vec3 refuge{};          ///< where a particle goes whose place is lost
   bool one_level = true;  ///< all particles have one level, for good
-  int iteration = 0;      ///< projection within the substep
+  int substep = 0;
+  int iteration = 0;  ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;
+  /// The lists of the last substep hold everyone's neighbours in today's order: what looks at the fluid
+  /// before it moves need not look for them again. Between h and the list's margin they tell the truth of a
+  /// moment before.
+  bool lists_hold = false;
+  bool lists_by_slot = false;  ///< they belong to the slots of that substep
   CoarseGrid coarse;
   Jets jets;
   SaliencyState saliency;
@@ -65,6 +72,9 @@ struct FluidState {
   /// Who was solved in the last frame; nullptr when everyone was.
   const std::uint8_t* last_active() const {
     return activation.columns_set && !activation.all_marked ? particles.active.data() : nullptr;
+  }
+  ParticleNeighbours particle_neighbours() const {
+    return {neighbours.view(), lists_by_slot ? activation.slot_of.data() : nullptr};
   }
   ActiveParticles active() {
     return {activation.slots.data(), particles.active.data(), activation.rules.pressed};

@@ -20,11 +20,14 @@ inline constexpr float coincident = 1e-5f;
 struct Kernel {
   float h, h2, poly6, spiky;
 
-  SIM_FN explicit Kernel(float support_radius)
-      : h(support_radius),
-        h2(support_radius * support_radius),
-        poly6(315 / (64 * pi * lattice_density * (h2 * h2) * (h2 * h2) * h)),
-        spiky(45 / (pi * lattice_density * h2 * h2 * h2)) {}
+  SIM_FN explicit Kernel(float support_radius) : Kernel(support_radius, 1 / support_radius) {}
+  /// The same from h and 1 / h. All powers come from the one quotient: made anew for each pair, three would
+  /// cost as much as the rest of the pair.
+  SIM_FN Kernel(float support_radius, float inverse) : h(support_radius), h2(h * h) {
+    const float inverse3 = inverse * inverse * inverse;
+    spiky = 45 / (pi * lattice_density) * (inverse3 * inverse3);
+    poly6 = 315 / (64 * pi * lattice_density) * (inverse3 * inverse3 * inverse3);
+  }
 
   /// W in 1/m3, r2 = r r.
   SIM_FN float density(float r2) const {
@@ -52,14 +55,14 @@ struct PairKernel<true> {
 
 template <>
 struct PairKernel<false> {
-  float h_self;
-  SIM_FN explicit PairKernel(float h) : h_self(h) {}
-  SIM_FN Kernel with(float h_other) const { return Kernel(0.5f * (h_self + h_other)); }
-  /// m_j / m_i
-  SIM_FN float mass_ratio(float h_other) const {
-    const float q = h_other / h_self;
-    return q * q * q;
+  float h_self, inverse_cube;
+  SIM_FN explicit PairKernel(float h) : h_self(h), inverse_cube(1 / (h * h * h)) {}
+  SIM_FN Kernel with(float h_other) const {
+    const float h = 0.5f * (h_self + h_other);
+    return {h, reciprocal(h)};
   }
+  /// m_j / m_i
+  SIM_FN float mass_ratio(float h_other) const { return h_other * h_other * h_other * inverse_cube; }
 };
 
 /// m = rho_0 d^3 with d = h / 2.

@@ -120,6 +120,7 @@ void run_nozzle(FluidState& state, const Nozzle& nozzle, Poured& before) {
     jets.taken += n + layers * layer.sites - state.particles.size();
   }
   jets.made += static_cast<std::int64_t>(layers) * layer.sites;
+  state.lists_hold = state.lists_hold && layers == 0;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
   // Layers that waited are left out of the jet.

@@ -62,13 +62,22 @@ void build_neighbours(FluidState& state) {
   } else {
     state.grid.build(p, NeighbourList::margin, state.supports);
   }
+  state.lists_by_slot = !state.all_active;
+  state.lists_hold = state.all_active;
   if (state.all_active) {
     state.one_level ? state.neighbours.build(p, state.grid, dropped)
                     : state.neighbours.build_mixed(p, state.grid, dropped);
   } else {
     state.activation.list_active(p);
-    state.one_level ? state.neighbours.build(p, state.grid, state.active(), dropped)
-                    : state.neighbours.build_mixed(p, state.grid, state.active(), dropped);
+    if (state.one_level) {
+      state.neighbours.build(p, state.grid, state.active(), dropped);
+    } else if (state.substep + 1 < state.parameters.substeps) {
+      state.neighbours.build_mixed(p, state.grid, state.active(), dropped);
+    } else {
+      // The next frame's levels compare everyone.
+      state.neighbours.build_mixed(p, state.grid, EverySlot{state.activation.slots.data()}, dropped);
+      state.lists_hold = true;
+    }
   }
 }
 

@@ -29,4 +29,15 @@ struct ActiveParticles {
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
+/// Both, in the order of the slots, for a pass whose results outlive the solve.
+struct EverySlot {
+  static constexpr bool everyone = true;
+  const int* slots;
+  SIM_FN int operator()(int slot) const {
+    const int i = slots[slot];
+    return i < 0 ? ~i : i;
+  }
+  SIM_FN float moves(int) const { return 1; }
+};
+
 }  // namespace sim::SIM_BACKEND

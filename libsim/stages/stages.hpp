@@ -79,6 +79,9 @@ Stage activation_stage();
 /// Velocity and energy grids; what was not solved inherits from them.
 Stage velocity_grid_stage();
 
+/// Densities at the predicted positions outside the schedule, over lists that belong to slots.
+void measure_density(FluidState& state, EverySlot everyone);
+
 /// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
 /// columns and fills the given ones in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,

@@ -32,7 +32,8 @@ struct Xsph {
   float viscosity;
   Filter filter;
 
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) {
@@ -51,7 +52,7 @@ struct Xsph {
     float vz = 0;
     const int count = neighbours.size(slot);
     SIM_LANES(vx, vy, vz)
-    for (int k = 0; k < count; ++k) {
+    for (int k = team.rank(); k < count; k += Team::size) {
       const int j = neighbours(slot, k);
       const Vec4 other = position[j];
       const Kernel kernel = pair.with(other.w);
@@ -73,6 +74,10 @@ struct Xsph {
       vy += flow * (v.y - own.y);
       vz += flow * (v.z - own.z);
     }
+    vx = team.sum(vx);
+    vy = team.sum(vy);
+    vz = team.sum(vz);
+    if (team.rank() > 0) return;
     // Volume m_i / rho_0; densities are relative to rho_0.
     const float scale = 2 * mass_of(self.w, 1);
     next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
@@ -82,10 +87,10 @@ struct Xsph {
 template <bool OneLevel, class Filter, class Selection>
 void launch(FluidState& state, Filter filter, Selection select) {
   auto& p = state.particles;
-  for_each("xsph", p.size(),
-           Xsph<OneLevel, Filter, Selection>{select, p.position.data(), p.velocity.data(), p.density.data(),
-                                             state.neighbours.view(), p.velocity_next.data(),
-                                             state.parameters.viscosity, filter});
+  for_each_team("xsph", p.size(),
+                Xsph<OneLevel, Filter, Selection>{
+                    select, p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
+                    p.velocity_next.data(), state.parameters.viscosity, filter});
   p.velocity.swap(p.velocity_next);
 }
 

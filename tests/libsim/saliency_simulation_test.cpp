@@ -91,6 +91,43 @@ void parts_make_up_the_whole(Backend backend) {
 TEST(SaliencyInSimulations, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cpu); }
 TEST(SaliencyInSimulationsGpu, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cuda); }
 
+/// Saliency reads the lists of the last substep; a report throws them away, and the next frame searches anew.
+void recalled_neighbours_tell_what_a_search_tells(Backend backend) {
+  for (const bool temporal : {false, true}) {
+    sim::SimulationOptions options;
+    options.method = temporal ? MethodKind::OursTsp : MethodKind::Ours;
+    options.backend = backend;
+    options.n_star = 256;
+    options.temporal.fixed_tau = -6;
+    double mean[2];
+    double by_level[2][4] = {};
+    for (const bool searched : {false, true}) {
+      const auto fluid = sim::make_simulation(scene(), options);
+      fluid->look({{eye_at(ahead)}});
+      for (int frame = 0; frame < 6; ++frame) fluid->step_frame();
+      if (searched) fluid->report();
+      fluid->step_frame();
+      std::vector<sim::ParticleSaliency> saliency;
+      fluid->read_saliency(saliency);
+      ASSERT_FALSE(saliency.empty());
+      mean[searched] = 0;
+      for (const auto& p : saliency) {
+        mean[searched] += p.s / static_cast<double>(saliency.size());
+        by_level[searched][p.target] += 1 / static_cast<double>(saliency.size());
+      }
+    }
+    EXPECT_NEAR(mean[0], mean[1], 0.01 * mean[1]) << temporal;
+    for (int level = 0; level < 4; ++level)
+      EXPECT_NEAR(by_level[0][level], by_level[1][level], 0.01) << temporal << " level " << level;
+  }
+}
+TEST(SaliencyInSimulations, RecalledNeighboursTellWhatASearchTells) {
+  recalled_neighbours_tell_what_a_search_tells(Backend::Cpu);
+}
+TEST(SaliencyInSimulationsGpu, RecalledNeighboursTellWhatASearchTells) {
+  recalled_neighbours_tell_what_a_search_tells(Backend::Cuda);
+}
+
 /// A fluid whose numbers change on the way does from then on what one that was made with them does.
 void numbers_change_while_it_runs(Backend backend) {
   const auto changed = make(backend, MethodKind::Ours, true);
