@@ -156,9 +156,10 @@ struct FrameReport {
   double density_max = 0;         ///< max of rho / rho_0
   double neighbours_mean = 0;     ///< without self, within h
   double speed_max_m_s = 0;
-  std::int64_t poured = 0;     ///< by nozzles since the simulation was made, in units of m_*
-  std::int64_t particles_in = 0;   ///< particles that nozzles made
-  std::int64_t particles_out = 0;  ///< particles that they took; a nozzle of one level moves as many as it makes
+  std::int64_t poured = 0;        ///< by nozzles since the simulation was made, in units of m_*
+  std::int64_t particles_in = 0;  ///< particles that nozzles made
+  std::int64_t particles_out =
+      0;                       ///< particles that they took; a nozzle of one level moves as many as it makes
   std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured; mass_units + reservoir is constant
   GuardCounts guards;
   TemporalReport temporal;

@@ -17,14 +17,14 @@ struct ViewOptions {
   std::string n_star = "16k";
   std::string backend = "auto";
   std::string preset = "tuned";
-  std::string overlay = "none";  ///< what is painted over the water; headless, several with commas
-  std::string tau = "live";      ///< live or fixed:X
-  int levels = 4;                ///< N
-  std::optional<double> alpha;   ///< weight of the temporal feature; none = the preset's
+  std::string overlay = "none";   ///< what is painted over the water; headless, several with commas
+  std::string tau = "live";       ///< live or fixed:X
+  int levels = 4;                 ///< N
+  std::optional<double> alpha;    ///< weight of the temporal feature; none = the preset's
   std::optional<int> iterations;  ///< a substep; none = the scene's
-  std::string camera = "view";   ///< view | overview
-  std::string ptpe;              ///< fitted.toml; empty = none
-  std::string png_folder;        ///< empty = no pictures
+  std::string camera = "view";    ///< view | overview
+  std::string ptpe;               ///< fitted.toml; empty = none
+  std::string png_folder;         ///< empty = no pictures
   int width_px = 1280, height_px = 720;
   int frames = 100;
   int every = 1;  ///< a picture every so many frames

@@ -45,8 +45,8 @@ void Activation::list_active(Particles& p) {
   for_each("active flags", n, CopyFlags{p.active.data(), flags.data()});
   scanner.inclusive_sum(flags, ranks);
   for_each("active slots", n,
-           PlaceInSlots{flags.data(), ranks.data(), slots.data(), slot_of.data(), p.predicted.data(), p.predicted_next.data(),
-                        p.lambda.data(), p.density.data(), n});
+           PlaceInSlots{flags.data(), ranks.data(), slots.data(), slot_of.data(), p.predicted.data(),
+                        p.predicted_next.data(), p.lambda.data(), p.density.data(), n});
 }
 
 std::size_t Activation::bytes() const {

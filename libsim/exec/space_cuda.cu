@@ -16,9 +16,7 @@ void check(cudaError_t status, const char* what) {
                                                         : "check the driver, or use --backend cpu");
 }
 
-int team_wish(int n) {
-  return n < 150'000 ? 8 : n < 600'000 ? 4 : 1;
-}
+int team_wish(int n) { return n < 150'000 ? 8 : n < 600'000 ? 4 : 1; }
 
 std::string device_problem() {
   int devices = 0;

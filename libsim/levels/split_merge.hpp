@@ -8,8 +8,8 @@ namespace sim::SIM_BACKEND {
 
 /// Is the particle surrounded by water, or by water and walls? Counts its neighbours as if all were of its
 /// level: one that is seen from farther away because it is coarser fills more room and counts for less mass.
-SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const ParticleNeighbours& neighbours, int i,
-                         float least) {
+SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const ParticleNeighbours& neighbours,
+                         int i, float least) {
   const Vec4 self = position[i];
   float count = 0;
   for (int k = 0; k < neighbours.size(i); ++k) {

@@ -44,7 +44,8 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  std::int64_t mass_units = 0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
+  std::int64_t mass_units =
+      0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
   LevelSupports supports{};
   Vec3 refuge{};          ///< where a particle goes whose place is lost
   bool one_level = true;  ///< all particles have one level, for good
