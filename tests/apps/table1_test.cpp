@@ -8,43 +8,15 @@
 
 #include "libsim/render/png.hpp"
 #include "stats/base/file.hpp"
-#include "tests/apps/process.hpp"
-#include "tests/common/temporary_folder.hpp"
+#include "tests/apps/table_test_support.hpp"
 
 namespace {
 
-using apps::test::run_shell;
-using Row = std::map<std::string, std::string>;
+using apps::test::Row;
 
-class Table1E2e : public ::testing::Test {
+class Table1E2e : public apps::test::TableTest {
  protected:
-  apps::test::Ended table1(const std::string& arguments) const {
-    return run_shell("env -u DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR "/vip-bench table1 --backend cpu " +
-                     arguments);
-  }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::vector<Row> rows(const std::string& name) const {
-    std::istringstream lines(base::read_file(path(name), 1 << 16));
-    const auto cells = [](const std::string& line) {
-      std::vector<std::string> out;
-      std::istringstream stream(line);
-      for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
-      return out;
-    };
-    std::string line;
-    std::getline(lines, line);
-    const auto head = cells(line);
-    std::vector<Row> out;
-    while (std::getline(lines, line)) {
-      const auto values = cells(line);
-      EXPECT_EQ(values.size(), head.size());
-      Row row;
-      for (std::size_t i = 0; i < head.size(); ++i) row[head[i]] = values[i];
-      out.push_back(row);
-    }
-    return out;
-  }
-  test::TemporaryFolder folder;
+  apps::test::Ended table1(const std::string& arguments) const { return table("table1 " + arguments); }
 };
 
 TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {

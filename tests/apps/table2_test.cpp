@@ -6,50 +6,22 @@
 #include <string>
 
 #include "stats/base/file.hpp"
-#include "tests/apps/process.hpp"
-#include "tests/common/temporary_folder.hpp"
+#include "tests/apps/table_test_support.hpp"
 
 namespace {
 
-using apps::test::run_shell;
-using Row = std::map<std::string, std::string>;
+using apps::test::Row;
 
-class Table2E2e : public ::testing::Test {
+class Table2E2e : public apps::test::TableTest {
  protected:
-  apps::test::Ended table2(const std::string& arguments) const {
-    return run_shell("env -u DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR "/vip-bench table2 --backend cpu " +
-                     arguments);
-  }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::vector<Row> rows() const {
-    std::istringstream lines(base::read_file(path("t2.csv"), 1 << 16));
-    const auto cells = [](const std::string& line) {
-      std::vector<std::string> out;
-      std::istringstream stream(line);
-      for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
-      return out;
-    };
-    std::string line;
-    std::getline(lines, line);
-    const auto head = cells(line);
-    std::vector<Row> out;
-    while (std::getline(lines, line)) {
-      const auto values = cells(line);
-      EXPECT_EQ(values.size(), head.size());
-      Row row;
-      for (std::size_t i = 0; i < head.size(); ++i) row[head[i]] = values[i];
-      out.push_back(row);
-    }
-    return out;
-  }
-  test::TemporaryFolder folder;
+  apps::test::Ended table2(const std::string& arguments) const { return table("table2 " + arguments); }
 };
 
 TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
   const auto ended = table2("--scene Faucet --n-star 64 --frames 8 --warm-up 2 --csv " + path("t2.csv") +
                             " --markdown " + path("t2.md") + " --svg " + path("figures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
-  const auto table = rows();
+  const auto table = rows("t2.csv");
   // Ours-TSp has a row with the given tau and one with the measured.
   ASSERT_EQ(table.size(), 6u);
   std::map<std::string, Row> by_method;
