@@ -21,7 +21,8 @@ ActivationRules activation_rules(const Readings& readings);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
 Walls walls_of(const Scene& scene, bool gate_closed);
 
-/// Density and neighbour counts at the present positions; the state's columns are permuted but not changed.
+/// Density and neighbour counts at the present positions, measured on a copy: the run goes on as if nobody
+/// had asked.
 struct Measured {
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;
@@ -29,7 +30,7 @@ struct Measured {
   double speed_max_m_s = 0;
   double jump_share = 0;  ///< share of the pairs within h whose levels differ by more than one
 };
-Measured measure(FluidState& state);
+Measured measure(const FluidState& state);
 
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 1 %. Velocities stay.

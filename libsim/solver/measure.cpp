@@ -48,15 +48,45 @@ struct MeasureOne {
   }
 };
 
+/// The same fluid with particles, lists and guards of its own.
+FluidState copy_of(const FluidState& live) {
+  FluidState out;
+  out.parameters = live.parameters;
+  out.walls = live.walls;
+  out.domain = live.domain;
+  out.supports = live.supports;
+  out.finest_support = live.finest_support;
+  out.lightest_support = live.lightest_support;
+  out.one_level = live.one_level;
+  out.guards.resize(1);
+  out.guards.zero();
+  auto& p = out.particles;
+  const auto& from = live.particles;
+  p.allocate(columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Predicted,
+                     Column::Lambda, Column::Density),
+             from.size());
+  const auto copy = [](auto& to, const auto& source) {
+    copy_within(to.data(), source.data(), source.size() * sizeof(*source.data()));
+  };
+  copy(p.position, from.position);
+  copy(p.predicted, from.position);
+  copy(p.velocity, from.velocity);
+  copy(p.id, from.id);
+  copy(p.level, from.level);
+  return out;
+}
+
 }  // namespace
 
-Measured measure(FluidState& state) {
+Measured measure(const FluidState& live) {
   Measured out;
-  auto& p = state.particles;
-  const int n = p.size();
+  const int n = live.particles.size();
   if (n == 0) return out;
-  copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
-  neighbours_stage().run(state);
+  FluidState state = copy_of(live);
+  auto& p = state.particles;
+  do {
+    neighbours_stage().run(state);
+  } while (state.neighbours.grow());
   density_stage().run(state);
   const auto size = static_cast<std::size_t>(n);
   Array<float> excess(size);
@@ -73,7 +103,6 @@ Measured measure(FluidState& state) {
              MeasureJumps{p.position.data(), p.level.data(), state.neighbours.view(), near.data()});
     out.jump_share = fixed_order_sum(near, n) / pairs;
   }
-  state.lists_hold = false;  // A report leaves no trace in the run.
   out.density_max = static_cast<double>(maximum(p.density, n));
   out.speed_max_m_s = static_cast<double>(maximum(speed, n));
   return out;

@@ -18,7 +18,7 @@ class Table2E2e : public apps::test::TableTest {
 };
 
 TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
-  const auto ended = table2("--scene Faucet --n-star 64 --frames 8 --warm-up 2 --csv " + path("t2.csv") +
+  const auto ended = table2("--scene Faucet --n-star 64 --frames 4 --warm-up 1 --csv " + path("t2.csv") +
                             " --markdown " + path("t2.md") + " --svg " + path("figures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto table = rows("t2.csv");

@@ -91,7 +91,8 @@ void parts_make_up_the_whole(Backend backend) {
 TEST(SaliencyInSimulations, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cpu); }
 TEST(SaliencyInSimulationsGpu, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cuda); }
 
-/// Saliency reads the lists of the last substep; a report throws them away, and the next frame searches anew.
+/// Saliency reads the lists of the last substep; measuring it on the way throws them away, and the next frame
+/// searches anew.
 void recalled_neighbours_tell_what_a_search_tells(Backend backend) {
   for (const bool temporal : {false, true}) {
     sim::SimulationOptions options;
@@ -105,9 +106,9 @@ void recalled_neighbours_tell_what_a_search_tells(Backend backend) {
       const auto fluid = sim::make_simulation(scene(), options);
       fluid->look({{eye_at(ahead)}});
       for (int frame = 0; frame < 6; ++frame) fluid->step_frame();
-      if (searched) fluid->report();
-      fluid->step_frame();
       std::vector<sim::ParticleSaliency> saliency;
+      if (searched) fluid->measure_saliency({{eye_at(ahead)}}, saliency);
+      fluid->step_frame();
       fluid->read_saliency(saliency);
       ASSERT_FALSE(saliency.empty());
       mean[searched] = 0;
