@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -94,6 +95,14 @@ std::optional<double> tau_of(const std::string& word, const std::string& scene, 
                              sim::MethodKind method) {
   if (word == "table2") return paper_tau(scene, n_star, method);
   return sim::parse_tau(word);
+}
+
+std::string number(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return "inf";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
 }
 
 std::string to_csv(const TextTable& table) {

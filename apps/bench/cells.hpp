@@ -43,6 +43,9 @@ std::vector<sim::Preset> presets_of(const std::string& word);
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method);
 
+/// For a cell of a table; "-" for NaN, "inf" for either infinity.
+std::string number(double value, int digits);
+
 /// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
 struct TextTable {
   std::vector<std::string> head;

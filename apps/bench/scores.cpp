@@ -15,14 +15,6 @@ namespace {
 using Method = sim::MethodKind;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-std::string number(double value, int digits) {
-  if (std::isnan(value)) return "-";
-  if (std::isinf(value)) return "inf";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 std::vector<double> values_of(const Series& series) {
   std::vector<double> out;
   for (const auto& cell : series.cells) out.push_back(cell.value);

@@ -87,12 +87,6 @@ CellRun run_cell(const CellScene& scene, const sim::SimulationOptions& choice, c
   return run;
 }
 
-std::string number(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 /// What the speed-up compares: everything but rendering, median over frames.
 double solver_ms(const CellRun& run) {
   std::vector<double> sum(run.frame_ms.size());

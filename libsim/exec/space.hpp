@@ -111,6 +111,22 @@ class Scanner {
   Array<unsigned char> scratch_;
 };
 
+/// A functor of for_each_team is given the lanes that share its index: lane k takes a loop's steps k, k +
+/// size, ... and the parts are summed. Here it is one, and everything folds away.
+struct OneLane {
+  static constexpr int size = 1;
+  SIM_FN int rank() const { return 0; }
+  template <class T>
+  SIM_FN T sum(T value) const {
+    return value;
+  }
+  /// Lanes before this one that say yes, and how many of all do.
+  SIM_FN int before(bool mine, int& all) const {
+    all = mine;
+    return 0;
+  }
+};
+
 #ifdef SIM_CUDA
 
 void check(cudaError_t status, const char* what);
@@ -165,12 +181,11 @@ void in_one_block(const char* label, F f) {
 /// Passes over at most so many cells belong in one block.
 constexpr int one_block_cells = 8192;
 
-/// The lanes of a warp that share an index: lane k takes a loop's steps k, k + size, ... and the parts are
-/// summed. Size is a power of two.
+/// Lanes of a warp; the size is a power of two above one. The host only names the type.
+#ifdef __CUDA_ARCH__
 template <int Size>
 struct Lanes {
   static constexpr int size = Size;
-#ifdef __CUDA_ARCH__
   __device__ int rank() const { return static_cast<int>(threadIdx.x) & (Size - 1); }
   template <class T>
   __device__ T sum(T value) const {
@@ -179,31 +194,20 @@ struct Lanes {
     return value;
   }
   __device__ int before(bool mine, int& all) const {
-    if constexpr (Size == 1) {
-      all = mine;
-      return 0;
-    }
     const unsigned votes = __ballot_sync(mask(), mine) >> first();
     all = __popc(votes & whole);
     return __popc(votes & ((1u << rank()) - 1));
   }
 
  private:
-  static constexpr unsigned whole = Size == 32 ? 0xffffffffu : (1u << Size % 32) - 1;
+  static constexpr unsigned whole = (1u << Size) - 1;
   __device__ unsigned first() const { return threadIdx.x & 31u & ~static_cast<unsigned>(Size - 1); }
   __device__ unsigned mask() const { return whole << first(); }
-#else
-  int rank() const { return 0; }
-  template <class T>
-  T sum(T value) const {
-    return value;
-  }
-  int before(bool mine, int& all) const {
-    all = mine;
-    return 0;
-  }
-#endif
 };
+#else
+template <int Size>
+struct Lanes : OneLane {};
+#endif
 
 /// 1 / x to about one unit in the last place.
 SIM_FN float reciprocal(float x) {
@@ -217,7 +221,12 @@ SIM_FN float reciprocal(float x) {
 template <int Size, class F>
 __global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / Size);
-  if (i < n) f(i, Lanes<Size>{});
+  if (i >= n) return;
+  if constexpr (Size == 1) {
+    f(i, OneLane{});
+  } else {
+    f(i, Lanes<Size>{});
+  }
 }
 
 template <int Size, class F>
@@ -308,21 +317,6 @@ void in_one_block(const char* label, F f) {
 }
 /// Passes over at most so many cells belong in one block.
 constexpr int one_block_cells = 512;
-
-/// One lane an index: everything here folds away.
-struct OneLane {
-  static constexpr int size = 1;
-  int rank() const { return 0; }
-  template <class T>
-  T sum(T value) const {
-    return value;
-  }
-  /// Lanes before this one that say yes, and how many of all do.
-  int before(bool mine, int& all) const {
-    all = mine;
-    return 0;
-  }
-};
 
 template <class F>
 struct OnOneLane {

@@ -82,7 +82,7 @@ struct Readings {
   /// Eq. 14: dV/dl over |V| + epsilon, without unit; false leaves m/s.
   bool dimensionless_levels = true;
   /// Frames that a particle may stay inactive in a row; 0 = no limit. With 1 the centre of mass of a dam of
-  /// 32,768 particles stays within 1.7 % of the full solve's for 10 s at beta 0.3 to 0.9; with 2 or 3 no one
+  /// 32,768 particles stays within 2.04 % of the full solve's for 10 s at beta 0.3 to 0.9; with 2 or 3 no one
   /// damping held at all of them. At beta 0.3 it solves 76 % of the particles, with 2 68 %, with 3 66 %.
   int longest_rest_frames = 1;
   /// Inactive particles add the mean change that their cell's solved ones met; false: take the mean velocity.

@@ -125,9 +125,8 @@ struct SmallGrids {
   static constexpr int most = 16;
   GridView grid[most];
   int count;
-  bool first_is_finest;
 
-  SIM_FN bool push_only(int level) const { return first_is_finest && level == 0; }
+  SIM_FN bool push_only(int level) const { return grid[level].scale == 1; }
 
   template <class Block>
   SIM_FN void smooth(Block block, int level, int first_colour) const {
@@ -206,7 +205,7 @@ std::size_t Multigrid::first_small() const {
 
 SmallGrids Multigrid::small_grids() {
   const std::size_t small = first_small();
-  SmallGrids out{{}, static_cast<int>(levels_.size() - small), small == 0};
+  SmallGrids out{{}, static_cast<int>(levels_.size() - small)};
   for (std::size_t l = small; l < levels_.size(); ++l) out.grid[l - small] = view(l);
   return out;
 }

@@ -12,47 +12,6 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& options, int level) {
-  std::vector<ParticleState> out;
-  for (const auto& point : fill_positions(scene, options.method, options.n_star)) {
-    ParticleState particle;
-    particle.id = static_cast<int>(out.size());
-    particle.level = level;
-    particle.x_m = static_cast<float>(point[0]);
-    particle.y_m = static_cast<float>(point[1]);
-    particle.z_m = static_cast<float>(point[2]);
-    out.push_back(particle);
-  }
-  return out;
-}
-
-/// Refuses what the solver could not hold.
-void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive) {
-  std::vector<bool> taken(adaptive ? static_cast<std::size_t>(capacity) : 0);
-  for (const auto& particle : start) {
-    const std::string who = "start, particle " + std::to_string(particle.id);
-    if (particle.level < 0 || particle.level >= most_levels) {
-      throw base::Error(who, "has level " + std::to_string(particle.level), "use levels 0 to 3");
-    }
-    if (adaptive && (particle.id < 0 || particle.id >= capacity)) {
-      throw base::Error(who, "has an id outside 0 .. " + std::to_string(capacity - 1),
-                        "number the particles from 0");
-    }
-    if (!adaptive) continue;
-    const auto id = static_cast<std::size_t>(particle.id);
-    if (taken[id]) throw base::Error(who, "shares its id with another", "number the particles from 0");
-    taken[id] = true;
-  }
-}
-
-/// The finest and the coarsest level of the particles; `level` twice when there are none.
-std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level) {
-  if (start.empty()) return {level, level};
-  const auto [least, most] = std::minmax_element(
-      start.begin(), start.end(), [](const auto& a, const auto& b) { return a.level < b.level; });
-  return {least->level, most->level};
-}
-
 /// One entry a particle; `parts` may be empty.
 void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
                    const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out) {
@@ -248,9 +207,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
-    SaliencyState observer;
-    observer.readings = options_.readings;
-    observer.levels = options_.levels;
+    SaliencyState observer = make_observer();
     if (!observer.input.look(looks)) {
       throw base::Error("look", "a picture's GL buffers are out of this back end's reach",
                         "read the G-buffer back");
@@ -263,9 +220,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) override {
-    SaliencyState observer;
-    observer.readings = options_.readings;
-    observer.levels = options_.levels;
+    SaliencyState observer = make_observer();
     observer.input.look(looks);
     Array<float> s;
     Array<std::uint8_t> target;
@@ -309,6 +264,13 @@ class FluidSimulation final : public Simulation {
  private:
   bool follows_gaze() const { return traits_of(options_.method).target != TargetSource::None; }
   bool adaptive() const { return traits_of(options_.method).adaptive(); }
+
+  SaliencyState make_observer() const {
+    SaliencyState out;
+    out.readings = options_.readings;
+    out.levels = options_.levels;
+    return out;
+  }
 
   TemporalReport temporal_report() const {
     TemporalReport out{tolerance_.tau(), tolerance_.beta(), particle_count()};

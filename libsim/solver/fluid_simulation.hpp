@@ -2,6 +2,8 @@
 /// sim::Simulation on this back end.
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "libsim/simulation.hpp"
 #include "libsim/solver/schedule.hpp"
@@ -32,6 +34,13 @@ struct Measured {
 };
 Measured measure(const FluidState& state);
 
+/// The scene's water at rest, at one level, ids from 0.
+std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& options, int level);
+/// base::Error for what the solver could not hold: levels that do not exist and, where particles split and
+/// merge, ids that repeat or reach the capacity.
+void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive);
+/// The finest and the coarsest level of the particles; `level` twice when there are none.
+std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 1 %. Velocities stay.
 RelaxedStart relax_start(FluidState& state, int most);

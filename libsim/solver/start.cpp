@@ -1,4 +1,8 @@
+#include <algorithm>
+
+#include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
+#include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -31,6 +35,45 @@ double mean_compression(FluidState& state, Array<float>& excess, Array<float>& m
 }
 
 }  // namespace
+
+std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& options, int level) {
+  std::vector<ParticleState> out;
+  for (const auto& point : fill_positions(scene, options.method, options.n_star)) {
+    ParticleState particle;
+    particle.id = static_cast<int>(out.size());
+    particle.level = level;
+    particle.x_m = static_cast<float>(point[0]);
+    particle.y_m = static_cast<float>(point[1]);
+    particle.z_m = static_cast<float>(point[2]);
+    out.push_back(particle);
+  }
+  return out;
+}
+
+void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive) {
+  std::vector<bool> taken(adaptive ? static_cast<std::size_t>(capacity) : 0);
+  for (const auto& particle : start) {
+    const std::string who = "start, particle " + std::to_string(particle.id);
+    if (particle.level < 0 || particle.level >= most_levels) {
+      throw base::Error(who, "has level " + std::to_string(particle.level), "use levels 0 to 3");
+    }
+    if (adaptive && (particle.id < 0 || particle.id >= capacity)) {
+      throw base::Error(who, "has an id outside 0 .. " + std::to_string(capacity - 1),
+                        "number the particles from 0");
+    }
+    if (!adaptive) continue;
+    const auto id = static_cast<std::size_t>(particle.id);
+    if (taken[id]) throw base::Error(who, "shares its id with another", "number the particles from 0");
+    taken[id] = true;
+  }
+}
+
+std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level) {
+  if (start.empty()) return {level, level};
+  const auto [least, most] = std::minmax_element(
+      start.begin(), start.end(), [](const auto& a, const auto& b) { return a.level < b.level; });
+  return {least->level, most->level};
+}
 
 RelaxedStart relax_start(FluidState& state, int most) {
   auto& p = state.particles;
