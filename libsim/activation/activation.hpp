@@ -35,12 +35,14 @@ struct ActivationRules {
   bool keep_fragile_active = true;
   /// Frames in a row that a particle may be left out; 0 = no limit.
   int longest_rest = 1;
+  /// Frames in a row that it is then solved at least, where there is such a limit.
+  int least_work = 2;
   /// epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2.
   float speed_floor = 0.1f;
 };
 
 /// Fields of Column::Rest.
-constexpr std::uint8_t rest_count_mask = 0x0f;  ///< frames in a row without being solved, at most 15
+constexpr std::uint8_t rest_count_mask = 0x0f;  ///< see Choose::count_after; at most 15
 constexpr std::uint8_t rest_nowhere = 0x40;     ///< the grid knows no velocity here
 constexpr std::uint8_t rest_sparse = 0x80;      ///< had few neighbours when last solved
 

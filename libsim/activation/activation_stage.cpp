@@ -41,16 +41,24 @@ struct Choose {
     const float p = beta + (1 - beta) * range->normalised(importance[i]);
     probability[i] = p;
     start_cell[i] = near.cell_of(xyz(position[i]));
-    const int rested = rest[i] & rest_count_mask;
+    const int count = rest[i] & rest_count_mask;
     const bool on = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p || must_be_solved(i);
     active[i] = on;
+    rest[i] = static_cast<std::uint8_t>((rest[i] & ~rest_count_mask) | count_after(count, on));
     if (on) return;
-    const int longer = rested < rest_count_mask ? rested + 1 : rested;
-    rest[i] = static_cast<std::uint8_t>((rest[i] & ~rest_count_mask) | longer);
     if (!rules.inherit_change) {
       const CellCorners corners = grid.corners(xyz(position[i]));
       velocity[i] = with_w(xyz(sample(mean_velocity, level[i] * grid.cells(), corners)), 0);
     }
+  }
+
+  /// Counts the frames of a rest, then on from the longest one while the particle must be solved; 0: it may
+  /// rest.
+  SIM_FN int count_after(int count, bool on) const {
+    if (!on) return count < rest_count_mask ? count + 1 : count;
+    if (rules.longest_rest <= 0 || count == 0) return 0;
+    const int next = (count < rules.longest_rest ? rules.longest_rest : count) + 1;
+    return next < rules.longest_rest + rules.least_work ? next : 0;
   }
 
   SIM_FN bool must_be_solved(int i) const {
@@ -218,7 +226,9 @@ struct MarkSparse {
   const float* density;
   std::uint8_t* rest;
   SIM_FN void operator()(int i) const {
-    if (active[i]) rest[i] = density[i] < sparse_density ? rest_sparse : std::uint8_t{0};
+    if (active[i])
+      rest[i] = static_cast<std::uint8_t>((rest[i] & rest_count_mask) |
+                                          (density[i] < sparse_density ? rest_sparse : 0));
   }
 };
 

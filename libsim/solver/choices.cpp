@@ -66,6 +66,7 @@ ActivationRules activation_rules(const Readings& readings) {
   out.others_yield = readings.inactive_yield;
   out.keep_fragile_active = readings.keep_fragile_active;
   out.longest_rest = readings.longest_rest_frames;
+  out.least_work = readings.least_work_frames;
   out.speed_floor = static_cast<float>(readings.speed_floor);
   return out;
 }

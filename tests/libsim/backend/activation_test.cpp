@@ -208,23 +208,32 @@ SIM_TEST(Activation, WithBetaOneEveryoneIsSolved) {
   for (const auto active : state.particles.active.to_host()) EXPECT_EQ(active, 1);
 }
 
-SIM_TEST(Activation, NobodyRestsLongerThanTheRuleAllows) {
+SIM_TEST(Activation, RestsAreNoLongerAndWorkNoShorterThanTheRulesAllow) {
+  constexpr int never = 1000;
   for (const int most : {1, 3}) {
-    auto state = ready(drops(2000, 5), 0.05f);
-    state.activation.rules.longest_rest = most;
-    std::vector<int> rested(2000, 0);
-    int longest = 0;
-    for (std::uint32_t frame = 0; frame < 12; ++frame) {
-      state.activation.frame = frame;
-      activation_stage().run(state);
-      const auto active = state.particles.active.to_host();
-      for (std::size_t i = 0; i < active.size(); ++i) {
-        rested[i] = active[i] ? 0 : rested[i] + 1;
-        longest = std::max(longest, rested[i]);
+    for (const int least : {1, 2, 4}) {
+      auto state = ready(drops(2000, 5), 0.05f);
+      state.activation.rules.longest_rest = most;
+      state.activation.rules.least_work = least;
+      std::vector<int> rested(2000, 0);
+      std::vector<int> worked(2000, never);
+      int longest = 0;
+      int shortest = never;
+      for (std::uint32_t frame = 0; frame < 24; ++frame) {
+        state.activation.frame = frame;
+        activation_stage().run(state);
+        const auto active = state.particles.active.to_host();
+        for (std::size_t i = 0; i < active.size(); ++i) {
+          if (!active[i] && rested[i] == 0) shortest = std::min(shortest, worked[i]);
+          rested[i] = active[i] ? 0 : rested[i] + 1;
+          worked[i] = active[i] ? std::min(worked[i] + 1, never) : 0;
+          longest = std::max(longest, rested[i]);
+        }
+        velocity_grid_stage().run(state);
       }
-      velocity_grid_stage().run(state);
+      EXPECT_EQ(longest, most);
+      EXPECT_EQ(shortest, least);
     }
-    EXPECT_EQ(longest, most);
   }
 }
 
