@@ -127,6 +127,7 @@ void fit_scratch(LevelState& l, const Particles& p) {
 }
 
 void split_and_merge(FluidState& state) {
+  state.levels.changed = false;
   if (state.particles.size() == 0) return;
   fit_scratch(state.levels, state.particles);
   const bool any_split = choose_splits(state);
@@ -145,7 +146,8 @@ void compact(FluidState& state, bool any_split) {
   for_each("count births", n, CountBirths{l.split_code.data(), l.gone.data(), l.births.data()});
   l.scanner.inclusive_sum(l.births, l.places);
   const int after = last_of(l.places);
-  if (!any_split && after == n) return;
+  l.changed = any_split || after != n;
+  if (!l.changed) return;
   if (any_split) list_free_ids(state);
   const auto size = static_cast<std::size_t>(after);
   l.order.resize(size);

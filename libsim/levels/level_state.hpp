@@ -36,6 +36,8 @@ struct LevelRules {
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
   float kick_filter = 0.9f;
+  /// Projections of positions alone round what has just split or merged.
+  int partings = 3;
 };
 
 /// What happened, counted on the device since the simulation was made.
@@ -62,6 +64,7 @@ struct LevelState {
   LevelRules rules;
   TargetSphere forced;
   std::uint32_t frame = 0;  ///< a counter of the random numbers
+  bool changed = false;     ///< something split or merged this frame
   Array<LevelCounts> counts;
   /// Target, History, Age and Waiting of fresh particles; called once when a run begins.
   void begin(Particles& particles);

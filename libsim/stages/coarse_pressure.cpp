@@ -31,8 +31,9 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
     float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
-    // Not less than half: the cells are what keeps a whole tank that splits from getting too dense.
-    if (ease) excess *= 0.5f + 0.5f * ease[i];
+    // Not much less: the cells are what keeps a whole tank that splits from getting too dense, and what they
+    // leave for later comes back as speed.
+    if (ease) excess *= 0.75f + 0.25f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
     };

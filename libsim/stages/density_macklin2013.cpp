@@ -111,6 +111,9 @@ void run(FluidState& state) {
 
 void measure_density(FluidState& state, EverySlot everyone) { launch<true>(state, everyone); }
 
+void measure_density(FluidState& state, BesideFresh<AllParticles> fresh) { launch<true>(state, fresh); }
+void measure_density(FluidState& state, BesideFresh<ActiveParticles> fresh) { launch<true>(state, fresh); }
+
 Stage density_stage() {
   return {"density constraint",
           "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",

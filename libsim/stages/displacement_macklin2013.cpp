@@ -127,6 +127,9 @@ void run(FluidState& state) {
 
 }  // namespace
 
+void displace(FluidState& state, BesideFresh<AllParticles> fresh) { launch<false>(state, fresh); }
+void displace(FluidState& state, BesideFresh<ActiveParticles> fresh) { launch<false>(state, fresh); }
+
 Stage displacement_stage() {
   return {"displacement",
           "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",

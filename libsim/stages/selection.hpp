@@ -40,4 +40,18 @@ struct EverySlot {
   SIM_FN float moves(int) const { return 1; }
 };
 
+/// Those of another selection within the support of a particle that split or merged this frame, themselves
+/// included: the share of the constraint round them is the least.
+template <class Selection>
+struct BesideFresh {
+  static constexpr bool everyone = false;
+  Selection select;
+  const float* ease;
+  float least;
+  SIM_FN int operator()(int slot) const {
+    const int i = select(slot);
+    return i >= 0 && ease[i] <= least ? i : -1;
+  }
+};
+
 }  // namespace sim::SIM_BACKEND

@@ -59,6 +59,8 @@ Stage neighbours_stage();
 Stage ease_stage();
 /// The slow part of the pressure, solved on cells and applied first.
 Stage coarse_pressure_stage();
+/// Parts what overlaps after a split or a merge, without giving it speed.
+Stage parting_stage();
 /// Density, unilateral constraint and its multiplier lambda.
 Stage density_stage();
 /// The constraint's multipliers times these shares.
@@ -81,6 +83,12 @@ Stage velocity_grid_stage();
 
 /// Densities at the predicted positions outside the schedule, over lists that belong to slots.
 void measure_density(FluidState& state, EverySlot everyone);
+/// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
+/// place in both buffers.
+void measure_density(FluidState& state, BesideFresh<AllParticles> fresh);
+void measure_density(FluidState& state, BesideFresh<ActiveParticles> fresh);
+void displace(FluidState& state, BesideFresh<AllParticles> fresh);
+void displace(FluidState& state, BesideFresh<ActiveParticles> fresh);
 
 /// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
 /// columns and fills the given ones in the new order.

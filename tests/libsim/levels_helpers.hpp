@@ -92,15 +92,19 @@ struct Settled {
   }
 };
 
-/// Potential energy over m_* g, m, and kinetic over m_*, m2/s2.
-inline double energy(const std::vector<ParticleState>& state) {
+/// Over m_*, m2/s2.
+inline double kinetic_energy(const std::vector<ParticleState>& state) {
   double sum = 0;
   for (const auto& p : state) {
     const auto [x, y, z] = std::array{static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s),
                                       static_cast<double>(p.vz_m_s)};
-    sum += (1 << p.level) * (gravity * static_cast<double>(p.y_m) + 0.5 * (x * x + y * y + z * z));
+    sum += (1 << p.level) * 0.5 * (x * x + y * y + z * z);
   }
   return sum;
+}
+/// Potential and kinetic, over m_*, m2/s2.
+inline double energy(const std::vector<ParticleState>& state) {
+  return gravity * mass_centre_height(state) * static_cast<double>(mass_units(state)) + kinetic_energy(state);
 }
 
 }  // namespace levels_test
