@@ -21,12 +21,33 @@ struct CellSum {
   std::uint64_t volume, excess;
 };
 
+/// The coarse pressure's cells. They fit whole between the walls: for the equation a wall stands where its
+/// cell ends, and the little water before a wall that cuts a cell would weigh as much as a full cell.
+struct PressureFrame {
+  Vec3 low{};
+  Vec3 edge{1, 1, 1};
+
+  /// A place in cells.
+  SIM_FN Vec3 in_cells(Vec3 x) const {
+    const Vec3 from = x - low;
+    return {from.x / edge.x, from.y / edge.y, from.z / edge.z};
+  }
+  SIM_FN Vec3 in_metres(Vec3 cells) const {
+    return low + Vec3{edge.x * cells.x, edge.y * cells.y, edge.z * cells.z};
+  }
+  /// Volume over upright edge, the unit in which sources C V and the conductances of faces are given.
+  SIM_FN float floor_area() const { return edge.x * edge.z; }
+  /// Area over way of the faces across x, y and z.
+  Vec3 conductance() const { return {edge.z / edge.x, floor_area() / (edge.y * edge.y), edge.x / edge.z}; }
+};
+
 struct CoarseGrid {
-  CellFrame frame;
+  PressureFrame frame;
   Array<CellSum> sums;
   Multigrid multigrid;
 
-  /// Cells of `edge`, or wider where the domain would need more than `most_cells`.
+  /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
+  /// wider or narrower as makes whole ones fit between the walls.
   void fit(const Domain& domain, float edge);
   static constexpr double most_cells = 1 << 24;
 };

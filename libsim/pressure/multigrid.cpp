@@ -30,7 +30,7 @@ struct Coarsen {
 };
 
 /// A cell's equation without its own q: the sum of conductances and of conductance x q. Conductance = area
-/// over way, in finest cells.
+/// over way, in finest cells, times theirs.
 struct Around {
   float weights = 0;
   float sum = 0;
@@ -43,13 +43,13 @@ struct Around {
     const float x = grid.extent(p.x, grid.finest.nx);
     const float y = grid.extent(p.y, grid.finest.ny);
     const float z = grid.extent(p.z, grid.finest.nz);
-    const float way = 1 / static_cast<float>(grid.scale);
-    add(grid, y * z * way, p.x - 1, p.y, p.z);
-    add(grid, y * z * way, p.x + 1, p.y, p.z);
-    add(grid, x * z * way, p.x, p.y - 1, p.z);
-    add(grid, x * z * way, p.x, p.y + 1, p.z);
-    add(grid, x * y * way, p.x, p.y, p.z - 1);
-    add(grid, x * y * way, p.x, p.y, p.z + 1);
+    const Vec3 over = (1 / static_cast<float>(grid.scale)) * grid.conductance;
+    add(grid, y * z * over.x, p.x - 1, p.y, p.z);
+    add(grid, y * z * over.x, p.x + 1, p.y, p.z);
+    add(grid, x * z * over.y, p.x, p.y - 1, p.z);
+    add(grid, x * z * over.y, p.x, p.y + 1, p.z);
+    add(grid, x * y * over.z, p.x, p.y, p.z - 1);
+    add(grid, x * y * over.z, p.x, p.y, p.z + 1);
   }
 };
 
@@ -165,7 +165,8 @@ struct CoarsenSmall {
 
 }  // namespace
 
-void Multigrid::fit(CellBlock finest) {
+void Multigrid::fit(CellBlock finest, Vec3 conductance) {
+  conductance_ = conductance;
   if (!levels_.empty()) {
     const CellBlock now = levels_.front().block;
     if (finest.nx == now.nx && finest.ny == now.ny && finest.nz == now.nz) return;
@@ -185,7 +186,8 @@ void Multigrid::fit(CellBlock finest) {
 
 GridView Multigrid::view(std::size_t level) {
   auto& at = levels_[level];
-  return {at.block, levels_.front().block, 1 << level, at.kind.data(), at.q.data(), at.source.data()};
+  return {at.block,       levels_.front().block, conductance_,    1 << level,
+          at.kind.data(), at.q.data(),           at.source.data()};
 }
 
 void Multigrid::smooth(std::size_t level, int first_colour) {

@@ -26,7 +26,8 @@ struct CellBlock {
 /// six neighbours j that are not solid = source_i.
 struct GridView {
   CellBlock block, finest;
-  int scale;  ///< edge of a cell in finest cells
+  Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubes
+  int scale;         ///< edge of a cell in finest cells
   CellKind* kind;
   float* q;
   float* source;
@@ -50,9 +51,11 @@ struct SmallGrids;
 
 class Multigrid {
  public:
-  /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed.
-  void fit(CellBlock finest);
-  /// The finest grid. Write kind and source (edge^2 C of each fluid cell), then solve.
+  /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed. The
+  /// conductance of a face is its area over the way across it.
+  void fit(CellBlock finest, Vec3 conductance = {1, 1, 1});
+  /// The finest grid. Write kind and source (C times the volume of each fluid cell, in the unit of
+  /// conductances), then solve.
   GridView finest() { return view(0); }
   /// Runs V-cycles from q = 0.
   void solve(int cycles);
@@ -73,6 +76,7 @@ class Multigrid {
   void smooth(std::size_t level, int first_colour);
 
   std::vector<Level> levels_;
+  Vec3 conductance_{1, 1, 1};
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -16,14 +16,14 @@ struct Gather {
   const Vec4* predicted;
   const float* density;
   const float* ease;  ///< of its constraint; nullptr where nothing splits or merges
-  CellFrame frame;
+  PressureFrame frame;
   CellBlock block;
   CellSum* sums;
   float unit_volume;
 
   SIM_FN void operator()(int i) const {
     const Vec4 p = predicted[i];
-    const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
+    const Vec3 at = frame.in_cells(xyz(p));
     const int x = static_cast<int>(floorf(at.x));
     const int y = static_cast<int>(floorf(at.y));
     const int z = static_cast<int>(floorf(at.z));
@@ -49,9 +49,9 @@ struct Gather {
 /// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
 constexpr float surface_deficit = 0.05f;
 
-/// Turns sums into the equation: source edge^2 times the mean C of a cell's particles.
+/// Turns sums into the equation: the source is the mean C of a cell's particles times the cell's volume.
 struct Classify {
-  CellFrame frame;
+  PressureFrame frame;
   GridView grid;
   Walls walls;
   const CellSum* sums;
@@ -64,14 +64,14 @@ struct Classify {
           static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
       if (excess > -surface_deficit) {
         grid.kind[i] = CellKind::Fluid;
-        grid.source[i] = frame.edge * frame.edge * excess;
+        grid.source[i] = frame.floor_area() * excess;
         return;
       }
     }
     const CellBlock& block = grid.block;
     const auto centre = [](int cell) { return static_cast<float>(cell) + 0.5f; };
     const Vec3 at{centre(i % block.nx), centre(i / block.nx % block.ny), centre(i / (block.nx * block.ny))};
-    grid.kind[i] = walls.holds(frame.low + frame.edge * at) ? CellKind::Air : CellKind::Solid;
+    grid.kind[i] = walls.holds(frame.in_metres(at)) ? CellKind::Air : CellKind::Solid;
   }
 };
 
@@ -81,7 +81,7 @@ struct Shift {
   Selection select;
   Vec4* predicted;
   Vec4* next;
-  CellFrame frame;
+  PressureFrame frame;
   GridView grid;
   Walls walls;
   Guards* guards;
@@ -96,9 +96,10 @@ struct Shift {
       if (rests) i = ~i;
     }
     const Vec4 p = predicted[i];
-    const Vec3 at = (1 / frame.edge) * (xyz(p) - frame.low);
+    const Vec3 at = frame.in_cells(xyz(p));
     Vec3 x = xyz(p);
-    x += (1 / frame.edge) * Vec3{along<1, 0, 0>(at), along<0, 1, 0>(at), along<0, 0, 1>(at)};
+    x += Vec3{along<1, 0, 0>(at) / frame.edge.x, along<0, 1, 0>(at) / frame.edge.y,
+              along<0, 0, 1>(at) / frame.edge.z};
     if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, p.w);
     // No projection moves it: both buffers hold its place.

@@ -27,7 +27,7 @@ struct SolverParameters {
   float momentum = 0.4f;
   /// V-cycles of the coarse pressure before the projections; 0 leaves the pass out.
   int coarse_cycles = 2;
-  /// Edge of its cells as a share of the finest h.
+  /// Edge of its cells as a share of the finest h, before it is fitted between the walls.
   float coarse_edge = 2;
   /// XSPH c; 0 leaves the pass out.
   float viscosity = 0.1f;

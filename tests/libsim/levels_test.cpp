@@ -13,7 +13,8 @@ namespace {
 
 using namespace levels_test;
 
-void events_conserve(Backend backend) {
+/// `share` of sqrt(g d): how far the mean velocity may drift.
+void events_conserve(Backend backend, int coarse_cycles, double share) {
   // S6: a blob without gravity, far from walls, with random velocities and a target that comes and goes.
   auto scene = fluid_test::tank({8, 8, 8}, {12 * d, 16 * d, 12 * d});
   scene.gravity_m_s2 = 0;
@@ -27,6 +28,7 @@ void events_conserve(Backend backend) {
   }
   auto options = options_for(backend, Settled::n_star, everywhere(3));
   options.start = start;
+  options.coarse_cycles = coarse_cycles;
   const auto fluid = sim::make_simulation(scene, options);
   const auto before = momentum(start);
   const auto mass = mass_units(start);
@@ -46,12 +48,16 @@ void events_conserve(Backend backend) {
   EXPECT_GT(events.splits + events.merges, 2000u);
   EXPECT_GT(events.energy_lost_j, 0);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(after[k], before[k], 1e-4 * static_cast<double>(mass) * std::sqrt(gravity * d));
+    EXPECT_NEAR(after[k], before[k], share * static_cast<double>(mass) * std::sqrt(gravity * d));
   }
   expect_sound(*fluid, static_cast<std::int64_t>(start.size()), mass);
 }
-TEST(Levels, EventsConserveMassAndMomentum) { events_conserve(Backend::Cpu); }
-TEST(LevelsGpu, EventsConserveMassAndMomentum) { events_conserve(Backend::Cuda); }
+TEST(Levels, EventsConserveMassAndMomentum) { events_conserve(Backend::Cpu, 0, 5e-5); }
+TEST(LevelsGpu, EventsConserveMassAndMomentum) { events_conserve(Backend::Cuda, 0, 5e-5); }
+// The pressure on cells is no pair force: it keeps the momentum only as far as its cells resolve the blob,
+// and where the blob lies between them decides (0.04 to 1.9 mm/s for offsets of 0, 0.1 and 0.3 m).
+TEST(Levels, CoarsePressureKeepsMomentumNearly) { events_conserve(Backend::Cpu, 2, 2e-3); }
+TEST(LevelsGpu, CoarsePressureKeepsMomentumNearly) { events_conserve(Backend::Cuda, 2, 2e-3); }
 
 void one_event_is_exact(Backend backend) {
   // One split of each k and one merge, alone in the air without gravity.
