@@ -4,37 +4,43 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// What parted them is moved at the substep's beginning too, so that no velocity comes of it.
-template <class Selection>
+/// Moves by what parted them, at the substep's beginning and where the substep leads, so that no velocity
+/// comes of it.
 struct Follow {
-  BesideFresh<Selection> fresh;
-  const Vec4* before;
-  const Vec4* predicted;
+  const Vec4* parted;
+  const Vec4* led_to;
   Vec4* position;
-  SIM_FN void operator()(int slot) const {
-    const int i = fresh(slot);
-    if (i < 0) return;
+  Vec4* predicted;
+  Vec4* predicted_next;
+  SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
-    position[i] = with_w(xyz(at) + (xyz(predicted[i]) - xyz(before[i])), at.w);
+    const Vec3 to = xyz(led_to[i]) + (xyz(parted[i]) - xyz(at));
+    position[i] = with_w(xyz(parted[i]), at.w);
+    predicted[i] = with_w(to, at.w);
+    predicted_next[i] = predicted[i];
   }
 };
 
+/// Parts at the substep's beginning: what is dense there is overlap, while on its way water is compressed
+/// too.
 template <class Selection>
 void launch(FluidState& state, Selection select) {
   auto& p = state.particles;
   const auto& rules = state.levels.rules;
   const auto bytes = static_cast<std::size_t>(p.size()) * sizeof(Vec4);
-  Vec4* before = p.velocity_next.data();
-  copy_within(before, p.predicted.data(), bytes);
-  copy_within(p.predicted_next.data(), p.predicted.data(), bytes);
+  Vec4* led_to = p.velocity_next.data();
+  copy_within(led_to, p.predicted.data(), bytes);
+  copy_within(p.predicted.data(), p.position.data(), bytes);
+  copy_within(p.predicted_next.data(), p.position.data(), bytes);
   p.lambda.zero();
   const BesideFresh<Selection> fresh{select, p.ease.data(), rules.ease[0]};
   for (int k = 0; k < rules.partings; ++k) {
     measure_density(state, fresh);
     displace(state, fresh);
   }
-  for_each("follow parting", p.size(),
-           Follow<Selection>{fresh, before, p.predicted.data(), p.position.data()});
+  for_each(
+      "follow parting", p.size(),
+      Follow{p.predicted.data(), led_to, p.position.data(), p.predicted.data(), p.predicted_next.data()});
 }
 
 }  // namespace
