@@ -1,28 +1,208 @@
 #include "libstudy/design/plan.hpp"
 
+#include <algorithm>
+#include <map>
 #include <numeric>
+
+#include "libstudy/design/orders.hpp"
+#include "stats/base/error.hpp"
 
 namespace study {
 
 namespace {
-// Schedule seeds are drawn far from the counters of the shuffle.
+
+// Seeds of schedules, practice, repeats and catches are drawn far from the counters of the shuffles.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
+constexpr std::uint64_t first_extra_counter = 1ull << 41;
+constexpr std::uint64_t counters_per_block = 1ull << 32;
+
+/// Shares a level of one of the factors.
+bool share_level(const Design& design, const Cell& a, const Cell& b) {
+  return std::any_of(
+      design.never_adjacent.begin(), design.never_adjacent.end(), [&](const std::string& factor) {
+        if (factor == "method") return a.stimulus.method == b.stimulus.method;
+        return factor == "mean_fps" ? a.setting.mean == b.setting.mean : a.setting.sd == b.setting.sd;
+      });
+}
+
+class Planner {
+ public:
+  Planner(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot)
+      : protocol_(protocol),
+        design_(protocol.design),
+        key_(random_key(protocol.sha256 + '\n' + participant + '\n' + std::to_string(seed))),
+        random_(key_) {
+    plan_.slot = slot;
+    groups_ = groups_met(protocol, slot, key_);
+    round_ = slot / sequence_count(protocol);
+    turn_ = slot % sequence_count(protocol) + round_;
+  }
+
+  Plan make() {
+    for (std::size_t block = 0; block < protocol_.blocks.size(); ++block) add(static_cast<int>(block));
+    scatter_catches();
+    for (std::size_t i = 0; i < plan_.units.size(); ++i) plan_.units[i].position = static_cast<int>(i);
+    return std::move(plan_);
+  }
+
+ private:
+  const Block& block(int index) const { return protocol_.blocks[static_cast<std::size_t>(index)]; }
+
+  void add(int index) {
+    switch (block(index).kind) {
+      case BlockKind::Stimulus:
+        return add_design(index);
+      case BlockKind::Practice:
+        return add_practice(index);
+      case BlockKind::Repeat:
+        return add_repeats(index);
+      case BlockKind::Catch:
+        return;  // among the trials
+      default:
+        add_page(index);
+    }
+  }
+
+  void add_page(int index) { plan_.units.push_back({0, index, {}}); }
+
+  void add_trial(PlannedTrial trial) {
+    trial.position = static_cast<int>(plan_.trials.size());
+    const auto cells = static_cast<std::uint64_t>(trial.first) * 4096 +
+                       static_cast<std::uint64_t>(trial.second.value_or(0)) * 2;
+    trial.schedule_seed = counter_random(
+        key_, first_schedule_counter + static_cast<std::uint64_t>(trial.block) * counters_per_block + cells);
+    plan_.units.push_back({0, trial.block, trial.position});
+    plan_.trials.push_back(trial);
+  }
+
+  void add_design(int index) {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (g > 0 && block(index).between_groups_s > 0) add_page(index);
+      const auto candidates = trials_of(static_cast<int>(g), index);
+      for (const int i : order_of(candidates, static_cast<int>(g)))
+        add_trial(candidates[static_cast<std::size_t>(i)]);
+    }
+  }
+
+  /// The trials of one group in file order.
+  std::vector<PlannedTrial> trials_of(int g, int index) const {
+    const auto cells = cell_groups(design_)[static_cast<std::size_t>(groups_[static_cast<std::size_t>(g)])];
+    std::vector<PlannedTrial> out;
+    PlannedTrial trial;
+    trial.block = index;
+    trial.group = g;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      trial.first = cells[i];
+      if (!design_.pairs) out.push_back(trial);
+      for (std::size_t j = i + 1; design_.pairs && j < cells.size(); ++j) {
+        trial.first = cells[i];
+        trial.second = cells[j];
+        if (mirrored(static_cast<int>(out.size()))) std::swap(trial.first, *trial.second);
+        out.push_back(trial);
+      }
+    }
+    return out;
+  }
+
+  /// Whether a pair is shown second cell first: rounds come in couples of a random choice and its opposite,
+  /// the same for all participants of a round.
+  bool mirrored(int pair) const {
+    if (design_.assignment == Assignment::PaperRandom)
+      return counter_random(key_, first_extra_counter + static_cast<std::uint64_t>(pair)) & 1;
+    const std::uint64_t couple = random_key(protocol_.sha256 + "\ninterval " + std::to_string(round_ / 2));
+    return ((counter_random(couple, static_cast<std::uint64_t>(pair)) ^ static_cast<std::uint64_t>(round_)) &
+            1) != 0;
+  }
+
+  std::vector<int> order_of(const std::vector<PlannedTrial>& trials, int g) {
+    const auto k = static_cast<int>(trials.size());
+    const int row = turn_ + g;
+    if (design_.order == TrialOrder::Latin) return latin_row(k, row % k);
+    if (design_.order == TrialOrder::Williams) return williams_row(k, row % williams_rows(k));
+    if (design_.order == TrialOrder::Constrained) {
+      const auto cell = [&](int i) {
+        return design_.cells[static_cast<std::size_t>(trials[static_cast<std::size_t>(i)].first)];
+      };
+      auto out = order_without_clashes(
+          k, [&](int a, int b) { return share_level(design_, cell(a), cell(b)); }, random_);
+      if (!out.empty()) return out;
+      throw base::Error("protocol " + protocol_.name, "has no order that keeps never_adjacent",
+                        "name fewer factors, or use order = \"shuffle\"");
+    }
+    std::vector<int> out(trials.size());
+    std::iota(out.begin(), out.end(), 0);
+    shuffle(out, random_);
+    return out;
+  }
+
+  RandomStream extra(int index) const {
+    return RandomStream(key_,
+                        first_extra_counter + static_cast<std::uint64_t>(index + 1) * counters_per_block);
+  }
+
+  /// Drawn without return from the first group, then again.
+  void add_practice(int index) {
+    auto random = extra(index);
+    const auto candidates = trials_of(0, index);
+    add_drawn(candidates, block(index).count, index, random);
+  }
+
+  void add_repeats(int index) {
+    auto random = extra(index);
+    std::vector<PlannedTrial> shown;
+    for (const auto& trial : plan_.trials) {
+      if (block(trial.block).id == block(index).like) shown.push_back(trial);
+    }
+    add_drawn(shown, block(index).count, index, random);
+  }
+
+  void add_drawn(const std::vector<PlannedTrial>& candidates, int count, int index, RandomStream& random) {
+    std::vector<PlannedTrial> left;
+    for (int i = 0; i < count; ++i) {
+      if (left.empty()) {
+        left = candidates;
+        shuffle(left, random);
+      }
+      left.back().block = index;
+      add_trial(left.back());
+      left.pop_back();
+    }
+  }
+
+  /// Each catch page follows a trial of its own, drawn at random.
+  void scatter_catches() {
+    for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
+      const Block& catches = protocol_.blocks[index];
+      if (catches.kind != BlockKind::Catch) continue;
+      std::vector<int> places;  // positions of trials
+      for (const auto& trial : plan_.trials) {
+        if (block(trial.block).id == catches.like) places.push_back(trial.position);
+      }
+      auto random = extra(static_cast<int>(index));
+      shuffle(places, random);
+      places.resize(std::min(places.size(), static_cast<std::size_t>(catches.count)));
+      for (const int place : places) {
+        const auto after = std::find_if(plan_.units.begin(), plan_.units.end(),
+                                        [&](const PlannedUnit& unit) { return unit.trial == place; });
+        plan_.units.insert(after + 1, {0, static_cast<int>(index), {}});
+      }
+    }
+  }
+
+  const Protocol& protocol_;
+  const Design& design_;
+  std::uint64_t key_;
+  RandomStream random_;
+  Plan plan_;
+  std::vector<int> groups_;
+  int round_ = 0;  ///< how often the assignment went through all sequences before this slot
+  int turn_ = 0;   ///< of the rows: over all slots each sequence meets each row
+};
+
 }  // namespace
 
-std::vector<PlannedTrial> make_plan(const Protocol& protocol, const std::string& participant,
-                                    std::uint64_t seed) {
-  const std::uint64_t key = random_key(protocol.sha256 + '\n' + participant + '\n' + std::to_string(seed));
-  std::vector<int> order(protocol.settings.size());
-  std::iota(order.begin(), order.end(), 0);
-  RandomStream random(key);
-  shuffle(order, random);
-
-  std::vector<PlannedTrial> plan(order.size());
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const auto setting = static_cast<std::uint64_t>(order[i]);
-    plan[i] = {static_cast<int>(i), order[i], counter_random(key, first_schedule_counter + setting)};
-  }
-  return plan;
+Plan make_plan(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot) {
+  return Planner(protocol, participant, seed, slot).make();
 }
 
 }  // namespace study

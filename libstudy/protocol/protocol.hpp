@@ -10,42 +10,26 @@
 #include <vector>
 
 #include "libstudy/pacing/pacer.hpp"
-#include "libstudy/pacing/schedule.hpp"
+#include "libstudy/protocol/block.hpp"
+#include "libstudy/protocol/design.hpp"
 
 namespace study {
 
-/// What is shown; libstudy only passes these words on.
-struct StimulusSpec {
-  std::string scene;   ///< scene file
-  std::string method;  ///< "HiRes", ...
-  std::string n_star;  ///< "32k"
-};
-
-/// A rating question with its exact wording.
-struct Question {
-  std::string id;
-  std::string text;
-  std::string language;
-  int scale_min = 1;
-  int scale_max = 7;
-  /// (score, words) in ascending order of score.
-  std::vector<std::pair<int, std::string>> anchors;
-};
-
 struct Protocol {
-  static constexpr int format_version = 1;
+  static constexpr int format_version = 2;
 
   std::string name;
   std::string version;
-  StimulusSpec stimulus;
-  std::vector<FpsSetting> settings;  ///< every cell of the design, in file order; trial i of a plan names one
-  double gap_s = 3;                  ///< pause before each trial
+  std::string language;
+  int participants = 16;  ///< planned
+  Design design;
+  std::vector<Block> blocks;  ///< in the order of the session
   PacingRules pacing;
   ContentRules content;
   TimingTolerance timing;
-  Question question;
-  int participants = 16;  ///< planned
   bool accept_approximate = false;
+  /// H1 and H5 need to know where people looked: without tracked gaze they are labelled not testable.
+  bool needs_gaze = false;
   /// True when the command line changed it (--trial-seconds ...): data are marked as test and the hash
   /// differs.
   bool test_data = false;
@@ -56,6 +40,9 @@ struct Protocol {
   std::string text;    ///< the file as read, kept in every database
   std::string sha256;  ///< of `text`, or of text + overrides when there are any
 };
+
+/// Every question of the protocol with its block's index, in the order of the file.
+std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range
 /// or two keys that contradict each other. `name` stands for the file in messages.

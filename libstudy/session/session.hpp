@@ -1,5 +1,5 @@
 #pragma once
-/// One participant's way through the plan: gap, schedule, trial, verdict, question, answer.
+/// One participant's way through the plan: pages, schedules, trials, verdicts, questions, answers.
 
 #include <cstddef>
 #include <functional>
@@ -9,39 +9,58 @@
 #include <vector>
 
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/observer/responder.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "libstudy/session/participant.hpp"
+#include "libstudy/store/personal.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/ptpe.hpp"
 
 namespace study {
 
+/// Gives the stimulus of a cell, ready to start. Its caller keeps it until the next call.
+class StimulusSource {
+ public:
+  virtual ~StimulusSource() = default;
+  virtual Stimulus& stimulus(const Cell& cell) = 0;
+};
+
 /// What a session is given; it owns none of it.
 struct SessionParts {
   Clock& clock;
   Display& display;
-  Stimulus& stimulus;
-  Responder& responder;
+  StimulusSource& stimuli;
+  Participant& participant;
   Store& store;
+  PersonalFile* personal = nullptr;  ///< needed where the protocol asks something personal
   bool virtual_clock = false;
   /// The PTPE model in force: each frame's record then holds tau (RunningTolerance).
   std::optional<stats::PtpeModel> ptpe = {};
 };
 
-/// What happened to a trial, told once its answer is committed. The answer itself stays in the store.
-struct TrialDone {
+/// What happened to a unit, told once it is committed. Answers themselves stay in the store.
+struct UnitDone {
   std::string participant;
-  int position = 0;
-  int attempt = 1;
-  TimingVerdict verdict;
+  PlannedUnit unit;
+  int attempt = 0;                      ///< of a trial, from 1
+  std::vector<TimingVerdict> verdicts;  ///< one for each stimulus of a trial
+};
+
+/// What the experimenter wishes, asked after every frame and often in every pause.
+enum class Wish {
+  GoOn,
+  Stop,         ///< end the program; the session can be resumed
+  EndSession,   ///< a rest, then no further unit (Store::end_session)
+  RepeatTrial,  ///< cut this trial and show it again
+  Pause         ///< before the next unit, until the wish changes
 };
 
 struct SessionHooks {
-  std::function<void(const TrialDone&)> answered;
-  /// Asked after every frame and in every gap; true ends the session at that frame.
-  std::function<bool()> stop;
+  std::function<void(const OpenUnit&)> begins;
+  std::function<void(const FrameRecord&)> shown;
+  std::function<void(const UnitDone&)> done;
+  std::function<Wish()> wish;
 };
 
 /// The session was asked to stop. Everything up to then is in the store.
@@ -59,8 +78,10 @@ std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSet
 /// Throws what trial_intervals() would for any setting of the protocol: asked before anything is written.
 void check_settings(const Protocol& protocol, const Display& display);
 
-/// Shows and asks the trials of `session` that have no answer yet, in their order. A trial that was cut short
-/// is shown again from its start, as a new attempt; an answered one is never asked again.
+/// Goes through the units of `session` that are not done, in their order. A trial that was cut short is shown
+/// again from its start, as a new attempt; what was answered is never asked again. An answer that a question
+/// does not accept ends the session (EarlyEnd::NotEligible), one at its stop_at offers a rest and ends it
+/// (EarlyEnd::Stopped).
 /// Throws Stopped, or the first failure of a part; the store then holds all answers given.
 void run_session(const Protocol& protocol, const OpenSession& session, const SessionParts& parts,
                  const SessionHooks& hooks);

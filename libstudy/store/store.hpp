@@ -20,7 +20,7 @@ namespace study {
 /// A participant code is 1 to 32 of A-Z a-z 0-9 _ and -. base::Error otherwise.
 void check_participant_code(const std::string& code);
 
-/// What is written of a session before its first trial.
+/// What is written of a session before its first unit.
 struct SessionPlan {
   std::string participant;
   int visit = 1;
@@ -29,8 +29,11 @@ struct SessionPlan {
   std::optional<std::string> observer;  ///< simulated observer; none = a person
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
-  std::optional<std::string> ptpe;  ///< the PTPE file in full
-  std::vector<PlannedTrial> trials;
+  std::optional<std::string> ptpe;   ///< the PTPE file in full
+  std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed" or "none"
+  std::string station;               ///< where it is recorded
+  std::optional<double> screen_width_mm, viewing_distance_mm;
+  Plan plan;
 };
 
 /// What is written of a run: one command for one or more participants.
@@ -40,19 +43,22 @@ struct RunPlan {
   std::vector<SessionPlan> sessions;
 };
 
-/// A trial that has no answer yet.
-struct OpenTrial {
+/// A unit that is not done yet.
+struct OpenUnit {
   std::int64_t id = 0;
-  PlannedTrial plan;
-  int attempts = 0;  ///< presentations so far, all without an answer
+  PlannedUnit plan;
+  std::int64_t trial_id = 0;          ///< 0: a page
+  std::optional<PlannedTrial> trial;  ///< none: a page
+  int attempts = 0;                   ///< showings of the trial so far
+  std::vector<std::string> answered;  ///< ids of questions that have an answer: not asked again
 };
 
-/// A session with unanswered trials, in the order of their positions.
+/// A session with units to do, in the order of their positions.
 struct OpenSession {
   std::int64_t id = 0;
-  SessionPlan plan;  ///< `trials` is left empty
-  std::size_t planned = 0, answered = 0;
-  std::vector<OpenTrial> trials;
+  SessionPlan plan;  ///< its units and trials are left empty; the slot is there
+  std::size_t planned = 0, done = 0;
+  std::vector<OpenUnit> units;
 };
 
 /// Unfinished sessions that share a run, with what that run was given.
@@ -62,6 +68,19 @@ struct OpenRun {
   std::string protocol_name, protocol_text, protocol_sha256;
   std::optional<double> trial_seconds;
   std::vector<OpenSession> sessions;
+};
+
+/// How a session came to its end before its last unit.
+enum class EarlyEnd {
+  NotEligible,  ///< no consent, or ruled out by screening
+  Stopped,      ///< by a stop rule or on the participant's wish; the data stay
+  DroppedOut    ///< did not come back; the slot is free again
+};
+
+/// What a question was answered with, ready to be kept.
+struct KeptAnswer {
+  std::string question;  ///< id
+  TimedAnswer answer;
 };
 
 /// The only writer of a database: a second Store on the same file is an error while the first lives.
@@ -82,20 +101,36 @@ class Store {
   /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
   std::vector<OpenRun> open_runs();
 
-  /// Commits that a trial is about to be shown; returns the presentation's id.
-  std::int64_t begin_presentation(std::int64_t session, std::int64_t trial, int attempt,
-                                  std::int64_t start_ns);
+  /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
+  /// not eligible or dropped out, and test data.
+  std::vector<int> taken_slots(const std::string& protocol_sha256);
+
+  /// Commits that a stimulus is about to be shown; returns the presentation's id.
+  std::int64_t begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
+                                  int cell, std::int64_t start_ns);
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
-  /// Commits the rest of the frames and the verdict.
+  /// Commits the rest of the frames and the verdict; no verdict is kept where nothing was scheduled
+  /// (nominal mean 0).
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                         std::span<const FrameRecord> frames, const TimingVerdict& verdict);
   /// Commits that a presentation was cut short; its frames stay.
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
-  /// Commits an answer; with the last one of a session its end as well.
-  void answer(std::int64_t session, std::int64_t trial, std::int64_t presentation,
-              const std::string& question, int score, double response_time_s, std::int64_t clock_ns);
+  /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
+  /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well.
+  void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
+              bool last, std::int64_t clock_ns);
+  /// Commits that a unit without answers is done.
+  void finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns);
+  /// Ends a session before its last unit; what is not done stays planned.
+  void end_session(std::int64_t session, EarlyEnd how, const std::string& reason, std::int64_t clock_ns);
+  /// Opens a done trial again: it is shown once more as a new attempt, and its answers are kept apart.
+  void repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
+  /// Marks a trial so that analyses leave it out.
+  void exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
+  /// The experimenter's words, beside the log; withdrawal deletes them.
+  void note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   /// Appends to the event log. `detail` never holds answers or free text of participants.
   void log(std::optional<std::int64_t> session, const std::string& kind, const std::string& detail,
            std::optional<std::int64_t> clock_ns = {});

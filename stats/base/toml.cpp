@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -166,6 +167,16 @@ std::vector<std::string> TomlTable::strings(std::string_view key) const {
       state_->fail(&element, key, "must hold texts only", "put each entry in double quotes");
     out.push_back(*element.value<std::string>());
   }
+  return out;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> placed;
+  for (const auto& [key, node] : *state_->table) placed.emplace_back(node.source().begin, key.str());
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> out;
+  for (auto& [place, key] : placed) out.push_back(std::move(key));
   return out;
 }
 

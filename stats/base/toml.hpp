@@ -40,6 +40,8 @@ class TomlTable {
   std::vector<double> numbers(std::string_view key, std::size_t size = 0, Range range = any) const;
   std::vector<std::string> strings(std::string_view key) const;
   TomlTable table(std::string_view key) const;
+  /// Its keys, in the order of the file where the table stands on one line.
+  std::vector<std::string> keys() const;
   /// [[key]]: an array of tables; empty when absent.
   std::vector<TomlTable> tables(std::string_view key) const;
 

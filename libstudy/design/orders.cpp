@@ -1,0 +1,48 @@
+#include "libstudy/design/orders.hpp"
+
+#include <numeric>
+
+namespace study {
+
+std::vector<int> latin_row(int k, int row) {
+  std::vector<int> out(static_cast<std::size_t>(k));
+  for (int i = 0; i < k; ++i) out[static_cast<std::size_t>(i)] = (i + row) % k;
+  return out;
+}
+
+int williams_rows(int k) { return k % 2 == 0 || k == 1 ? k : 2 * k; }
+
+std::vector<int> williams_row(int k, int row) {
+  // 0, 1, k - 1, 2, k - 2, ...: its steps are all different; the second half of an odd design mirrors them.
+  std::vector<int> out;
+  for (int i = 0; i < k; ++i) {
+    const int zigzag = i % 2 == 1 ? (i + 1) / 2 : (k - i / 2) % k;
+    out.push_back((zigzag + row) % k);
+  }
+  if (row >= k) out.assign(out.rbegin(), out.rend());
+  return out;
+}
+
+std::vector<int> order_without_clashes(int k, const std::function<bool(int, int)>& clash,
+                                       RandomStream& random) {
+  constexpr int most_starts = 10000;
+  for (int start = 0; start < most_starts; ++start) {
+    std::vector<int> left(static_cast<std::size_t>(k));
+    std::iota(left.begin(), left.end(), 0);
+    std::vector<int> out;
+    while (!left.empty()) {
+      std::vector<std::size_t> fits;
+      for (std::size_t i = 0; i < left.size(); ++i) {
+        if (out.empty() || !clash(out.back(), left[i])) fits.push_back(i);
+      }
+      if (fits.empty()) break;
+      const auto chosen = fits[random.below(fits.size())];
+      out.push_back(left[chosen]);
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(chosen));
+    }
+    if (left.empty()) return out;
+  }
+  return {};
+}
+
+}  // namespace study

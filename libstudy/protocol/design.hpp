@@ -1,0 +1,61 @@
+#pragma once
+/// What is shown, in which combinations and how they are dealt out.
+
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/schedule.hpp"
+
+namespace study {
+
+/// What is shown; libstudy only passes these words on.
+struct StimulusSpec {
+  std::string scene;   ///< scene file
+  std::string method;  ///< "HiRes", ...
+  std::string n_star;  ///< "32k"
+
+  bool operator==(const StimulusSpec&) const = default;
+};
+
+/// Where the moments of the frame rate come from.
+enum class TimingSource {
+  Settings,  ///< mean_fps and sd_fps of the design (pilot)
+  Native,    ///< as fast as the method runs: no schedule, the setting's moments are 0
+  Equal,     ///< one mean and deviation for all cells
+  Table2     ///< each cell's own, as published (paper, Table 2), also fed to tau
+};
+
+/// One combination of the factors.
+struct Cell {
+  StimulusSpec stimulus;
+  FpsSetting setting;  ///< moments 0 under TimingSource::Native
+};
+
+enum class TrialOrder {
+  Shuffle,     ///< every permutation equally likely
+  Latin,       ///< rows of a balanced Latin square, dealt in turn
+  Williams,    ///< rows of a Williams design: first-order carry-over balanced
+  Constrained  ///< shuffled until no neighbours share a level of `never_adjacent`
+};
+
+enum class Assignment {
+  Balanced,    ///< groups and rows are dealt by quota over all who took part and did not drop out
+  PaperRandom  ///< independent draws, as the paper did
+};
+
+/// Cells fall into groups of equal (scene, n_star); a participant meets `groups` of them, one after another,
+/// and within each all its cells, or all pairs of its cells.
+struct Design {
+  std::vector<Cell> cells;  ///< grouped, in file order; a trial names one or two by index
+  TimingSource timing = TimingSource::Settings;
+  bool pairs = false;  ///< a trial shows two cells; all unordered pairs of a group
+  int groups = 1;      ///< that a participant meets: different scenes, and different n_star while there are
+  TrialOrder order = TrialOrder::Shuffle;
+  std::vector<std::string> never_adjacent;  ///< "method", "mean_fps" or "sd_fps"; Constrained
+  Assignment assignment = Assignment::Balanced;
+};
+
+/// The cells of each group, as indices, in file order.
+std::vector<std::vector<int>> cell_groups(const Design& design);
+
+}  // namespace study

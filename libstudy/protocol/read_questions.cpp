@@ -1,0 +1,140 @@
+#include <cstdlib>
+
+#include "libstudy/protocol/readers.hpp"
+
+namespace study {
+
+namespace {
+
+/// {1 = "poor", 7 = "good"}: words by score.
+std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& question, int least, int most) {
+  std::vector<std::pair<int, std::string>> out;
+  if (!question.has("anchors")) return out;
+  const auto table = question.table("anchors");
+  for (const auto& key : table.keys()) {
+    char* end = nullptr;
+    const long score = std::strtol(key.c_str(), &end, 10);
+    if (*end != '\0' || score < least || score > most) {
+      table.fail(key, "is not a score of the scale",
+                 "use whole numbers from " + std::to_string(least) + " to " + std::to_string(most));
+    }
+    if (!out.empty() && static_cast<int>(score) <= out.back().first)
+      table.fail(key, "does not ascend", "list the anchors in ascending order, each score once");
+    out.emplace_back(static_cast<int>(score), text_of(table, key));
+  }
+  return out;
+}
+
+AnswerKind read_kind(const base::TomlTable& table) {
+  const std::string word = table.choice("kind", {"scale", "choice", "number", "text"});
+  if (word == "choice") return AnswerKind::Choice;
+  if (word == "number") return AnswerKind::Number;
+  return word == "text" ? AnswerKind::Text : AnswerKind::Scale;
+}
+
+std::pair<int, int> read_span(const base::TomlTable& table, std::string_view key, base::Range range) {
+  const auto ends = table.numbers(key, 2, range);
+  const auto low = static_cast<int>(ends[0]);
+  const auto high = static_cast<int>(ends[1]);
+  if (static_cast<double>(low) != ends[0] || static_cast<double>(high) != ends[1])
+    table.fail(key, "must hold whole numbers", "write them without a fraction");
+  return {low, high};
+}
+
+void read_scores(const base::TomlTable& table, Question& question) {
+  if (question.kind == AnswerKind::Choice) {
+    question.anchors = read_anchors(table, 0, 100);
+    if (question.anchors.size() < 2)
+      table.fail("anchors", "offer fewer than two answers", "write anchors = {0 = \"no\", 1 = \"yes\"}");
+    question.scale_min = question.anchors.front().first;
+    question.scale_max = question.anchors.back().first;
+    return;
+  }
+  std::tie(question.scale_min, question.scale_max) = read_span(table, "scale", {0, 10000});
+  if (question.scale_max <= question.scale_min)
+    table.fail("scale", "does not ascend", "write the scale as [low, high]");
+  if (question.kind == AnswerKind::Scale && question.scale_max - question.scale_min > 100)
+    table.fail("scale", "has more than 101 scores", "use kind = \"number\"");
+  if (question.kind == AnswerKind::Scale)
+    question.anchors = read_anchors(table, question.scale_min, question.scale_max);
+}
+
+std::optional<int> read_score(const base::TomlTable& table, std::string_view key, const Question& question) {
+  if (!table.has(key)) return {};
+  return static_cast<int>(
+      table.integer(key, {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)}));
+}
+
+Question read_question(const base::TomlTable& table, const std::string& language) {
+  Question question;
+  question.id = text_of(table, "id");
+  question.text = text_of(table, "text");
+  question.language = table.string_or("language", language);
+  question.kind = read_kind(table);
+  question.personal = table.boolean_or("personal", false);
+  question.required = table.boolean_or("required", question.kind != AnswerKind::Text);
+  if (question.kind == AnswerKind::Text) return question;
+  read_scores(table, question);
+  if (table.has("accept")) {
+    question.accept = read_span(
+        table, "accept", {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)});
+    if (question.accept->first > question.accept->second)
+      table.fail("accept", "does not ascend", "write the accepted scores as [low, high]");
+  }
+  question.stop_at = read_score(table, "stop_at", question);
+  question.expect = read_score(table, "expect", question);
+  return question;
+}
+
+}  // namespace
+
+std::vector<Question> read_questions(const base::TomlTable& block, const std::string& language) {
+  std::vector<Question> out;
+  for (const auto& table : block.tables("question")) out.push_back(read_question(table, language));
+  return out;
+}
+
+std::vector<Question> ssq_questions(const std::string& language) {
+  static const char* const symptoms[] = {"General discomfort",
+                                         "Fatigue",
+                                         "Headache",
+                                         "Eye strain",
+                                         "Difficulty focusing",
+                                         "Increased salivation",
+                                         "Sweating",
+                                         "Nausea",
+                                         "Difficulty concentrating",
+                                         "Fullness of the head",
+                                         "Blurred vision",
+                                         "Dizziness with eyes open",
+                                         "Dizziness with eyes closed",
+                                         "Vertigo",
+                                         "Stomach awareness",
+                                         "Burping"};
+  std::vector<Question> out;
+  for (const char* symptom : symptoms) {
+    Question question;
+    question.id = "ssq_" + std::to_string(out.size() + 1);
+    question.text = symptom;
+    question.language = language;
+    question.scale_min = 0;
+    question.scale_max = 3;
+    question.anchors = {{0, "none"}, {1, "slight"}, {2, "moderate"}, {3, "severe"}};
+    out.push_back(question);
+  }
+  return out;
+}
+
+Question fms_question(const std::string& language, std::optional<int> stop_at) {
+  Question question;
+  question.id = "fms";
+  question.text = "How sick do you feel right now?";
+  question.language = language;
+  question.scale_min = 0;
+  question.scale_max = 20;
+  question.anchors = {{0, "not at all"}, {20, "severely"}};
+  question.stop_at = stop_at;
+  return question;
+}
+
+}  // namespace study

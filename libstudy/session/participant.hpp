@@ -1,0 +1,60 @@
+#pragma once
+/// Who sits in front of the display: a person at a window, or a simulated one. Both go through the same
+/// pages.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/clock.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/fps_window.hpp"
+
+namespace study {
+
+/// One stimulus as it was shown.
+struct ShownStimulus {
+  int cell = 0;  ///< index into Design::cells
+  Cell what;
+  stats::FpsMoments realised;  ///< of the frames as they were shown
+  double longest_ms = 0;       ///< longest interval
+  double play_speed = 0;       ///< simulated time over time shown
+};
+
+/// What a participant is asked about.
+struct Occasion {
+  std::string participant;
+  std::uint64_t seed = 0;
+  int position = 0;  ///< of the unit in the session
+  BlockKind block = BlockKind::Stimulus;
+  std::vector<ShownStimulus> shown;  ///< one, or two of a pair; empty on pages
+};
+
+/// A pause between two things.
+enum class PauseKind {
+  Black,  ///< nothing to see
+  Rest,   ///< a countdown
+  Break   ///< a countdown, then until the participant wishes to go on
+};
+
+/// Asked often while a person may be waiting; throws Stopped to end the session there.
+using Check = std::function<void()>;
+
+class Participant {
+ public:
+  virtual ~Participant() = default;
+  /// The specification of a simulated observer, complete with its defaults; none for a person.
+  virtual std::optional<std::string> simulated() const = 0;
+  /// Shows a text until the participant goes on, not before `least_s`.
+  virtual void read(const Block& block, double least_s, Clock& clock, const Check& check) = 0;
+  /// Asks `questions` on one page. One answer each, on its scale or within its rules.
+  virtual std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
+                                       const Occasion& occasion, Clock& clock, const Check& check) = 0;
+  /// Waits `seconds` on `clock`, and for a Break until the participant goes on.
+  virtual void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) = 0;
+};
+
+}  // namespace study

@@ -1,0 +1,36 @@
+#pragma once
+/// Personal data apart from the study's database, joined to it by the participant code alone.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libstudy/store/sqlite.hpp"
+
+namespace study {
+
+/// What a question marked as personal was answered with.
+struct PersonalEntry {
+  std::string participant, question, wording, answer;
+};
+
+/// "<database>.personal": a SQLite file of its own, readable by its owner only. Deleting it takes nothing
+/// from the study.
+class PersonalFile {
+ public:
+  explicit PersonalFile(const std::filesystem::path& database);
+
+  /// Commits; an answer to the same question replaces the former one.
+  void keep(const std::vector<PersonalEntry>& entries);
+  std::vector<PersonalEntry> read(const std::string& participant);
+  /// Deletes what stands of a participant and overwrites where it stood.
+  void forget(const std::string& participant);
+
+  static std::filesystem::path beside(const std::filesystem::path& database);
+
+ private:
+  std::unique_ptr<sqlite::Connection> file_;
+};
+
+}  // namespace study
