@@ -6,13 +6,15 @@ packages=(
   # build
   g++ cmake ninja-build pkg-config
   # libraries fixed by the project
-  libgl-dev libegl-dev libepoxy-dev libglfw3-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev libgtest-dev libgmock-dev
+  libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev libgtest-dev libgmock-dev
   # TOML, JSON, PNG, compression, checksums, SHA-256
   libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev libxxhash-dev libsodium-dev
   # software OpenGL for machines without a GPU
   libegl1 libgl1 libgl1-mesa-dri
+  # type of the participant's window
+  fonts-dejavu-core
   # tests
-  sqlite3 util-linux
+  sqlite3 util-linux xvfb xauth xdotool imagemagick
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

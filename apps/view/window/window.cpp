@@ -7,9 +7,9 @@
 #include <string>
 
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/window/glfw_window.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
-#include "apps/view/window/glfw_window.hpp"
 #include "apps/view/window/panel.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -51,7 +51,8 @@ class Viewer {
  public:
   explicit Viewer(const ViewOptions& options)
       : running_(spelled_out(options)),
-        window_(options.width_px, options.height_px, "vip-view"),
+        window_({"vip-view", options.width_px, options.height_px, 0,
+                 "use --headless --png FOLDER on a machine without a display"}),
         panel_(window_.get(), running_),
         fixed_tau_(sim::parse_tau(options.tau)) {
     sim::require_gl45();

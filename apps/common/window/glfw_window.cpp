@@ -1,0 +1,137 @@
+#include "apps/common/window/glfw_window.hpp"
+
+// epoxy first: GLFW then leaves GL's headers alone.
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#define GLFW_EXPOSE_NATIVE_X11
+#include <GLFW/glfw3native.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+/// Set when the connection to the X server broke.
+std::atomic<bool> display_lost = false;
+
+[[noreturn]] void fail(const std::string& problem, const std::string& mend) {
+  const char* told = nullptr;
+  glfwGetError(&told);
+  throw base::Error("window", problem + (told ? std::string(": ") + told : std::string()), mend);
+}
+
+/// Xlib ends the program when its connection breaks, unless such a handler returns.
+void survive_a_lost_display() {
+  display_lost = false;
+  if (Display* display = glfwGetX11Display()) {
+    XSetIOErrorExitHandler(
+        display, [](Display*, void*) { display_lost = true; }, nullptr);
+  }
+}
+
+GLFWmonitor* find_monitor(int index, const std::string& mend) {
+  int count = 0;
+  GLFWmonitor** all = glfwGetMonitors(&count);
+  if (index < 0 || index >= count) {
+    fail("monitor " + std::to_string(index) + " is not there; monitors found: " + std::to_string(count),
+         mend);
+  }
+  return all[index];
+}
+
+Monitor describe(GLFWmonitor* monitor) {
+  Monitor out;
+  if (!monitor) return out;
+  out.name = glfwGetMonitorName(monitor);
+  if (const GLFWvidmode* mode = glfwGetVideoMode(monitor)) {
+    out.width_px = mode->width;
+    out.height_px = mode->height;
+    out.refresh_hz = mode->refreshRate;
+  }
+  glfwGetMonitorPhysicalSize(monitor, &out.width_mm, &out.height_mm);
+  return out;
+}
+
+}  // namespace
+
+GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
+  if (!glfwInit()) fail("no display", choice.mend);
+  try {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+    const bool whole = choice.width_px == 0 || choice.height_px == 0;
+    GLFWmonitor* monitor = whole ? find_monitor(choice.monitor, choice.mend) : nullptr;
+    const Monitor mode = describe(monitor);
+    if (whole && mode.refresh_hz > 0) glfwWindowHint(GLFW_REFRESH_RATE, static_cast<int>(mode.refresh_hz));
+    window_ =
+        glfwCreateWindow(whole ? mode.width_px : choice.width_px, whole ? mode.height_px : choice.height_px,
+                         choice.title.c_str(), monitor, nullptr);
+    if (!window_) fail("no window with OpenGL 4.5", choice.mend);
+  } catch (...) {
+    glfwTerminate();
+    throw;
+  }
+  survive_a_lost_display();
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    if (action == GLFW_PRESS) self->keys_.push_back(key);
+  });
+}
+
+GlfwWindow::~GlfwWindow() {
+  if (display_lost) return;  // every call would speak to a server that is gone
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+bool GlfwWindow::asked_to_close() const { return glfwWindowShouldClose(window_) != 0; }
+
+GlfwWindow::Size GlfwWindow::size() const {
+  Size out;
+  glfwGetFramebufferSize(window_, &out.width, &out.height);
+  return out;
+}
+
+bool GlfwWindow::mouse(double& x_px, double& y_px) const {
+  double x = 0, y = 0;
+  glfwGetCursorPos(window_, &x, &y);
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  if (x < 0 || y < 0 || x >= width || y >= height) return false;
+  const double scale = static_cast<double>(size().width) / width;
+  x_px = scale * x;
+  y_px = scale * (height - y);
+  return true;
+}
+
+Monitor GlfwWindow::monitor() const {
+  GLFWmonitor* mine = glfwGetWindowMonitor(window_);
+  return describe(mine ? mine : glfwGetPrimaryMonitor());
+}
+
+void GlfwWindow::check_display() const {
+  if (display_lost) {
+    throw base::Error("window", "the display is gone", "bring it back and start the program again");
+  }
+}
+
+Compositor find_compositor() {
+  if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland has no other way
+  Display* display = glfwGetX11Display();
+  if (!display || display_lost) return Compositor::Unknown;
+  const std::string selection = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display));
+  const Atom atom = XInternAtom(display, selection.c_str(), False);
+  return XGetSelectionOwner(display, atom) == None ? Compositor::Absent : Compositor::Running;
+}
+
+}  // namespace apps

@@ -1,0 +1,62 @@
+#pragma once
+/// A GLFW window with a current OpenGL 4.5 context.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace apps {
+
+struct WindowChoice {
+  std::string title;
+  int width_px = 0, height_px = 0;  ///< 0: the whole of `monitor`
+  int monitor = 0;                  ///< 0: the primary one
+  std::string mend;                 ///< what to do where there is no display, for messages
+};
+
+/// A monitor as the system describes it.
+struct Monitor {
+  std::string name;
+  int width_px = 0, height_px = 0;
+  double refresh_hz = 0;            ///< whole numbers only; 0: not told
+  int width_mm = 0, height_mm = 0;  ///< 0: not told; often wrong
+};
+
+class GlfwWindow {
+ public:
+  /// base::Error when there is no display, no such monitor or no such context on it.
+  explicit GlfwWindow(const WindowChoice& choice);
+  ~GlfwWindow();
+  GlfwWindow(const GlfwWindow&) = delete;
+  GlfwWindow& operator=(const GlfwWindow&) = delete;
+
+  GLFWwindow* get() const { return window_; }
+  bool asked_to_close() const;
+  /// Of the framebuffer, px; 0 when minimised.
+  struct Size {
+    int width = 0, height = 0;
+  };
+  Size size() const;
+  /// The mouse in px of the framebuffer from its lower left corner; false when it is outside.
+  bool mouse(double& x_px, double& y_px) const;
+  /// Keys pressed since the last call, as GLFW numbers them: none is lost when frames are slow. A key held
+  /// down counts once.
+  std::vector<int> take_keys() { return std::exchange(keys_, {}); }
+  /// The monitor it fills or, of a window, the primary one.
+  Monitor monitor() const;
+  /// base::Error once the display itself is gone. Nothing can be drawn any more then.
+  void check_display() const;
+
+ private:
+  GLFWwindow* window_ = nullptr;
+  int monitor_ = 0;
+  std::vector<int> keys_;
+};
+
+/// Whether a compositor stands between windows and the screen. Needs a window that lives.
+enum class Compositor { Unknown, Absent, Running };
+Compositor find_compositor();
+
+}  // namespace apps
