@@ -4,13 +4,15 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
-#define GLFW_EXPOSE_NATIVE_X11
-#include <GLFW/glfw3native.h>
+#include <X11/Xlib.h>
 
 #include <atomic>
 #include <cstdlib>
 
 #include "stats/base/error.hpp"
+
+// GLFW/glfw3native.h would ask for the headers of Xrandr too.
+extern "C" Display* glfwGetX11Display(void);
 
 namespace apps {
 
