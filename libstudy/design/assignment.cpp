@@ -2,6 +2,7 @@
 #include <map>
 #include <numeric>
 
+#include "libstudy/design/assignment.hpp"
 #include "libstudy/design/orders.hpp"
 #include "libstudy/design/plan.hpp"
 
@@ -59,47 +60,64 @@ std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   return out;
 }
 
-int trials_of_group(const Design& design) {
-  const auto k = static_cast<int>(cell_groups(design).front().size());
-  return design.pairs ? k * (k - 1) / 2 : k;
+/// Rows of the square; 1 where there is none.
+int rows_of(const Design& design) {
+  if (design.order != TrialOrder::Latin && design.order != TrialOrder::Williams) return 1;
+  int rows = 1;
+  for (const auto& group : cell_groups(design)) {
+    const auto cells = static_cast<int>(group.size());
+    const int trials = design.pairs ? cells * (cells - 1) / 2 : cells;
+    rows = std::lcm(rows, design.order == TrialOrder::Latin ? trials : williams_rows(trials));
+  }
+  return rows;
 }
 
-int rows_of(const Design& design) {
-  if (design.order == TrialOrder::Latin) return trials_of_group(design);
-  return design.order == TrialOrder::Williams ? williams_rows(trials_of_group(design)) : 1;
+/// Rounds through all sequences before the assignment starts over.
+int rounds_of(const Design& design) {
+  const bool couples = design.pairs && design.assignment == Assignment::Balanced;
+  return couples ? std::lcm(2 * rows_of(design), rounds_of_intervals) : rows_of(design);
+}
+
+std::vector<std::vector<int>> dealt_sequences(const Design& design) {
+  return sequences_of(design, design.assignment == Assignment::Balanced);
 }
 
 }  // namespace
 
 int sequence_count(const Protocol& protocol) {
   if (protocol.design.assignment == Assignment::PaperRandom) return 1;
-  return static_cast<int>(sequences_of(protocol.design, true).size());
+  return static_cast<int>(dealt_sequences(protocol.design).size());
 }
 
-int slot_count(const Protocol& protocol) {
-  const Design& design = protocol.design;
-  return sequence_count(protocol) * std::lcm(rows_of(design), design.pairs ? rounds_of_intervals : 1);
-}
+int slot_count(const Protocol& protocol) { return sequence_count(protocol) * rounds_of(protocol.design); }
 
 int next_slot(const Protocol& protocol, const std::vector<int>& taken) {
   std::vector<int> count(static_cast<std::size_t>(slot_count(protocol)));
-  for (const int slot : taken) ++count.at(static_cast<std::size_t>(slot) % count.size());
+  for (const int slot : taken) ++count[static_cast<std::size_t>(slot) % count.size()];
   return static_cast<int>(std::min_element(count.begin(), count.end()) - count.begin());
 }
 
-std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key) {
+Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   const Design& design = protocol.design;
+  const auto all = dealt_sequences(design);
   if (design.assignment == Assignment::PaperRandom) {
-    const auto all = sequences_of(design, false);
     RandomStream random(key, std::uint64_t{1} << 33);
-    return all[random.below(all.size())];
+    return {all[random.below(all.size())], slot, slot};
   }
   // Within each round through all sequences, an order of its own.
-  auto all = sequences_of(design, true);
-  const auto round = slot / static_cast<int>(all.size());
+  const auto count = static_cast<int>(all.size());
+  std::vector<int> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  const int round = slot / count;
   RandomStream random(random_key(protocol.sha256 + "\nround " + std::to_string(round)));
-  shuffle(all, random);
-  return all[static_cast<std::size_t>(slot) % all.size()];
+  shuffle(order, random);
+  const int sequence = order[static_cast<std::size_t>(slot % count)];
+  // Both rounds of a couple, which mirror each other's intervals, take the same rows.
+  return {all[static_cast<std::size_t>(sequence)], round, sequence + (design.pairs ? round / 2 : round)};
+}
+
+std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key) {
+  return deal(protocol, slot, key).groups;
 }
 
 }  // namespace study

@@ -1,5 +1,6 @@
 #include "libstudy/design/orders.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace study {
@@ -25,7 +26,7 @@ std::vector<int> williams_row(int k, int row) {
 
 std::vector<int> order_without_clashes(int k, const std::function<bool(int, int)>& clash,
                                        RandomStream& random) {
-  constexpr int most_starts = 10000;
+  const int most_starts = std::clamp(200'000'000 / std::max(k * k, 1), 10, 10'000);
   for (int start = 0; start < most_starts; ++start) {
     std::vector<int> left(static_cast<std::size_t>(k));
     std::iota(left.begin(), left.end(), 0);

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "libstudy/design/assignment.hpp"
 #include "libstudy/design/orders.hpp"
 #include "stats/base/error.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
+constexpr std::uint64_t counters_per_group = 1ull << 20;
 
 /// Shares a level of one of the factors.
 bool share_level(const Design& design, const Cell& a, const Cell& b) {
@@ -33,9 +35,7 @@ class Planner {
         key_(random_key(protocol.sha256 + '\n' + participant + '\n' + std::to_string(seed))),
         random_(key_) {
     plan_.slot = slot;
-    groups_ = groups_met(protocol, slot, key_);
-    round_ = slot / sequence_count(protocol);
-    turn_ = slot % sequence_count(protocol) + round_;
+    deal_ = deal(protocol, slot, key_);
   }
 
   Plan make() {
@@ -65,18 +65,22 @@ class Planner {
 
   void add_page(int index) { plan_.units.push_back({0, index, {}}); }
 
+  /// Takes its place in the session.
   void add_trial(PlannedTrial trial) {
     trial.position = static_cast<int>(plan_.trials.size());
-    const auto cells = static_cast<std::uint64_t>(trial.first) * 4096 +
-                       static_cast<std::uint64_t>(trial.second.value_or(0)) * 2;
-    trial.schedule_seed = counter_random(
-        key_, first_schedule_counter + static_cast<std::uint64_t>(trial.block) * counters_per_block + cells);
     plan_.units.push_back({0, trial.block, trial.position});
     plan_.trials.push_back(trial);
   }
 
+  std::uint64_t schedule_seed(const PlannedTrial& trial) const {
+    const auto cells = static_cast<std::uint64_t>(trial.first) * 4096 +
+                       static_cast<std::uint64_t>(trial.second.value_or(0)) * 2;
+    return counter_random(
+        key_, first_schedule_counter + static_cast<std::uint64_t>(trial.block) * counters_per_block + cells);
+  }
+
   void add_design(int index) {
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (std::size_t g = 0; g < deal_.groups.size(); ++g) {
       if (g > 0 && block(index).between_groups_s > 0) add_page(index);
       const auto candidates = trials_of(static_cast<int>(g), index);
       for (const int i : order_of(candidates, static_cast<int>(g)))
@@ -86,7 +90,8 @@ class Planner {
 
   /// The trials of one group in file order.
   std::vector<PlannedTrial> trials_of(int g, int index) const {
-    const auto cells = cell_groups(design_)[static_cast<std::size_t>(groups_[static_cast<std::size_t>(g)])];
+    const auto cells =
+        cell_groups(design_)[static_cast<std::size_t>(deal_.groups[static_cast<std::size_t>(g)])];
     std::vector<PlannedTrial> out;
     PlannedTrial trial;
     trial.block = index;
@@ -97,30 +102,31 @@ class Planner {
       for (std::size_t j = i + 1; design_.pairs && j < cells.size(); ++j) {
         trial.first = cells[i];
         trial.second = cells[j];
-        if (mirrored(static_cast<int>(out.size()))) std::swap(trial.first, *trial.second);
+        if (mirrored(g, static_cast<int>(out.size()))) std::swap(trial.first, *trial.second);
         out.push_back(trial);
       }
     }
+    for (auto& one : out) one.schedule_seed = schedule_seed(one);
     return out;
   }
 
   /// Whether a pair is shown second cell first: rounds come in couples of a random choice and its opposite,
   /// the same for all participants of a round.
-  bool mirrored(int pair) const {
+  bool mirrored(int g, int pair) const {
+    const auto which = static_cast<std::uint64_t>(g) * counters_per_group + static_cast<std::uint64_t>(pair);
     if (design_.assignment == Assignment::PaperRandom)
-      return counter_random(key_, first_extra_counter + static_cast<std::uint64_t>(pair)) & 1;
-    const std::uint64_t couple = random_key(protocol_.sha256 + "\ninterval " + std::to_string(round_ / 2));
-    return ((counter_random(couple, static_cast<std::uint64_t>(pair)) ^ static_cast<std::uint64_t>(round_)) &
-            1) != 0;
+      return (counter_random(key_, first_extra_counter + which) & 1) != 0;
+    const auto couple = random_key(protocol_.sha256 + "\ninterval " + std::to_string(deal_.round / 2));
+    return ((counter_random(couple, which) ^ static_cast<std::uint64_t>(deal_.round)) & 1) != 0;
   }
 
   std::vector<int> order_of(const std::vector<PlannedTrial>& trials, int g) {
     const auto k = static_cast<int>(trials.size());
-    const int row = turn_ + g;
+    const int row = deal_.row + g;
     if (design_.order == TrialOrder::Latin) return latin_row(k, row % k);
     if (design_.order == TrialOrder::Williams) return williams_row(k, row % williams_rows(k));
     if (design_.order == TrialOrder::Constrained) {
-      const auto cell = [&](int i) {
+      const auto cell = [&](int i) -> const Cell& {
         return design_.cells[static_cast<std::size_t>(trials[static_cast<std::size_t>(i)].first)];
       };
       auto out = order_without_clashes(
@@ -147,6 +153,7 @@ class Planner {
     add_drawn(candidates, block(index).count, index, random);
   }
 
+  /// The very stimuli that were shown, intervals included.
   void add_repeats(int index) {
     auto random = extra(index);
     std::vector<PlannedTrial> shown;
@@ -194,9 +201,7 @@ class Planner {
   std::uint64_t key_;
   RandomStream random_;
   Plan plan_;
-  std::vector<int> groups_;
-  int round_ = 0;  ///< how often the assignment went through all sequences before this slot
-  int turn_ = 0;   ///< of the rows: over all slots each sequence meets each row
+  Deal deal_;
 };
 
 }  // namespace

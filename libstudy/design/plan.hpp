@@ -40,8 +40,8 @@ struct Plan {
 int sequence_count(const Protocol& protocol);
 
 /// Different places that the assignment deals out before it starts over: rounds through all sequences of
-/// groups, as many as there are rows of the square and, for pairs, interval orders. 1 where nothing is
-/// balanced between people.
+/// groups, as many as there are rows of the square and, for pairs under Assignment::Balanced, both interval
+/// orders. 1 where nothing is balanced between people.
 int slot_count(const Protocol& protocol);
 
 /// The slot for the next participant: the first of those that are least taken. `taken` lists the slots of all
@@ -52,8 +52,8 @@ int next_slot(const Protocol& protocol, const std::vector<int>& taken);
 /// cell_groups(). Under Assignment::PaperRandom they are drawn with `key` instead.
 std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key);
 
-/// A trial's schedule_seed depends on its cells and its block, not on its position. base::Error when no order
-/// keeps never_adjacent.
+/// A trial's schedule_seed depends on its cells and its block, not on its position; a repeat has that of the
+/// trial it repeats. slot >= 0. base::Error when no order keeps never_adjacent.
 Plan make_plan(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot);
 
 }  // namespace study

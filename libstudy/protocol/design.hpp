@@ -33,7 +33,7 @@ struct Cell {
 
 enum class TrialOrder {
   Shuffle,     ///< every permutation equally likely
-  Latin,       ///< rows of a balanced Latin square, dealt in turn
+  Latin,       ///< rows of a Latin square, dealt in turn: each trial equally often at each place
   Williams,    ///< rows of a Williams design: first-order carry-over balanced
   Constrained  ///< shuffled until no neighbours share a level of `never_adjacent`
 };
@@ -43,8 +43,8 @@ enum class Assignment {
   PaperRandom  ///< independent draws, as the paper did
 };
 
-/// Cells fall into groups of equal (scene, n_star); a participant meets `groups` of them, one after another,
-/// and within each all its cells, or all pairs of its cells.
+/// Cells fall into groups of equal (scene, n_star), equally many in each; a participant meets `groups` of
+/// them, one after another, and within each all its cells, or all pairs of its cells.
 struct Design {
   std::vector<Cell> cells;  ///< grouped, in file order; a trial names one or two by index
   TimingSource timing = TimingSource::Settings;
@@ -57,5 +57,8 @@ struct Design {
 
 /// The cells of each group, as indices, in file order.
 std::vector<std::vector<int>> cell_groups(const Design& design);
+
+/// Trials that one group makes: its cells, or its pairs of cells. A file's groups all have equally many.
+int trials_of_group(const Design& design);
 
 }  // namespace study

@@ -1,5 +1,6 @@
 #include "libstudy/protocol/protocol.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "libstudy/protocol/readers.hpp"
@@ -62,8 +63,18 @@ std::string shown(double value) {
   return text;
 }
 
-Protocol parse_protocol(std::string_view text, const std::string& name) {
-  const auto root = base::parse_toml(text, name);
+std::string id_of(const base::TomlTable& table, std::string_view key) {
+  const std::string id = text_of(table, key);
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto good = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  if (!letter(id.front()) || id.size() > 64 || !std::all_of(id.begin(), id.end(), good)) {
+    table.fail(key, "= " + base::toml_quoted(id) + " is no id",
+               "write a letter, then letters, digits and '_', 64 at most");
+  }
+  return id;
+}
+
+Protocol read_protocol_table(const base::TomlTable& root) {
   check_format(root);
   Protocol protocol;
   protocol.name = text_of(root, "name");
@@ -77,6 +88,12 @@ Protocol parse_protocol(std::string_view text, const std::string& name) {
   protocol.content = read_content(root.table("content"));
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));
   protocol.blocks = read_blocks(root, protocol.design, protocol.language);
+  return protocol;
+}
+
+Protocol parse_protocol(std::string_view text, const std::string& name) {
+  const auto root = base::parse_toml(text, name);
+  Protocol protocol = read_protocol_table(root);
   root.finish();
   protocol.text = text;
   protocol.sha256 = base::sha256_hex(text);

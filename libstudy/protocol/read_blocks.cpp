@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <set>
-#include <sstream>
 
 #include "libstudy/protocol/readers.hpp"
 
@@ -30,7 +28,7 @@ constexpr std::array<KindName, 15> kind_names{{{BlockKind::Instructions, "instru
                                                {BlockKind::Fms, "fms"},
                                                {BlockKind::Debrief, "debrief"}}};
 
-constexpr base::Range pause_range{0, 3600};
+constexpr std::size_t most_blocks = 200;
 
 BlockKind read_kind(const base::TomlTable& table) {
   std::vector<std::string> words;
@@ -44,78 +42,23 @@ bool any_of(BlockKind kind, std::initializer_list<BlockKind> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-double pause_of(const base::TomlTable& table, const std::string& step, std::istringstream& words) {
-  double seconds = -1;
-  words >> seconds;
-  if (!words || !(seconds >= pause_range.min && seconds <= pause_range.max)) {
-    table.fail("steps", "holds '" + step + "' without seconds from 0 to 3600",
-               "write \"black 3\" or \"rest 30\"");
-  }
-  return seconds;
-}
-
-/// One step as text; see TrialStep.
-TrialStep read_step(const base::TomlTable& table, const std::string& step, bool pairs) {
-  std::istringstream words(step);
-  std::string word;
-  words >> word;
-  TrialStep out;
-  if (word == "black" || word == "rest") {
-    out.kind = word == "black" ? StepKind::Black : StepKind::Rest;
-    out.seconds = pause_of(table, step, words);
-  } else if (word == "stimulus") {
-    std::string which;
-    words >> which;
-    const bool fits = pairs ? which == "first" || which == "second" : which.empty();
-    if (!fits) {
-      table.fail("steps", "holds '" + step + "'",
-                 pairs ? "write \"stimulus first\" and \"stimulus second\", as the design shows pairs"
-                       : "write \"stimulus\", as the design shows no pairs");
-    }
-    out.interval = which == "second" ? 1 : 0;
-  } else if (word == "ask") {
-    out.kind = StepKind::Ask;
-    for (std::string id; words >> id;) out.asks.push_back(id);
-    if (out.asks.empty()) table.fail("steps", "holds 'ask' without a question", "write \"ask ID\"");
-  } else {
-    table.fail("steps", "holds '" + step + "'", "use black, stimulus, ask or rest");
-  }
-  std::string rest;
-  if (words.clear(), words >> rest) table.fail("steps", "holds '" + step + "' with more than it takes", "");
-  return out;
-}
-
-void check_steps(const base::TomlTable& table, const std::vector<TrialStep>& steps, bool pairs) {
-  int seen = 0;
-  bool asked = false;
-  for (const auto& step : steps) {
-    asked = asked || step.kind == StepKind::Ask;
-    if (step.kind != StepKind::Stimulus) continue;
-    if (asked || step.interval != seen)
-      table.fail("steps", "are out of order", "show first, then second, then ask");
-    ++seen;
-  }
-  if (seen != (pairs ? 2 : 1))
-    table.fail("steps", "show too few or too many stimuli", pairs ? "show first and second" : "show one");
-  if (!asked) table.fail("steps", "ask nothing", "add \"ask ID\"");
-}
-
-Block read_block(const base::TomlTable& table, const Design& design, const std::string& language) {
-  Block block;
-  block.kind = read_kind(table);
-  block.id = text_of(table, "id");
-  block.title = table.string_or("title", "");
+/// What a page shows and how long.
+void read_page(const base::TomlTable& table, Block& block) {
+  if (block.kind != BlockKind::Black) block.title = table.string_or("title", "");
   if (any_of(block.kind, {BlockKind::Instructions, BlockKind::Consent, BlockKind::Debrief}))
     block.text = text_of(table, "text");
-  else if (!has_trials(block.kind))
+  else if (block.kind != BlockKind::Black && !has_trials(block.kind))
     block.text = table.string_or("text", "");
   if (any_of(block.kind, {BlockKind::Rest, BlockKind::Break, BlockKind::Black}))
     block.seconds = table.number("seconds", pause_range);
   if (any_of(block.kind, {BlockKind::Instructions, BlockKind::Debrief}))
     block.seconds = table.number_or("seconds", 0, pause_range);
-  if (any_of(block.kind, {BlockKind::Practice, BlockKind::Repeat, BlockKind::Catch})) {
-    block.count = static_cast<int>(table.integer("count", {1, 1000}));
-    block.like = text_of(table, "like");
+}
+
+void read_block_questions(const base::TomlTable& table, Block& block, const std::string& language) {
+  if (any_of(block.kind, {BlockKind::Ssq, BlockKind::Fms}) && !language.starts_with("en")) {
+    table.fail("kind", "has its words in English alone",
+               "write the items in your language as [[block.question]] of a block of kind question");
   }
   if (block.kind == BlockKind::Ssq) block.questions = ssq_questions(language);
   if (block.kind == BlockKind::Fms) {
@@ -123,52 +66,41 @@ Block read_block(const base::TomlTable& table, const Design& design, const std::
     if (table.has("stop_at")) stop_at = static_cast<int>(table.integer("stop_at", {1, 20}));
     block.questions = {fms_question(language, stop_at)};
   }
-  if (any_of(block.kind, {BlockKind::Screening, BlockKind::Consent, BlockKind::Demographics,
-                          BlockKind::Stimulus, BlockKind::Question, BlockKind::Catch})) {
-    block.questions = read_questions(table, language);
-    if (block.questions.empty())
-      table.fail("", "asks nothing", "add [[block.question]], or use kind = \"instructions\"");
+  if (!any_of(block.kind, {BlockKind::Screening, BlockKind::Consent, BlockKind::Demographics,
+                           BlockKind::Stimulus, BlockKind::Question, BlockKind::Catch}))
+    return;
+  block.questions = read_questions(table, block.kind, language);
+  if (block.questions.empty())
+    table.fail("", "asks nothing", "add [[block.question]], or use kind = \"instructions\"");
+  const bool decides = std::any_of(block.questions.begin(), block.questions.end(),
+                                   [](const Question& question) { return question.accept.has_value(); });
+  if (block.kind == BlockKind::Consent && !decides) {
+    table.fail("question", "lets everybody go on: no answer is a refusal",
+               "add accept = [1, 1] to the question that gives consent");
   }
-  if (block.kind == BlockKind::Stimulus) {
-    for (const auto& step : table.strings("steps"))
-      block.steps.push_back(read_step(table, step, design.pairs));
-    check_steps(table, block.steps, design.pairs);
-    block.between_groups_s = table.number_or("between_groups_s", 0, pause_range);
-  }
-  return block;
 }
 
-/// What only all blocks together tell: ids, and what `like` and `ask` name.
-void join_blocks(const std::vector<base::TomlTable>& tables, std::vector<Block>& blocks) {
-  std::set<std::string> block_ids, question_ids;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!block_ids.insert(blocks[i].id).second) tables[i].fail("id", "is another block's", "use another one");
-    for (const auto& question : blocks[i].questions) {
-      const bool ssq_again = blocks[i].kind == BlockKind::Ssq || blocks[i].kind == BlockKind::Fms;
-      if (!question_ids.insert(question.id).second && !ssq_again) {
-        tables[i].fail("question", "'" + question.id + "' has the id of another", "use another id");
-      }
-    }
+void read_trials(const base::TomlTable& table, const Design& design, Block& block) {
+  block.steps = read_steps(table, design.pairs);
+  block.between_groups_s = table.number_or("between_groups_s", 0, pause_range);
+  if (block.between_groups_s > 0 && design.groups == 1) {
+    table.fail("between_groups_s", "has no effect: a participant meets one group",
+               "remove it, or raise design.groups");
   }
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    for (const auto& step : blocks[i].steps) {
-      for (const auto& id : step.asks) {
-        if (!question_ids.count(id)) {
-          tables[i].fail("steps", "ask '" + id + "', which is no question",
-                         "add [[block.question]] with this id, or a block of kind fms for \"fms\"");
-        }
-      }
-    }
-    if (blocks[i].like.empty()) continue;
-    const auto model = std::find_if(blocks.begin(), blocks.end(), [&](const Block& other) {
-      return other.id == blocks[i].like && other.kind == BlockKind::Stimulus;
-    });
-    if (model == blocks.end())
-      tables[i].fail("like", "names no block of kind stimulus", "write the id of one");
-    if (has_trials(blocks[i].kind)) blocks[i].steps = model->steps;
-    if (blocks[i].kind == BlockKind::Repeat && model - blocks.begin() > static_cast<std::ptrdiff_t>(i))
-      tables[i].fail("like", "names a later block", "put the repeats after what they repeat");
+}
+
+Block read_block(const base::TomlTable& table, const Design& design, const std::string& language) {
+  Block block;
+  block.kind = read_kind(table);
+  block.id = id_of(table, "id");
+  read_page(table, block);
+  if (any_of(block.kind, {BlockKind::Practice, BlockKind::Repeat, BlockKind::Catch})) {
+    block.count = static_cast<int>(table.integer("count", {1, 1000}));
+    block.like = text_of(table, "like");
   }
+  read_block_questions(table, block, language);
+  if (block.kind == BlockKind::Stimulus) read_trials(table, design, block);
+  return block;
 }
 
 }  // namespace
@@ -185,6 +117,10 @@ bool has_trials(BlockKind kind) {
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design,
                                const std::string& language) {
   const auto tables = root.tables("block");
+  if (tables.size() > most_blocks) {
+    root.fail_at("block", most_blocks, "is one more than the " + std::to_string(most_blocks) + " allowed",
+                 "join pages");
+  }
   std::vector<Block> blocks;
   for (const auto& table : tables) blocks.push_back(read_block(table, design, language));
   const auto trials = std::count_if(blocks.begin(), blocks.end(),
@@ -193,7 +129,7 @@ std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design
     root.fail("block", "has " + std::to_string(trials) + " blocks of kind stimulus",
               "write exactly one, which shows the design");
   }
-  join_blocks(tables, blocks);
+  join_blocks(tables, design, blocks);
   return blocks;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "libstudy/protocol/readers.hpp"
@@ -9,10 +10,16 @@ namespace study {
 namespace {
 
 constexpr std::size_t most_cells = 1000;
+constexpr int most_trials = 1000;         // of one participant
+constexpr double most_sequences = 50000;  // of groups; the assignment lists them all
 
 template <class Value>
 void check_distinct(const base::TomlTable& table, std::string_view key, std::vector<Value> values) {
   if (values.empty()) table.fail(key, "is empty", "name at least one value");
+  if (values.size() > most_cells) {
+    table.fail(key, "holds " + std::to_string(values.size()) + " values",
+               "name at most " + std::to_string(most_cells));
+  }
   std::sort(values.begin(), values.end());
   if (std::adjacent_find(values.begin(), values.end()) != values.end())
     table.fail(key, "holds a value twice", "name each value once");
@@ -21,9 +28,9 @@ void check_distinct(const base::TomlTable& table, std::string_view key, std::vec
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key) {
   const auto words = table.strings(key);
   check_distinct(table, key, words);
-  for (const auto& word : words) {
-    if (word.find_first_not_of(" \t") == std::string::npos)
-      table.fail(key, "holds an empty word", "remove it");
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].find_first_not_of(" \t\r\n") == std::string::npos)
+      table.fail_at(key, i, "is an empty word", "remove it");
   }
   return words;
 }
@@ -51,21 +58,38 @@ std::vector<Moments> read_moments(const base::TomlTable& table) {
   return out;
 }
 
+/// What the cells are made of beside their moments.
+struct Factors {
+  std::vector<std::string> scenes, sizes, methods;
+};
+
+void check_level(const base::TomlTable& row, std::string_view key, const std::string& word,
+                 const std::vector<std::string>& levels) {
+  if (std::find(levels.begin(), levels.end(), word) == levels.end()) {
+    row.fail(key, "= " + base::toml_quoted(word) + " names no cell",
+             "use a value that design." + std::string(key) + " lists, or remove this row");
+  }
+}
+
 /// [[design.moments]]: one for each cell.
 class PublishedMoments {
  public:
-  explicit PublishedMoments(const base::TomlTable& design) : design_(design) {
+  PublishedMoments(const base::TomlTable& design, const Factors& factors) : design_(design) {
     for (const auto& row : design.tables("moments")) {
-      const auto key = std::tuple(text_of(row, "scene"), text_of(row, "n_star"), text_of(row, "method"));
-      const double mean = row.number("mean_fps", fps_range);
-      const Moments moments{mean, row.number("sd_fps", {0, mean})};
-      if (!moments_.emplace(key, moments).second)
+      const StimulusSpec what{text_of(row, "scene"), text_of(row, "method"), text_of(row, "n_star")};
+      check_level(row, "scene", what.scene, factors.scenes);
+      check_level(row, "method", what.method, factors.methods);
+      check_level(row, "n_star", what.n_star, factors.sizes);
+      const Moments moments{row.number("mean_fps", fps_range), row.number("sd_fps", {0, fps_range.max})};
+      if (moments.second >= moments.first)
+        row.fail("sd_fps", "is not below mean_fps", "name a standard deviation smaller than the mean");
+      if (!moments_.emplace(key_of(what), moments).second)
         row.fail("method", "names a cell for the second time", "name each cell once");
     }
   }
 
   Moments of(const StimulusSpec& what) const {
-    const auto found = moments_.find({what.scene, what.n_star, what.method});
+    const auto found = moments_.find(key_of(what));
     if (found == moments_.end()) {
       design_.fail("timing",
                    "needs the moments of " + what.method + ", " + what.scene + ", n_* " + what.n_star,
@@ -75,6 +99,10 @@ class PublishedMoments {
   }
 
  private:
+  static std::tuple<std::string, std::string, std::string> key_of(const StimulusSpec& what) {
+    return {what.scene, what.n_star, what.method};
+  }
+
   const base::TomlTable& design_;
   std::map<std::tuple<std::string, std::string, std::string>, Moments> moments_;
 };
@@ -86,24 +114,39 @@ TimingSource read_timing_source(const base::TomlTable& table) {
   return word == "table2" ? TimingSource::Table2 : TimingSource::Settings;
 }
 
+/// Keys that this source of moments does not read.
+void refuse_idle_keys(const base::TomlTable& table, TimingSource timing) {
+  const bool reads_lists = timing == TimingSource::Settings || timing == TimingSource::Equal;
+  for (const char* key : {"mean_fps", "sd_fps"}) {
+    if (!reads_lists && table.has(key)) {
+      table.fail(key, "has no effect with this timing",
+                 "remove it, or write timing = \"settings\" or \"equal\"");
+    }
+  }
+  if (timing == TimingSource::Settings && table.has("moments")) {
+    table.fail("moments", "have no effect with timing = \"settings\"",
+               "remove them, or write timing = \"table2\"");
+  }
+}
+
 std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing) {
-  const auto scenes = distinct_words(table, "scene");
-  const auto sizes = distinct_words(table, "n_star");
-  const auto methods = distinct_words(table, "method");
+  const Factors factors{distinct_words(table, "scene"), distinct_words(table, "n_star"),
+                        distinct_words(table, "method")};
   const double duration_s = table.number("duration_s", duration_range);
-  const PublishedMoments published(table);
+  refuse_idle_keys(table, timing);
+  const PublishedMoments published(table, factors);
   std::vector<Moments> moments{{0, 0}};
   if (timing == TimingSource::Settings || timing == TimingSource::Equal) moments = read_moments(table);
   if (timing == TimingSource::Equal && moments.size() != 1)
     table.fail("mean_fps", "and sd_fps make more than one setting", "give one value of each with equal");
-  if (scenes.size() * sizes.size() * methods.size() * moments.size() > most_cells) {
-    table.fail("mean_fps", "and the other factors make more than " + std::to_string(most_cells) + " cells",
+  if (factors.scenes.size() * factors.sizes.size() * factors.methods.size() * moments.size() > most_cells) {
+    table.fail("method", "and the other factors make more than " + std::to_string(most_cells) + " cells",
                "name fewer values");
   }
   std::vector<Cell> out;
-  for (const auto& scene : scenes) {
-    for (const auto& size : sizes) {
-      for (const auto& method : methods) {
+  for (const auto& scene : factors.scenes) {
+    for (const auto& size : factors.sizes) {
+      for (const auto& method : factors.methods) {
         const StimulusSpec what{scene, method, size};
         for (const auto& wished : moments) {
           const auto [mean, sd] = timing == TimingSource::Table2 ? published.of(what) : wished;
@@ -122,16 +165,88 @@ TrialOrder read_trial_order(const base::TomlTable& table) {
   return word == "constrained" ? TrialOrder::Constrained : TrialOrder::Shuffle;
 }
 
+template <class Level>
+std::size_t distinct_levels(const Design& design, Level level) {
+  std::set<std::string> levels;
+  for (const auto& cell : design.cells) levels.insert(level(cell.stimulus));
+  return levels.size();
+}
+
 /// Different scenes come first: a participant never meets one twice.
 void check_groups(const base::TomlTable& table, const Design& design) {
-  std::vector<std::string> scenes;
-  for (const auto& cell : design.cells) scenes.push_back(cell.stimulus.scene);
-  std::sort(scenes.begin(), scenes.end());
-  const auto count = std::unique(scenes.begin(), scenes.end()) - scenes.begin();
-  if (design.groups > count) {
-    table.fail("groups", "are more than the " + std::to_string(count) + " scenes",
+  const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
+  const auto sizes = distinct_levels(design, [](const StimulusSpec& what) { return what.n_star; });
+  if (static_cast<std::size_t>(design.groups) > scenes) {
+    table.fail("groups", "are more than the " + std::to_string(scenes) + " scenes",
                "use at most one group for each scene");
   }
+  double sequences = 1;
+  for (int i = 0; i < design.groups; ++i)
+    sequences *= (static_cast<double>(scenes) - i) * static_cast<double>(sizes);
+  if (sequences > most_sequences) {
+    table.fail(table.has("groups") ? "groups" : "scene",
+               "can be met in " + shown(sequences) + " orders of scenes and n_*",
+               "name fewer scenes, n_* or groups, for at most " + shown(most_sequences));
+  }
+}
+
+void check_trials(const base::TomlTable& table, const Design& design) {
+  const auto cells = static_cast<int>(cell_groups(design).front().size());
+  if (design.pairs && cells < 2)
+    table.fail("pairs", "need two cells of one scene and n_*", "name more methods, or remove pairs");
+  const int trials = design.groups * trials_of_group(design);
+  if (trials > most_trials) {
+    table.fail(design.pairs ? "pairs" : "method",
+               "and the other factors make " + std::to_string(trials) + " trials",
+               "name fewer values, for at most " + std::to_string(most_trials));
+  }
+}
+
+/// The level of a factor as text.
+std::string level_of(const Cell& cell, const std::string& factor) {
+  if (factor == "method") return cell.stimulus.method;
+  return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
+}
+
+/// More than half of the trials with one level leave no order in which it never stands beside itself.
+void check_never_adjacent(const base::TomlTable& table, const Design& design) {
+  const auto group = cell_groups(design).front();
+  for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
+    std::map<std::string, std::size_t> count;
+    for (const int cell : group)
+      ++count[level_of(design.cells[static_cast<std::size_t>(cell)], design.never_adjacent[i])];
+    for (const auto& [level, times] : count) {
+      if (times > (group.size() + 1) / 2) {
+        table.fail_at("never_adjacent", i,
+                      "cannot be kept: " + std::to_string(times) + " of " + std::to_string(group.size()) +
+                          " trials have " + level,
+                      "remove this factor");
+      }
+    }
+  }
+}
+
+void read_never_adjacent(const base::TomlTable& table, Design& design) {
+  if (design.order != TrialOrder::Constrained) {
+    if (table.has("never_adjacent")) {
+      table.fail("never_adjacent", "needs order = \"constrained\"",
+                 "change the order or remove never_adjacent");
+    }
+    return;
+  }
+  if (design.pairs) {
+    table.fail("order", "= \"constrained\" cannot be kept by pairs",
+               "use shuffle, latin or williams, or remove pairs");
+  }
+  design.never_adjacent = distinct_words(table, "never_adjacent");
+  for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
+    const std::string& factor = design.never_adjacent[i];
+    if (factor != "method" && factor != "mean_fps" && factor != "sd_fps") {
+      table.fail_at("never_adjacent", i, "= " + base::toml_quoted(factor) + " is no factor",
+                    "use method, mean_fps or sd_fps");
+    }
+  }
+  check_never_adjacent(table, design);
 }
 
 }  // namespace
@@ -148,26 +263,23 @@ std::vector<std::vector<int>> cell_groups(const Design& design) {
   return out;
 }
 
+int trials_of_group(const Design& design) {
+  const auto k = static_cast<int>(cell_groups(design).front().size());
+  return design.pairs ? k * (k - 1) / 2 : k;
+}
+
 Design read_design(const base::TomlTable& table) {
   Design design;
   design.timing = read_timing_source(table);
   design.cells = read_cells(table, design.timing);
   design.pairs = table.boolean_or("pairs", false);
-  if (design.pairs && cell_groups(design).front().size() < 2)
-    table.fail("pairs", "need two cells of one scene and n_*", "name more methods, or remove pairs");
   design.groups = static_cast<int>(table.integer_or("groups", 1, {1, 100}));
   check_groups(table, design);
+  check_trials(table, design);
   design.order = read_trial_order(table);
-  if (design.order == TrialOrder::Constrained) {
-    design.never_adjacent = distinct_words(table, "never_adjacent");
-    for (const auto& factor : design.never_adjacent) {
-      if (factor != "method" && factor != "mean_fps" && factor != "sd_fps")
-        table.fail("never_adjacent", "names '" + factor + "'", "use method, mean_fps or sd_fps");
-    }
-  }
-  if (table.has("assignment") && table.choice("assignment", {"balanced", "paper_random"}) == "paper_random") {
+  read_never_adjacent(table, design);
+  if (table.choice_or("assignment", "balanced", {"balanced", "paper_random"}) == "paper_random")
     design.assignment = Assignment::PaperRandom;
-  }
   return design;
 }
 

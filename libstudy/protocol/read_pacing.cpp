@@ -16,8 +16,7 @@ void read_fps_max(const base::TomlTable& table, PacingRules& rules) {
 }
 
 void read_order(const base::TomlTable& table, PacingRules& rules) {
-  const std::string order =
-      table.has("order") ? table.choice("order", {"white", "ar1", "trace"}) : std::string("white");
+  const std::string order = table.choice_or("order", "white", {"white", "ar1", "trace"});
   if (order == "ar1") {
     rules.order = FrameOrder::Ar1;
     rules.ar1 = table.number("ar1", {-0.99, 0.99});
@@ -44,6 +43,8 @@ void check_cuts(const base::TomlTable& table, const PacingRules& rules,
                "raise max_interval_ms to " + shown(1000 / rules.fps_min) + " or fps_min to " +
                    shown(1000 / rules.max_interval_ms));
   }
+  if (rules.fps_max && *rules.fps_max < rules.fps_min)
+    table.fail("fps_max", "is below fps_min = " + shown(rules.fps_min), "raise fps_max or lower fps_min");
   for (const auto& setting : settings) {
     const bool below = setting.sd > 0 ? setting.mean <= rules.fps_min : setting.mean < rules.fps_min;
     if (below) {
@@ -62,7 +63,7 @@ void check_cuts(const base::TomlTable& table, const PacingRules& rules,
 
 PacingRules read_pacing(const base::TomlTable& table, const Design& design) {
   PacingRules rules;
-  if (table.has("mean") && table.choice("mean", {"harmonic", "arithmetic"}) == "arithmetic")
+  if (table.choice_or("mean", "harmonic", {"harmonic", "arithmetic"}) == "arithmetic")
     rules.mean = FpsMean::Arithmetic;
   rules.fps_min = table.number("fps_min", fps_range);
   rules.max_interval_ms = table.number("max_interval_ms", {1, 10000});

@@ -1,4 +1,6 @@
-#include <cstdlib>
+#include <algorithm>
+#include <charconv>
+#include <tuple>
 
 #include "libstudy/protocol/readers.hpp"
 
@@ -6,21 +8,29 @@ namespace study {
 
 namespace {
 
+/// A key as a whole number; none: it is something else.
+std::optional<int> score_of(const std::string& key) {
+  int score = 0;
+  const char* end = key.data() + key.size();
+  const auto [read_to, error] = std::from_chars(key.data(), end, score);
+  if (error != std::errc() || read_to != end) return {};
+  return score;
+}
+
 /// {1 = "poor", 7 = "good"}: words by score.
 std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& question, int least, int most) {
   std::vector<std::pair<int, std::string>> out;
   if (!question.has("anchors")) return out;
   const auto table = question.table("anchors");
   for (const auto& key : table.keys()) {
-    char* end = nullptr;
-    const long score = std::strtol(key.c_str(), &end, 10);
-    if (*end != '\0' || score < least || score > most) {
+    const auto score = score_of(key);
+    if (!score || *score < least || *score > most) {
       table.fail(key, "is not a score of the scale",
                  "use whole numbers from " + std::to_string(least) + " to " + std::to_string(most));
     }
-    if (!out.empty() && static_cast<int>(score) <= out.back().first)
+    if (!out.empty() && *score <= out.back().first)
       table.fail(key, "does not ascend", "list the anchors in ascending order, each score once");
-    out.emplace_back(static_cast<int>(score), text_of(table, key));
+    out.emplace_back(*score, text_of(table, key));
   }
   return out;
 }
@@ -59,38 +69,92 @@ void read_scores(const base::TomlTable& table, Question& question) {
     question.anchors = read_anchors(table, question.scale_min, question.scale_max);
 }
 
-std::optional<int> read_score(const base::TomlTable& table, std::string_view key, const Question& question) {
-  if (!table.has(key)) return {};
-  return static_cast<int>(
-      table.integer(key, {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)}));
+/// A score that can be given as an answer.
+bool can_be_given(const Question& question, int score) {
+  if (question.kind != AnswerKind::Choice) return score >= question.scale_min && score <= question.scale_max;
+  return std::any_of(question.anchors.begin(), question.anchors.end(),
+                     [&](const auto& anchor) { return anchor.first == score; });
 }
 
-Question read_question(const base::TomlTable& table, const std::string& language) {
+base::Range scores_of(const Question& question) {
+  return {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)};
+}
+
+std::optional<int> read_score(const base::TomlTable& table, std::string_view key, const Question& question) {
+  if (!table.has(key)) return {};
+  const auto score = static_cast<int>(table.integer(key, scores_of(question)));
+  if (!can_be_given(question, score))
+    table.fail(key, "= " + std::to_string(score) + " is no answer", "use a score that anchors lists");
+  return score;
+}
+
+/// Which answers let the participant go on.
+void read_accept(const base::TomlTable& table, BlockKind block, Question& question) {
+  if (!table.has("accept")) return;
+  if (block != BlockKind::Screening && block != BlockKind::Consent && block != BlockKind::Demographics) {
+    table.fail("accept", "has no place in a block of kind " + block_kind_name(block),
+               "put the question into a block of kind screening, consent or demographics");
+  }
+  if (!question.required) table.fail("accept", "contradicts required = false", "remove one of them");
+  question.accept = read_span(table, "accept", scores_of(question));
+  const auto [low, high] = *question.accept;
+  if (low > high) table.fail("accept", "does not ascend", "write the accepted scores as [low, high]");
+  int score = low;
+  while (score <= high && !can_be_given(question, score)) ++score;
+  if (score > high) table.fail("accept", "holds no answer", "use scores that anchors lists");
+}
+
+/// What only catch pages have: the answer that attention gives.
+void read_expect(const base::TomlTable& table, BlockKind block, Question& question) {
+  question.expect = read_score(table, "expect", question);
+  if (block != BlockKind::Catch && question.expect) {
+    table.fail("expect", "has no place in a block of kind " + block_kind_name(block),
+               "put the question into a block of kind catch");
+  }
+  if (block != BlockKind::Catch) return;
+  if (!question.expect) table.fail("expect", "is missing", "add expect = the answer that attention gives");
+  if (!question.required) table.fail("required", "= false lets a catch pass unanswered", "remove it");
+}
+
+std::string read_question_id(const base::TomlTable& table) {
+  const std::string id = id_of(table, "id");
+  if (id == "fms" || id.starts_with("ssq_")) {
+    table.fail("id", "= \"" + id + "\" is kept for the block of kind " + id.substr(0, 3),
+               "use another id, or that block");
+  }
+  return id;
+}
+
+Question read_question(const base::TomlTable& table, BlockKind block, const std::string& language) {
   Question question;
-  question.id = text_of(table, "id");
+  question.id = read_question_id(table);
   question.text = text_of(table, "text");
-  question.language = table.string_or("language", language);
+  question.language = table.has("language") ? text_of(table, "language") : language;
   question.kind = read_kind(table);
   question.personal = table.boolean_or("personal", false);
-  question.required = table.boolean_or("required", question.kind != AnswerKind::Text);
-  if (question.kind == AnswerKind::Text) return question;
-  read_scores(table, question);
-  if (table.has("accept")) {
-    question.accept = read_span(
-        table, "accept", {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)});
-    if (question.accept->first > question.accept->second)
-      table.fail("accept", "does not ascend", "write the accepted scores as [low, high]");
+  if (question.personal && (block == BlockKind::Stimulus || block == BlockKind::Catch)) {
+    table.fail("personal", "= true has no place in a block of kind " + block_kind_name(block),
+               "ask it in a block of kind demographics");
   }
+  question.required = table.boolean_or("required", question.kind != AnswerKind::Text);
+  if (question.kind == AnswerKind::Text) {
+    if (block == BlockKind::Catch)
+      table.fail("kind", "= \"text\" gives no score to expect", "use scale, choice or number");
+    return question;
+  }
+  read_scores(table, question);
+  read_accept(table, block, question);
   question.stop_at = read_score(table, "stop_at", question);
-  question.expect = read_score(table, "expect", question);
+  read_expect(table, block, question);
   return question;
 }
 
 }  // namespace
 
-std::vector<Question> read_questions(const base::TomlTable& block, const std::string& language) {
+std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
+                                     const std::string& language) {
   std::vector<Question> out;
-  for (const auto& table : block.tables("question")) out.push_back(read_question(table, language));
+  for (const auto& table : block.tables("question")) out.push_back(read_question(table, kind, language));
   return out;
 }
 

@@ -12,16 +12,30 @@ namespace study {
 
 inline constexpr base::Range fps_range{0.1, 1000};
 inline constexpr base::Range duration_range{0.1, 3600};
+inline constexpr base::Range pause_range{0, 3600};
 
 /// A text that holds more than white space.
 std::string text_of(const base::TomlTable& table, std::string_view key);
+/// A name that steps and tables of data can hold: a letter, then letters, digits and '_', 64 at most.
+std::string id_of(const base::TomlTable& table, std::string_view key);
 /// A number as messages show it.
 std::string shown(double value);
+
+/// Everything but the text itself; `root` is not finished, so that it can still tell what was asked of it.
+Protocol read_protocol_table(const base::TomlTable& root);
 
 Design read_design(const base::TomlTable& table);
 PacingRules read_pacing(const base::TomlTable& table, const Design& design);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design,
                                const std::string& language);
-std::vector<Question> read_questions(const base::TomlTable& block, const std::string& language);
+/// What each trial of a block does.
+std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
+/// The questions of a block of this kind.
+std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
+                                     const std::string& language);
+/// What only all blocks together tell: ids, and what `like` and `ask` name. Fills in the steps that blocks
+/// take over. tables: those that the blocks were read from.
+void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
+                 std::vector<Block>& blocks);
 
 }  // namespace study

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 
 #include "stats/base/error.hpp"
@@ -21,9 +20,11 @@ std::string place_of(const std::string& file, const toml::source_region& region)
   return out.str();
 }
 
-std::string join(const std::set<std::string>& words) {
+using Asked = std::map<std::string, AskedKey, std::less<>>;
+
+std::string names_of(const Asked& asked) {
   std::string out;
-  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+  for (const auto& [name, what] : asked) out += (out.empty() ? "" : ", ") + name;
   return out;
 }
 
@@ -34,14 +35,30 @@ std::string shown(double value) {
   return out.str();
 }
 
+/// "block[3].question[0]" without its indices.
+std::string without_indices(const std::string& path) {
+  std::string out;
+  bool inside = false;
+  for (const char c : path) {
+    inside = inside || c == '[';
+    if (!inside) out += c;
+    inside = inside && c != ']';
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string range_text(Range range) {
+  return (range.min == positive.min ? "(0" : "[" + shown(range.min)) + ", " + shown(range.max) + "]";
+}
 
 struct TomlTable::State {
   std::shared_ptr<const toml::table> root;
   const toml::table* table = nullptr;
   std::string file;
   std::string path;  // dotted, empty for the root
-  mutable std::set<std::string> asked;
+  mutable Asked asked;
   mutable std::vector<std::shared_ptr<State>> children;
 
   std::string name(std::string_view key) const {
@@ -56,8 +73,31 @@ struct TomlTable::State {
   }
 
   const toml::node* find(std::string_view key) const {
-    asked.emplace(key);
+    asked.try_emplace(std::string(key));
     return table->get(key);
+  }
+
+  void note(std::string_view key, const char* type, std::optional<Range> range = {},
+            const std::vector<std::string>& choices = {}) const {
+    AskedKey& what = asked[std::string(key)];
+    what.type = type;
+    if (range) what.range = range;
+    if (!choices.empty()) what.choices = choices;
+  }
+
+  void note_fallback(std::string_view key, std::string fallback) const {
+    asked[std::string(key)].fallback = std::move(fallback);
+  }
+
+  void collect(std::map<std::string, AskedKey>& out) const {
+    for (const auto& [key, what] : asked) {
+      AskedKey& all = out[without_indices(name(key))];
+      if (!what.type.empty()) all.type = what.type;
+      if (what.range) all.range = what.range;
+      if (!what.choices.empty()) all.choices = what.choices;
+      if (!what.fallback.empty()) all.fallback = what.fallback;
+    }
+    for (const auto& child : children) child->collect(out);
   }
 
   const toml::node& need(std::string_view key) const {
@@ -71,9 +111,7 @@ struct TomlTable::State {
     if (!node.is_number() || !value) fail(&node, key, "must be a number", "write it without quotes");
     if (!std::isfinite(*value)) fail(&node, key, "must be finite", "write an ordinary number");
     if (*value < range.min || *value > range.max) {
-      const std::string low = range.min == positive.min ? "(0" : "[" + shown(range.min);
-      fail(&node, key, "= " + shown(*value) + " is out of range",
-           "use a value in " + low + ", " + shown(range.max) + "]");
+      fail(&node, key, "= " + shown(*value) + " is out of range", "use a value in " + range_text(range));
     }
     return *value;
   }
@@ -98,7 +136,7 @@ struct TomlTable::State {
   void finish() const {
     for (const auto& [key, node] : *table) {
       if (asked.count(std::string(key.str()))) continue;
-      fail(&node, key.str(), "is not a known key", "known keys here: " + join(asked));
+      fail(&node, key.str(), "is not a known key", "known keys here: " + names_of(asked));
     }
     for (const auto& state : children) state->finish();
   }
@@ -114,14 +152,17 @@ bool TomlTable::is_text(std::string_view key) const {
 }
 
 double TomlTable::number(std::string_view key, Range range) const {
+  state_->note(key, "number", range);
   return state_->in_range(state_->need(key), key, range);
 }
 
 std::int64_t TomlTable::integer(std::string_view key, Range range) const {
+  state_->note(key, "whole number", range);
   return state_->whole(state_->need(key), key, range);
 }
 
 bool TomlTable::boolean(std::string_view key) const {
+  state_->note(key, "true or false");
   const auto& node = state_->need(key);
   if (!node.is_boolean())
     state_->fail(&node, key, "must be true or false", "write true or false without quotes");
@@ -129,12 +170,14 @@ bool TomlTable::boolean(std::string_view key) const {
 }
 
 std::string TomlTable::string(std::string_view key) const {
+  state_->note(key, "text");
   const auto& node = state_->need(key);
   if (!node.is_string()) state_->fail(&node, key, "must be text", "put it in double quotes");
   return *node.value<std::string>();
 }
 
 std::string TomlTable::choice(std::string_view key, const std::vector<std::string>& allowed) const {
+  state_->note(key, "text", {}, allowed);
   const std::string value = string(key);
   std::string list;
   for (const auto& word : allowed) {
@@ -145,6 +188,7 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
 }
 
 std::vector<double> TomlTable::numbers(std::string_view key, std::size_t size, Range range) const {
+  state_->note(key, "list of numbers", range);
   const auto& node = state_->need(key);
   const toml::array* array = node.as_array();
   if (!array) state_->fail(&node, key, "must be a list of numbers", "write [a, b, ...]");
@@ -158,6 +202,7 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t size, R
 }
 
 std::vector<std::string> TomlTable::strings(std::string_view key) const {
+  state_->note(key, "list of texts");
   const auto& node = state_->need(key);
   const toml::array* array = node.as_array();
   if (!array) state_->fail(&node, key, "must be a list of texts", "write [\"a\", \"b\"]");
@@ -181,12 +226,14 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 TomlTable TomlTable::table(std::string_view key) const {
+  state_->note(key, "table");
   const auto& node = state_->need(key);
   if (!node.is_table()) state_->fail(&node, key, "must be a table", "write [" + state_->name(key) + "]");
   return TomlTable(state_->child(*node.as_table(), state_->name(key)));
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+  state_->note(key, "tables");
   std::vector<TomlTable> out;
   const toml::node* node = state_->find(key);
   if (!node) return out;
@@ -202,20 +249,47 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
 }
 
 double TomlTable::number_or(std::string_view key, double fallback, Range range) const {
+  state_->note(key, "number", range);
+  state_->note_fallback(key, shown(fallback));
   return has(key) ? number(key, range) : fallback;
 }
 std::int64_t TomlTable::integer_or(std::string_view key, std::int64_t fallback, Range range) const {
+  state_->note(key, "whole number", range);
+  state_->note_fallback(key, std::to_string(fallback));
   return has(key) ? integer(key, range) : fallback;
 }
 bool TomlTable::boolean_or(std::string_view key, bool fallback) const {
+  state_->note(key, "true or false");
+  state_->note_fallback(key, fallback ? "true" : "false");
   return has(key) ? boolean(key) : fallback;
 }
 std::string TomlTable::string_or(std::string_view key, const std::string& fallback) const {
+  state_->note(key, "text");
+  state_->note_fallback(key, toml_quoted(fallback));
   return has(key) ? string(key) : fallback;
+}
+std::string TomlTable::choice_or(std::string_view key, const std::string& fallback,
+                                 const std::vector<std::string>& allowed) const {
+  state_->note(key, "text", {}, allowed);
+  state_->note_fallback(key, toml_quoted(fallback));
+  return has(key) ? choice(key, allowed) : fallback;
 }
 
 void TomlTable::fail(std::string_view key, const std::string& problem, const std::string& mend) const {
   state_->fail(key.empty() ? nullptr : state_->table->get(key), key, problem, mend);
+}
+
+void TomlTable::fail_at(std::string_view key, std::size_t index, const std::string& problem,
+                        const std::string& mend) const {
+  const toml::node* list = state_->table->get(key);
+  const toml::node* element = list && list->is_array() ? list->as_array()->get(index) : list;
+  state_->fail(element, std::string(key) + "[" + std::to_string(index) + "]", problem, mend);
+}
+
+std::map<std::string, AskedKey> TomlTable::asked() const {
+  std::map<std::string, AskedKey> out;
+  state_->collect(out);
+  return out;
 }
 
 void TomlTable::finish() const { state_->finish(); }

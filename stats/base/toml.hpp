@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,18 @@ inline constexpr Range any{};
 /// Larger than zero.
 inline constexpr Range positive{std::numeric_limits<double>::min()};
 inline constexpr Range non_negative{0.0};
+
+/// What a reader asked for under one key.
+struct AskedKey {
+  std::string type;  ///< "number", "whole number", "true or false", "text", "list of numbers", "list of
+                     ///< texts", "table" or "tables"; empty: only whether the key is there
+  std::optional<Range> range;        ///< of numbers
+  std::vector<std::string> choices;  ///< of a text
+  std::string fallback;              ///< for an absent key, as TOML writes it; empty: none
+};
+
+/// A range as messages show it: "[0, 1]", "(0, inf]".
+std::string range_text(Range range);
 
 /// A table of a TOML document. Copies share the document and the record of what was read.
 class TomlTable {
@@ -50,9 +64,19 @@ class TomlTable {
   std::int64_t integer_or(std::string_view key, std::int64_t fallback, Range range = any) const;
   bool boolean_or(std::string_view key, bool fallback) const;
   std::string string_or(std::string_view key, const std::string& fallback) const;
+  std::string choice_or(std::string_view key, const std::string& fallback,
+                        const std::vector<std::string>& allowed) const;
 
   /// An error at this key (or at the table, when the key is empty) with the mend given.
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& mend) const;
+
+  /// The same at element `index` of the list or [[tables]] under this key.
+  [[noreturn]] void fail_at(std::string_view key, std::size_t index, const std::string& problem,
+                            const std::string& mend) const;
+
+  /// What was asked for so far, here and below, by dotted name; all tables of a [[list]] are one, without
+  /// their indices. So a reference of a format can be held against its reader.
+  std::map<std::string, AskedKey> asked() const;
 
   /// Call once on the root, when all was read: the first key that nobody asked for is an error that names the
   /// known ones.

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "libstudy/protocol/readers.hpp"
+
+namespace study {
+
+namespace {
+
+using Tables = std::vector<base::TomlTable>;
+
+/// Asked again and again under the same id; the reader gives no other question such an id.
+bool is_scale_of_its_own(BlockKind kind) { return kind == BlockKind::Ssq || kind == BlockKind::Fms; }
+
+void check_ids(const Tables& tables, const std::vector<Block>& blocks) {
+  std::set<std::string> block_ids, question_ids;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!block_ids.insert(blocks[i].id).second)
+      tables[i].fail("id", "= \"" + blocks[i].id + "\" is another block's", "use another one");
+    if (is_scale_of_its_own(blocks[i].kind)) continue;
+    for (std::size_t q = 0; q < blocks[i].questions.size(); ++q) {
+      const std::string& id = blocks[i].questions[q].id;
+      if (!question_ids.insert(id).second)
+        tables[i].fail_at("question", q, "has the id \"" + id + "\" of another question", "use another id");
+    }
+  }
+}
+
+/// A trial may ask for "fms" without saying which block's.
+void check_fms(const Tables& tables, const std::vector<Block>& blocks) {
+  const Block* first = nullptr;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i].kind != BlockKind::Fms) continue;
+    if (!first) first = &blocks[i];
+    if (blocks[i].questions != first->questions) {
+      tables[i].fail("stop_at", "differs from that of block \"" + first->id + "\"",
+                     "write the same stop_at in every block of kind fms");
+    }
+  }
+}
+
+/// An answer that ends the session is asked before anything is shown.
+void check_accepts(const Tables& tables, const std::vector<Block>& blocks) {
+  bool shown = false;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    shown = shown || has_trials(blocks[i].kind);
+    for (std::size_t q = 0; shown && q < blocks[i].questions.size(); ++q) {
+      if (!blocks[i].questions[q].accept) continue;
+      tables[i].fail_at("question", q, "has accept in a block after the first trials",
+                        "move the block before all trials, or remove accept");
+    }
+  }
+}
+
+struct Asked {
+  const Block* block;
+  const Question* question;
+};
+
+/// The questions of each id; those of ssq and fms blocks of the first of them.
+std::map<std::string, Asked> questions_by_id(const std::vector<Block>& blocks) {
+  std::map<std::string, Asked> out;
+  for (const Block& block : blocks) {
+    for (const Question& question : block.questions) out.emplace(question.id, Asked{&block, &question});
+  }
+  return out;
+}
+
+void check_ask(const base::TomlTable& table, std::size_t step, const std::string& id,
+               const std::map<std::string, Asked>& questions) {
+  const auto found = questions.find(id);
+  if (found == questions.end()) {
+    table.fail_at("steps", step, "asks \"" + id + "\", which is no question",
+                  "add [[block.question]] with this id, or a block of kind fms for \"fms\"");
+  }
+  const BlockKind kind = found->second.block->kind;
+  if (kind != BlockKind::Stimulus && kind != BlockKind::Question && !is_scale_of_its_own(kind)) {
+    table.fail_at("steps", step, "asks \"" + id + "\" of a block of kind " + block_kind_name(kind),
+                  "ask questions of blocks of kind stimulus, question, ssq or fms");
+  }
+  if (found->second.question->personal) {
+    table.fail_at("steps", step, "asks \"" + id + "\", which is personal",
+                  "ask it on a page alone, or remove personal");
+  }
+}
+
+/// Every question of the block is asked by its trials, and none of any block twice.
+void check_asks(const base::TomlTable& table, const Block& block,
+                const std::map<std::string, Asked>& questions) {
+  std::set<std::string> asked;
+  for (std::size_t step = 0; step < block.steps.size(); ++step) {
+    for (const auto& id : block.steps[step].asks) {
+      check_ask(table, step, id, questions);
+      if (!asked.insert(id).second)
+        table.fail_at("steps", step, "asks \"" + id + "\" for the second time", "ask it once in a trial");
+    }
+  }
+  for (std::size_t q = 0; q < block.questions.size(); ++q) {
+    if (!asked.count(block.questions[q].id)) {
+      table.fail_at("question", q, "\"" + block.questions[q].id + "\" is asked by no step",
+                    "add its id to an \"ask\" of steps, or remove it");
+    }
+  }
+}
+
+void check_count(const base::TomlTable& table, const Block& block, const Design& design) {
+  const int trials = design.groups * trials_of_group(design);
+  if (block.kind == BlockKind::Practice || block.count <= trials) return;
+  table.fail("count", "= " + std::to_string(block.count) + " is more than there are trials",
+             "use at most " + std::to_string(trials));
+}
+
+/// Practice, repeats and catches: like which block?
+void join_like(const base::TomlTable& table, const Design& design, std::vector<Block>& blocks,
+               std::size_t index) {
+  Block& block = blocks[index];
+  const auto model = std::find_if(blocks.begin(), blocks.end(), [&](const Block& other) {
+    return other.id == block.like && other.kind == BlockKind::Stimulus;
+  });
+  if (model == blocks.end())
+    table.fail("like", "= \"" + block.like + "\" is no block of kind stimulus", "write the id of one");
+  const auto place = static_cast<std::size_t>(model - blocks.begin());
+  if (block.kind == BlockKind::Repeat && place > index)
+    table.fail("like", "names a later block", "put the repeats after what they repeat");
+  if (block.kind == BlockKind::Practice && place < index)
+    table.fail("like", "names an earlier block", "put practice before what it prepares for");
+  if (has_trials(block.kind)) block.steps = model->steps;
+  check_count(table, block, design);
+}
+
+}  // namespace
+
+void join_blocks(const Tables& tables, const Design& design, std::vector<Block>& blocks) {
+  check_ids(tables, blocks);
+  check_fms(tables, blocks);
+  check_accepts(tables, blocks);
+  const auto questions = questions_by_id(blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i].kind == BlockKind::Stimulus) check_asks(tables[i], blocks[i], questions);
+    if (!blocks[i].like.empty()) join_like(tables[i], design, blocks, i);
+  }
+}
+
+}  // namespace study
