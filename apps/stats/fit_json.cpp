@@ -98,6 +98,8 @@ Json data_json(const PilotData& data) {
           {"excluded",
            {{"by_verdict", data.excluded_by_verdict},
             {"practice", data.practice},
+            {"repeat", data.repeat},
+            {"by_experimenter", data.excluded},
             {"unanswered", data.unanswered},
             {"test_data_beside_real", data.test_left_out},
             {"simulated_beside_people", data.simulated_left_out},

@@ -125,6 +125,7 @@ void add_fit_ptpe(CLI::App& app, FitCommand& command) {
       "--truth", command.truth,
       "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
   fit->add_option("--protocol", command.selection.protocol, "First digits of the protocol's SHA-256");
+  fit->add_option("--question", command.selection.question, "Id of the question, where several are asked");
   fit->add_option("--exclude", command.exclude, "Trials left out by timing verdict")
       ->check(CLI::IsMember({"none", "fail", "degraded"}))
       ->capture_default_str();

@@ -30,6 +30,19 @@ stats::Result<std::string> chosen_protocol(const std::vector<RatingRow>& rows, c
   return stats::Refusal{"several protocols are never pooled; choose one with --protocol: " + list};
 }
 
+/// The one question asked for.
+stats::Result<std::string> chosen_question(const std::vector<RatingRow>& rows, const std::string& wanted) {
+  std::set<std::string> ids;
+  for (const auto& row : rows) {
+    if (wanted.empty() || row.question == wanted) ids.insert(row.question);
+  }
+  if (ids.empty()) return stats::Refusal{"the protocol asks no question '" + wanted + "' on a scale"};
+  if (ids.size() == 1) return *ids.begin();
+  std::string list;
+  for (const auto& id : ids) list += (list.empty() ? "" : ", ") + id;
+  return stats::Refusal{"several questions are never pooled; choose one with --question: " + list};
+}
+
 void add_rating(PilotData& data, const RatingRow& row, int participant) {
   ++data.used_by_verdict[study::verdict_name(row.timing->verdict)];
   ++data.used_by_grade[std::string(1, static_cast<char>(row.timing->grade))];
@@ -44,6 +57,10 @@ bool left_out(PilotData& data, const RatingRow& row, ExcludedVerdicts rule, bool
   int* reason = nullptr;
   if (row.practice) {
     reason = &data.practice;
+  } else if (row.repeat) {
+    reason = &data.repeat;
+  } else if (row.excluded) {
+    reason = &data.excluded;
   } else if (row.test_data && !data.test_data) {
     reason = &data.test_left_out;
   } else if (!row.observer.empty() && people) {
@@ -67,6 +84,9 @@ stats::Result<PilotData> select_pilot(const std::vector<RatingRow>& rows, const 
   std::vector<RatingRow> of_protocol;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_protocol),
                [&](const RatingRow& row) { return row.protocol_sha256 == *protocol; });
+  const auto question = chosen_question(of_protocol, selection.question);
+  if (!question) return stats::Refusal{question.reason()};
+  std::erase_if(of_protocol, [&](const RatingRow& row) { return row.question != *question; });
   PilotData data;
   data.protocol_sha256 = *protocol;
   data.protocol_name = of_protocol.front().protocol_name;

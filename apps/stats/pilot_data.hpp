@@ -17,6 +17,7 @@ enum class ExcludedVerdicts { None, Fail, Degraded };
 
 struct PilotSelection {
   std::string protocol;  ///< leading digits of the SHA-256; empty when the database holds one protocol
+  std::string question;  ///< id; empty when the protocol asks one question on a scale
   ExcludedVerdicts exclude = ExcludedVerdicts::Fail;
 };
 
@@ -27,6 +28,8 @@ struct PilotData {
   bool test_data = false;          ///< there are no real data: test data are analysed
   int simulated_participants = 0;  ///< answered by an observer model
   int practice = 0;
+  int repeat = 0;    ///< shown again for test-retest
+  int excluded = 0;  ///< by the experimenter
   int unanswered = 0;
   int test_left_out = 0;       ///< test data beside real ones
   int simulated_left_out = 0;  ///< answered by an observer model beside those of people
@@ -37,7 +40,7 @@ struct PilotData {
   std::vector<stats::PilotRating> ratings;
 };
 
-/// Refused with the reason: nothing stored, no such protocol, several of them and none chosen.
+/// Refused with the reason: nothing stored, no such protocol or question, several of them and none chosen.
 stats::Result<PilotData> select_pilot(const std::vector<study::RatingRow>& rows,
                                       const PilotSelection& selection);
 

@@ -10,14 +10,21 @@ namespace apps {
 
 namespace {
 
+std::string state_of(const study::SessionRow& session) {
+  if (session.state != "open") return session.state == "done" ? "complete" : session.state;
+  return session.done > 0 ? "under way" : "planned";
+}
+
 void print_session(const study::SessionRow& session) {
-  const char* state = session.ended ? "complete" : session.answered > 0 ? "under way" : "planned";
-  std::printf("  %-12s visit %d  %3lld of %lld answered, %lld cut short  %-9s  %s clock, %s%s\n",
-              session.participant.c_str(), session.visit, static_cast<long long>(session.answered),
-              static_cast<long long>(session.trials), static_cast<long long>(session.interrupted), state,
-              session.clock.c_str(),
-              session.observer.empty() ? "person" : ("simulated " + session.observer).c_str(),
-              session.test_data ? ", test data" : "");
+  std::printf(
+      "  %-12s visit %d  %3lld of %lld trials, %lld of %lld steps, %lld cut short, %lld excluded  %-12s  %s "
+      "clock, %s%s\n",
+      session.participant.c_str(), session.visit, static_cast<long long>(session.answered),
+      static_cast<long long>(session.trials), static_cast<long long>(session.done),
+      static_cast<long long>(session.units), static_cast<long long>(session.interrupted),
+      static_cast<long long>(session.excluded), state_of(session).c_str(), session.clock.c_str(),
+      session.observer.empty() ? "person" : ("simulated " + session.observer).c_str(),
+      session.test_data ? ", test data" : "");
 }
 
 void status(const std::string& database) {
@@ -31,6 +38,7 @@ void status(const std::string& database) {
       if (session.protocol_id == protocol.id) print_session(session);
     }
   }
+  for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
   std::printf("%lld frames recorded\n", static_cast<long long>(found.frames));
 }
 

@@ -13,7 +13,7 @@ using sqlite::Open;
 
 namespace {
 
-constexpr std::array step_files{"001_initial.sql"};
+constexpr std::array step_files{"001_initial.sql", "002_blocks.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 constexpr std::uintmax_t smallest_page_bytes = 512;
 
@@ -72,15 +72,35 @@ void back_up(Connection& database, std::int64_t version) {
   sqlite::Statement(database, "VACUUM INTO ?").bind(0, copy).run();
 }
 
-void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t version) {
-  if (version > 0 && version < static_cast<std::int64_t>(steps.size())) back_up(database, version);
-  for (auto step = static_cast<std::size_t>(version); step < steps.size(); ++step) {
-    sqlite::Transaction transaction(database);
-    database.execute(steps[step]);
-    database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
-    database.execute("PRAGMA user_version = " + std::to_string(step + 1));
-    transaction.commit();
+/// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
+void take_step(Connection& database, const std::string& sql, std::size_t version) {
+  sqlite::Transaction transaction(database);
+  database.execute(sql);
+  if (sqlite::Statement lost(database, "PRAGMA foreign_key_check"); lost.step()) {
+    throw base::Error(database.path().string(),
+                      "cannot be upgraded: a row of " + lost.text(0) + " belongs to none of " + lost.text(2),
+                      "restore a backup of it; the file was left as it is");
   }
+  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
+  database.execute("PRAGMA user_version = " + std::to_string(version));
+  transaction.commit();
+}
+
+void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t version) {
+  // The switch has no effect within a transaction.
+  database.execute("PRAGMA foreign_keys = OFF");
+  for (auto step = static_cast<std::size_t>(version); step < steps.size(); ++step)
+    take_step(database, steps[step], step + 1);
+  database.execute("PRAGMA foreign_keys = ON");
+}
+
+/// An older database as this program reads it, in memory: the file stays as it is.
+std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps,
+                                          std::int64_t version) {
+  auto copy = std::make_unique<Connection>(database, sqlite::InMemory{});
+  upgrade(*copy, steps, version);
+  copy->execute("PRAGMA query_only = ON");
+  return copy;
 }
 
 std::unique_ptr<Connection> open_checked(const fs::path& path, Open how, const SchemaSteps& steps,
@@ -90,18 +110,15 @@ std::unique_ptr<Connection> open_checked(const fs::path& path, Open how, const S
   const Identity found = identify(*database);
   recognise(path, found, how, steps.size());
   check_integrity(*database);
-  database->execute("PRAGMA foreign_keys = ON");
+  const auto newest = static_cast<std::int64_t>(steps.size());
   if (how == Open::Read) {
-    if (found.version < static_cast<std::int64_t>(steps.size())) {
-      throw base::Error(path.string(),
-                        "was written by an older program (schema " + std::to_string(found.version) + ")",
-                        "upgrade it with vip-study resume; a backup is made beside it");
-    }
-    database->execute("PRAGMA query_only = ON");
+    if (found.version < newest) return upgraded_copy(*database, steps, found.version);
+    database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
     return database;
   }
   database->execute("PRAGMA synchronous = FULL");
   if (max_pages > 0) database->integer("PRAGMA max_page_count = " + std::to_string(max_pages));
+  if (found.version > 0 && found.version < newest) back_up(*database, found.version);
   upgrade(*database, steps, found.version);
   if (database->text("PRAGMA journal_mode = WAL") != "wal") {
     throw base::Error(path.string(), "cannot keep a write-ahead log here",

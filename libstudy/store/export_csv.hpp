@@ -1,27 +1,23 @@
 #pragma once
 /// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary.
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "libstudy/store/export_folder.hpp"
+
 namespace study {
 
-struct ExportedFile {
-  std::string name;
-  std::int64_t rows = 0;
-};
-
-/// Writes one file for each table (protocols, questions, runs, sessions, trials, presentations, responses,
-/// frames, events), ratings.csv with one line for each planned trial joined from them, dictionary.csv with
-/// what each column means, and the text of each protocol as protocol_<hash>.toml.
+/// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from
+/// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
+/// Free words of participants and the experimenter's notes (words.csv, notes.csv) only with `words`.
 ///
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
-/// changed, when it holds anything else.
+/// changed, when it holds anything else. The folder is remembered in the event log (remember_export).
 std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
-                                     const std::filesystem::path& folder);
+                                     const std::filesystem::path& folder, bool words = false);
 
 /// A column of the schema with the comment that stands beside it.
 struct ColumnMeaning {

@@ -8,23 +8,52 @@ using sqlite::Transaction;
 
 namespace {
 
-std::vector<OpenTrial> open_trials(sqlite::Connection& database, std::int64_t session) {
+std::vector<std::string> answered_questions(sqlite::Connection& database, std::int64_t unit) {
   Statement row(database,
-                "SELECT t.trial_id, t.position, t.setting, t.schedule_seed, "
-                "(SELECT count(*) FROM presentation p WHERE p.trial_id = t.trial_id) "
-                "FROM trial t WHERE t.session_id = ? AND t.state = 'planned' ORDER BY t.position");
+                "SELECT DISTINCT q.question_id, q.code FROM response r JOIN question q USING (question_id) "
+                "JOIN unit u USING (unit_id) LEFT JOIN trial t USING (trial_id) WHERE r.unit_id = ? "
+                "AND r.attempt > coalesce(t.set_aside, -1) ORDER BY q.question_id");
+  row.bind(0, unit);
+  std::vector<std::string> ids;
+  while (row.step()) ids.push_back(row.text(1));
+  return ids;
+}
+
+PlannedTrial read_trial(const Statement& row, int block) {
+  PlannedTrial trial;
+  trial.position = static_cast<int>(row.integer(4));
+  trial.block = block;
+  trial.group = static_cast<int>(row.integer(5));
+  trial.first = static_cast<int>(row.integer(6));
+  if (!row.is_null(7)) trial.second = static_cast<int>(row.integer(7));
+  trial.schedule_seed = static_cast<std::uint64_t>(row.integer(8));
+  return trial;
+}
+
+std::vector<OpenUnit> open_units(sqlite::Connection& database, std::int64_t session) {
+  Statement row(database,
+                "SELECT u.unit_id, u.position, u.block_index, t.trial_id, t.position, t.group_index, "
+                "t.first_cell, t.second_cell, t.schedule_seed, "
+                "(SELECT coalesce(max(p.attempt), 0) FROM presentation p WHERE p.trial_id = t.trial_id) "
+                "FROM unit u LEFT JOIN trial t USING (trial_id) "
+                "WHERE u.session_id = ? AND u.state = 'planned' ORDER BY u.position");
   row.bind(0, session);
-  std::vector<OpenTrial> trials;
+  std::vector<OpenUnit> units;
   while (row.step()) {
-    OpenTrial trial;
-    trial.id = row.integer(0);
-    trial.plan.position = static_cast<int>(row.integer(1));
-    trial.plan.setting = static_cast<int>(row.integer(2));
-    trial.plan.schedule_seed = static_cast<std::uint64_t>(row.integer(3));
-    trial.attempts = static_cast<int>(row.integer(4));
-    trials.push_back(trial);
+    OpenUnit unit;
+    unit.id = row.integer(0);
+    unit.plan.position = static_cast<int>(row.integer(1));
+    unit.plan.block = static_cast<int>(row.integer(2));
+    if (!row.is_null(3)) {
+      unit.trial_id = row.integer(3);
+      unit.trial = read_trial(row, unit.plan.block);
+      unit.plan.trial = unit.trial->position;
+      unit.attempts = static_cast<int>(row.integer(9));
+    }
+    unit.answered = answered_questions(database, unit.id);
+    units.push_back(std::move(unit));
   }
-  return trials;
+  return units;
 }
 
 std::optional<std::string> optional_text(const Statement& row, int index) {
@@ -32,34 +61,51 @@ std::optional<std::string> optional_text(const Statement& row, int index) {
   return row.text(index);
 }
 
+std::optional<double> optional_real(const Statement& row, int index) {
+  if (row.is_null(index)) return {};
+  return row.real(index);
+}
+
+SessionPlan read_plan(const Statement& row) {
+  SessionPlan plan;
+  plan.participant = row.text(1);
+  plan.visit = static_cast<int>(row.integer(2));
+  plan.seed = static_cast<std::uint64_t>(row.integer(3));
+  plan.plan.slot = static_cast<int>(row.integer(4));
+  plan.test_data = row.integer(5) != 0;
+  plan.observer = optional_text(row, 6);
+  plan.virtual_clock = row.text(7) == "virtual";
+  plan.display = row.text(8);
+  plan.stimulus = row.text(9);
+  plan.machine = row.text(10);
+  plan.station = row.text(11);
+  plan.time_zone = row.text(12);
+  plan.gaze_source = row.text(13);
+  plan.screen_width_mm = optional_real(row, 14);
+  plan.viewing_distance_mm = optional_real(row, 15);
+  plan.ptpe = optional_text(row, 16);
+  return plan;
+}
+
 std::vector<OpenSession> open_sessions(sqlite::Connection& database, std::int64_t run,
                                        std::int64_t protocol) {
   Statement row(database,
-                "SELECT session_id, participant, visit, seed, test_data, observer, clock, display, stimulus, "
-                "machine, time_zone, ptpe, (SELECT count(*) FROM trial t WHERE t.session_id = s.session_id), "
-                "(SELECT count(*) FROM trial t WHERE t.session_id = s.session_id AND t.state = 'answered') "
-                "FROM session s WHERE run_id = ? AND protocol_id = ? AND EXISTS (SELECT 1 FROM trial t "
-                "WHERE t.session_id = s.session_id AND t.state = 'planned') ORDER BY session_id");
+                "SELECT session_id, participant, visit, seed, slot, test_data, observer, clock, display, "
+                "stimulus, machine, station, time_zone, gaze_source, screen_width_mm, viewing_distance_mm, "
+                "ptpe, (SELECT count(*) FROM unit u WHERE u.session_id = s.session_id), "
+                "(SELECT count(*) FROM unit u WHERE u.session_id = s.session_id AND u.state = 'done') "
+                "FROM session s WHERE run_id = ? AND protocol_id = ? AND state = 'open' AND EXISTS "
+                "(SELECT 1 FROM unit u WHERE u.session_id = s.session_id AND u.state = 'planned') "
+                "ORDER BY session_id");
   row.bind(0, run).bind(1, protocol);
   std::vector<OpenSession> sessions;
   while (row.step()) {
     OpenSession session;
     session.id = row.integer(0);
-    SessionPlan& plan = session.plan;
-    plan.participant = row.text(1);
-    plan.visit = static_cast<int>(row.integer(2));
-    plan.seed = static_cast<std::uint64_t>(row.integer(3));
-    plan.test_data = row.integer(4) != 0;
-    plan.observer = optional_text(row, 5);
-    plan.virtual_clock = row.text(6) == "virtual";
-    plan.display = row.text(7);
-    plan.stimulus = row.text(8);
-    plan.machine = row.text(9);
-    plan.time_zone = row.text(10);
-    plan.ptpe = optional_text(row, 11);
-    session.planned = static_cast<std::size_t>(row.integer(12));
-    session.answered = static_cast<std::size_t>(row.integer(13));
-    session.trials = open_trials(database, session.id);
+    session.plan = read_plan(row);
+    session.planned = static_cast<std::size_t>(row.integer(17));
+    session.done = static_cast<std::size_t>(row.integer(18));
+    session.units = open_units(database, session.id);
     sessions.push_back(std::move(session));
   }
   return sessions;

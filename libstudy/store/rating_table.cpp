@@ -7,54 +7,99 @@ namespace study {
 namespace {
 
 constexpr std::array columns{
-    RatingColumn{"trial_id", "trial", "trial_id"},
-    RatingColumn{"protocol", "protocol", "name"},
-    RatingColumn{"protocol_version", "protocol", "version"},
-    RatingColumn{"participant", "session", "participant"},
-    RatingColumn{"visit", "session", "visit"},
-    RatingColumn{"test_data", "session", "test_data"},
-    RatingColumn{"observer", "session", "observer"},
-    RatingColumn{"clock", "session", "clock"},
-    RatingColumn{"position", "trial", "position"},
-    RatingColumn{"practice", "trial", "practice"},
-    RatingColumn{"nominal_mean_fps", "trial", "nominal_mean_fps"},
-    RatingColumn{"nominal_sd_fps", "trial", "nominal_sd_fps"},
-    RatingColumn{"duration_s", "trial", "duration_s"},
-    RatingColumn{"question", "question", "code"},
-    RatingColumn{"score", "response", "score"},
-    RatingColumn{"response_time_s", "response", "response_time_s"},
-    RatingColumn{"attempt", "presentation", "attempt"},
-    RatingColumn{"verdict", "presentation", "verdict"},
-    RatingColumn{"grade", "presentation", "grade"},
-    RatingColumn{"frames", "presentation", "frames"},
-    RatingColumn{"mean_fps", "presentation", "mean_fps"},
-    RatingColumn{"mean_arithmetic_fps", "presentation", "mean_arithmetic_fps"},
-    RatingColumn{"sd_fps", "presentation", "sd_fps"},
-    RatingColumn{"p95_ms", "presentation", "p95_ms"},
-    RatingColumn{"longest_ms", "presentation", "longest_ms"},
-    RatingColumn{"shortest_ms", "presentation", "shortest_ms"},
-    RatingColumn{"lag1", "presentation", "lag1"},
-    RatingColumn{"late_frames", "presentation", "late_frames"},
-    RatingColumn{"worst_late_ms", "presentation", "worst_late_ms"},
+    RatingColumn{"trial_id", "trial", "trial", "trial_id"},
+    RatingColumn{"protocol", "protocol", "protocol", "name"},
+    RatingColumn{"protocol_version", "protocol", "protocol", "version"},
+    RatingColumn{"participant", "session", "session", "participant"},
+    RatingColumn{"visit", "session", "session", "visit"},
+    RatingColumn{"test_data", "session", "session", "test_data"},
+    RatingColumn{"observer", "session", "session", "observer"},
+    RatingColumn{"clock", "session", "session", "clock"},
+    RatingColumn{"station", "session", "session", "station"},
+    RatingColumn{"gaze_source", "session", "session", "gaze_source"},
+    RatingColumn{"position", "trial", "trial", "position"},
+    RatingColumn{"block", "unit", "unit", "block"},
+    RatingColumn{"block_kind", "unit", "unit", "kind"},
+    RatingColumn{"group_index", "trial", "trial", "group_index"},
+    RatingColumn{"first_scene", "cell_1", "cell", "scene"},
+    RatingColumn{"first_method", "cell_1", "cell", "method"},
+    RatingColumn{"first_n_star", "cell_1", "cell", "n_star"},
+    RatingColumn{"first_nominal_mean_fps", "cell_1", "cell", "mean_fps"},
+    RatingColumn{"first_nominal_sd_fps", "cell_1", "cell", "sd_fps"},
+    RatingColumn{"first_duration_s", "cell_1", "cell", "duration_s"},
+    RatingColumn{"second_scene", "cell_2", "cell", "scene"},
+    RatingColumn{"second_method", "cell_2", "cell", "method"},
+    RatingColumn{"second_n_star", "cell_2", "cell", "n_star"},
+    RatingColumn{"second_nominal_mean_fps", "cell_2", "cell", "mean_fps"},
+    RatingColumn{"second_nominal_sd_fps", "cell_2", "cell", "sd_fps"},
+    RatingColumn{"second_duration_s", "cell_2", "cell", "duration_s"},
+    RatingColumn{"question", "question", "question", "code"},
+    RatingColumn{"score", "response", "response", "score"},
+    RatingColumn{"response_time_s", "response", "response", "response_time_s"},
+    RatingColumn{"attempt", "response", "response", "attempt"},
+    RatingColumn{"excluded", "trial", "trial", "excluded", "trial.excluded IS NOT NULL",
+                 "1: excluded by the experimenter"},
+    RatingColumn{"first_verdict", "shown_1", "presentation", "verdict"},
+    RatingColumn{"first_grade", "shown_1", "presentation", "grade"},
+    RatingColumn{"first_frames", "shown_1", "presentation", "frames"},
+    RatingColumn{"first_mean_fps", "shown_1", "presentation", "mean_fps"},
+    RatingColumn{"first_mean_arithmetic_fps", "shown_1", "presentation", "mean_arithmetic_fps"},
+    RatingColumn{"first_sd_fps", "shown_1", "presentation", "sd_fps"},
+    RatingColumn{"first_p95_ms", "shown_1", "presentation", "p95_ms"},
+    RatingColumn{"first_longest_ms", "shown_1", "presentation", "longest_ms"},
+    RatingColumn{"first_shortest_ms", "shown_1", "presentation", "shortest_ms"},
+    RatingColumn{"first_lag1", "shown_1", "presentation", "lag1"},
+    RatingColumn{"first_late_frames", "shown_1", "presentation", "late_frames"},
+    RatingColumn{"first_worst_late_ms", "shown_1", "presentation", "worst_late_ms"},
+    RatingColumn{"second_verdict", "shown_2", "presentation", "verdict"},
+    RatingColumn{"second_grade", "shown_2", "presentation", "grade"},
+    RatingColumn{"second_frames", "shown_2", "presentation", "frames"},
+    RatingColumn{"second_mean_fps", "shown_2", "presentation", "mean_fps"},
+    RatingColumn{"second_mean_arithmetic_fps", "shown_2", "presentation", "mean_arithmetic_fps"},
+    RatingColumn{"second_sd_fps", "shown_2", "presentation", "sd_fps"},
+    RatingColumn{"second_p95_ms", "shown_2", "presentation", "p95_ms"},
+    RatingColumn{"second_longest_ms", "shown_2", "presentation", "longest_ms"},
+    RatingColumn{"second_shortest_ms", "shown_2", "presentation", "shortest_ms"},
+    RatingColumn{"second_lag1", "shown_2", "presentation", "lag1"},
+    RatingColumn{"second_late_frames", "shown_2", "presentation", "late_frames"},
+    RatingColumn{"second_worst_late_ms", "shown_2", "presentation", "worst_late_ms"},
 };
+
+constexpr const char* joined_tables =
+    " FROM trial JOIN unit USING (trial_id) JOIN session ON session.session_id = trial.session_id "
+    "JOIN protocol USING (protocol_id) "
+    "JOIN ask ON ask.protocol_id = protocol.protocol_id AND ask.block = unit.block "
+    "JOIN question ON question.question_id = ask.question_id AND question.personal = 0 "
+    "JOIN cell AS cell_1 ON cell_1.protocol_id = protocol.protocol_id AND cell_1.cell = trial.first_cell "
+    "LEFT JOIN cell AS cell_2 ON cell_2.protocol_id = protocol.protocol_id "
+    "AND cell_2.cell = trial.second_cell "
+    "LEFT JOIN response ON response.response_id = (SELECT r.response_id FROM response r "
+    "WHERE r.unit_id = unit.unit_id AND r.question_id = question.question_id "
+    "ORDER BY r.attempt DESC LIMIT 1) "
+    "LEFT JOIN presentation AS shown_1 ON shown_1.trial_id = trial.trial_id "
+    "AND shown_1.attempt = response.attempt AND shown_1.interval = 0 "
+    "LEFT JOIN presentation AS shown_2 ON shown_2.trial_id = trial.trial_id "
+    "AND shown_2.attempt = response.attempt AND shown_2.interval = 1 "
+    "ORDER BY trial.trial_id, ask.place";
 
 }  // namespace
 
 std::span<const RatingColumn> rating_columns() { return columns; }
 
+std::string rating_subject(const RatingColumn& column) {
+  const std::string from = column.from;
+  if (from.ends_with("_1")) return "first or only stimulus: ";
+  return from.ends_with("_2") ? "second stimulus of a pair: " : "";
+}
+
 std::string rating_table_sql() {
   std::string list;
   for (const RatingColumn& column : columns) {
-    list +=
-        (list.empty() ? "" : ", ") + std::string(column.table) + '.' + column.column + " AS " + column.name;
+    const std::string value =
+        column.expression ? column.expression : std::string(column.from) + '.' + column.column;
+    list += (list.empty() ? "" : ", ") + value + " AS " + column.name;
   }
-  return "SELECT " + list +
-         " FROM trial JOIN session USING (session_id) JOIN protocol USING (protocol_id) "
-         "JOIN question USING (protocol_id) "
-         "LEFT JOIN response ON response.trial_id = trial.trial_id "
-         "AND response.question_id = question.question_id "
-         "LEFT JOIN presentation ON presentation.presentation_id = response.presentation_id "
-         "ORDER BY trial.trial_id, question.question_id";
+  return "SELECT " + list + joined_tables;
 }
 
 }  // namespace study

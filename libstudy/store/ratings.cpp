@@ -9,19 +9,24 @@ using sqlite::Statement;
 
 namespace {
 
-// The presentation that counts is the one answered, or the last one played while there is no answer.
+// The last answer counts, with the showing it judged; without an answer, the last showing played.
 constexpr const char* ratings_sql =
-    "SELECT s.participant, p.name, p.sha256, s.test_data OR p.test_data, t.practice, t.position, "
-    "t.nominal_mean_fps, t.nominal_sd_fps, t.duration_s, q.scale_min, q.scale_max, a.score, "
-    "c.verdict, c.grade, c.reason, c.frames, c.mean_fps, c.mean_arithmetic_fps, c.sd_fps, c.longest_ms, "
-    "c.shortest_ms, c.p95_ms, c.lag1, c.late_frames, c.worst_late_ms, coalesce(s.observer, '') "
-    "FROM trial t JOIN session s USING (session_id) JOIN protocol p USING (protocol_id) "
-    "JOIN question q USING (protocol_id) "
-    "LEFT JOIN response a ON a.trial_id = t.trial_id AND a.question_id = q.question_id "
-    "LEFT JOIN presentation c ON c.presentation_id = coalesce(a.presentation_id, "
-    "(SELECT max(l.presentation_id) FROM presentation l WHERE l.trial_id = t.trial_id AND l.state = "
-    "'played')) "
-    "ORDER BY p.protocol_id, s.participant, s.visit, t.position";
+    "SELECT s.participant, p.name, p.sha256, s.test_data OR p.test_data, u.kind, t.position, "
+    "c.mean_fps, c.sd_fps, c.duration_s, q.scale_min, q.scale_max, a.score, "
+    "v.verdict, v.grade, v.reason, v.frames, v.mean_fps, v.mean_arithmetic_fps, v.sd_fps, v.longest_ms, "
+    "v.shortest_ms, v.p95_ms, v.lag1, v.late_frames, v.worst_late_ms, coalesce(s.observer, ''), q.code, "
+    "t.excluded IS NOT NULL "
+    "FROM trial t JOIN unit u USING (trial_id) JOIN session s ON s.session_id = t.session_id "
+    "JOIN protocol p USING (protocol_id) "
+    "JOIN cell c ON c.protocol_id = p.protocol_id AND c.cell = t.first_cell "
+    "JOIN ask k ON k.protocol_id = p.protocol_id AND k.block = u.block "
+    "JOIN question q ON q.question_id = k.question_id AND q.kind = 'scale' AND q.personal = 0 "
+    "LEFT JOIN response a ON a.response_id = (SELECT r.response_id FROM response r "
+    "WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id ORDER BY r.attempt DESC LIMIT 1) "
+    "LEFT JOIN presentation v ON v.trial_id = t.trial_id AND v.interval = 0 AND v.state = 'played' "
+    "AND v.attempt = coalesce(a.attempt, (SELECT max(l.attempt) FROM presentation l "
+    "WHERE l.trial_id = t.trial_id AND l.state = 'played')) "
+    "WHERE t.second_cell IS NULL ORDER BY p.protocol_id, s.participant, s.visit, t.position, k.place";
 
 TimingVerdict read_verdict(const Statement& row, const FpsSetting& nominal) {
   TimingVerdict verdict;
@@ -55,7 +60,10 @@ std::vector<RatingRow> read_ratings(const std::filesystem::path& path) {
     rating.protocol_name = row.text(1);
     rating.protocol_sha256 = row.text(2);
     rating.test_data = row.integer(3) != 0;
-    rating.practice = row.integer(4) != 0;
+    rating.practice = row.text(4) == "practice";
+    rating.repeat = row.text(4) == "repeat";
+    rating.question = row.text(26);
+    rating.excluded = row.integer(27) != 0;
     rating.position = static_cast<int>(row.integer(5));
     rating.nominal = {row.real(6), row.real(7), row.real(8)};
     rating.scale_min = static_cast<int>(row.integer(9));

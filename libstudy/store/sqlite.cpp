@@ -100,6 +100,27 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
     const Advice told = advice(code, message, system_error);
     throw base::Error(path.string(), told.problem, told.mend);
   }
+  protect();
+}
+
+Connection::Connection(Connection& original, InMemory) : path_(original.path_) {
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_EXRESCODE;
+  if (sqlite3_open_v2(":memory:", &handle_, flags, nullptr) != SQLITE_OK) {
+    sqlite3_close_v2(std::exchange(handle_, nullptr));
+    throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
+  }
+  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", original.handle_, "main");
+  const int code = copy ? sqlite3_backup_step(copy, -1) : SQLITE_OK;
+  sqlite3_backup_finish(copy);
+  if (!copy || code != SQLITE_DONE) {
+    const Advice told = advice(code, sqlite3_errmsg(handle_), 0);
+    sqlite3_close_v2(std::exchange(handle_, nullptr));
+    throw base::Error(path_.string(), "cannot be copied: " + told.problem, told.mend);
+  }
+  protect();
+}
+
+void Connection::protect() {
   sqlite3_busy_timeout(handle_, busy_timeout_ms);
   // A file from elsewhere must not run code of its own.
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);

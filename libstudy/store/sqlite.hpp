@@ -21,10 +21,15 @@ enum class Open {
   Untouched  ///< a look at the file alone: no lock, no log is read or replayed, nothing beside it is made
 };
 
+/// Chooses a database that lives in memory.
+struct InMemory {};
+
 /// One connection. Not for two threads at a time.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
+  /// A copy of another database as it is now; messages name the file it came from.
+  Connection(Connection& original, InMemory);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -43,6 +48,8 @@ class Connection {
   void check(int code) const;
 
  private:
+  void protect();
+
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
 };

@@ -1,5 +1,7 @@
 #include "libstudy/store/status.hpp"
 
+#include <algorithm>
+
 #include "libstudy/store/database.hpp"
 
 namespace study {
@@ -17,22 +19,36 @@ constexpr const char* protocols_sql =
 constexpr const char* sessions_sql =
     "SELECT s.protocol_id, s.participant, s.visit, coalesce(s.observer, ''), s.clock, s.test_data, "
     "count(t.trial_id), count(t.trial_id) FILTER (WHERE t.state = 'answered'), "
-    "(SELECT count(*) FROM presentation p JOIN trial u USING (trial_id) "
-    "WHERE u.session_id = s.session_id AND p.state = 'interrupted'), s.ended_utc IS NOT NULL "
-    "FROM session s LEFT JOIN trial t USING (session_id) "
+    "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) "
+    "WHERE v.session_id = s.session_id AND p.state = 'interrupted'), s.ended_utc IS NOT NULL, s.state, "
+    "count(u.unit_id), count(u.unit_id) FILTER (WHERE u.state = 'done'), count(t.excluded) "
+    "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
+// A showing was answered when some response judges it; one of a pair shares its attempt with the other.
 std::string certificate_sql(FpsMean mean) {
   const std::string realised = mean == FpsMean::Harmonic ? "p.mean_fps" : "p.mean_arithmetic_fps";
-  return "SELECT t.nominal_mean_fps, t.nominal_sd_fps, max(t.duration_s), count(*), avg(" + realised +
+  return "SELECT c.scene, c.method, c.n_star, c.mean_fps, c.sd_fps, c.duration_s, count(*), avg(" + realised +
          "), max(abs(" + realised +
-         " - t.nominal_mean_fps)), avg(p.sd_fps), max(abs(p.sd_fps - t.nominal_sd_fps)), "
-         "sum(p.frames), sum(p.late_frames), max(p.worst_late_ms), count(*) FILTER (WHERE p.verdict = "
-         "'pass'), "
-         "count(*) FILTER (WHERE p.verdict = 'degraded'), count(*) FILTER (WHERE p.verdict = 'fail'), "
-         "group_concat(DISTINCT p.grade) FROM response r JOIN presentation p USING (presentation_id) "
-         "JOIN trial t ON t.trial_id = r.trial_id JOIN session s USING (session_id) "
-         "WHERE s.run_id = ? GROUP BY t.setting ORDER BY t.setting";
+         " - c.mean_fps)), avg(p.sd_fps), max(abs(p.sd_fps - c.sd_fps)), "
+         "sum(p.frames), sum(p.late_frames), max(p.worst_late_ms), "
+         "count(*) FILTER (WHERE p.verdict = 'pass'), count(*) FILTER (WHERE p.verdict = 'degraded'), "
+         "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade) "
+         "FROM presentation p JOIN trial t USING (trial_id) "
+         "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
+         "WHERE s.run_id = ? AND EXISTS (SELECT 1 FROM unit u JOIN response r USING (unit_id) "
+         "WHERE u.trial_id = p.trial_id AND r.attempt = p.attempt) "
+         "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";
+}
+
+/// As text, so that best comes first: A before D.
+std::string sorted_grades(std::string grades) {
+  std::sort(grades.begin(), grades.end());
+  std::string out;
+  for (const char grade : grades) {
+    if (grade != ',') out += (out.empty() ? "" : ",") + std::string(1, grade);
+  }
+  return out;
 }
 
 }  // namespace
@@ -49,8 +65,11 @@ StudyStatus read_status(const std::filesystem::path& path) {
   for (Statement row(*database, sessions_sql); row.step();) {
     status.sessions.push_back({row.integer(0), row.text(1), static_cast<int>(row.integer(2)), row.text(3),
                                row.text(4), row.integer(5) != 0, row.integer(6), row.integer(7),
-                               row.integer(8), row.integer(9) != 0});
+                               row.integer(8), row.integer(9) != 0, row.text(10), row.integer(11),
+                               row.integer(12), row.integer(13)});
   }
+  for (Statement row(*database, "SELECT participant FROM tombstone ORDER BY participant"); row.step();)
+    status.withdrawn.push_back(row.text(0));
   status.frames = database->integer("SELECT count(*) FROM frame");
   return status;
 }
@@ -63,19 +82,20 @@ std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, 
   std::vector<CertificateRow> rows;
   while (row.step()) {
     CertificateRow line;
-    line.nominal = {row.real(0), row.real(1), row.real(2)};
-    line.trials = row.integer(3);
-    line.mean = row.real(4);
-    line.mean_worst = row.real(5);
-    line.sd = row.real(6);
-    line.sd_worst = row.real(7);
-    line.frames = row.integer(8);
-    line.late = row.integer(9);
-    line.worst_late_ms = row.real(10);
-    line.pass = row.integer(11);
-    line.degraded = row.integer(12);
-    line.fail = row.integer(13);
-    line.grades = row.text(14);
+    line.what = {row.text(0), row.text(1), row.text(2)};
+    line.nominal = {row.real(3), row.real(4), row.real(5)};
+    line.trials = row.integer(6);
+    line.mean = row.real(7);
+    line.mean_worst = row.real(8);
+    line.sd = row.real(9);
+    line.sd_worst = row.real(10);
+    line.frames = row.integer(11);
+    line.late = row.integer(12);
+    line.worst_late_ms = row.real(13);
+    line.pass = row.integer(14);
+    line.degraded = row.integer(15);
+    line.fail = row.integer(16);
+    line.grades = sorted_grades(row.text(17));
     rows.push_back(std::move(line));
   }
   return rows;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libstudy/pacing/schedule.hpp"
+#include "libstudy/protocol/design.hpp"
 
 namespace study {
 
@@ -31,22 +32,27 @@ struct SessionRow {
   std::int64_t trials = 0, answered = 0;
   std::int64_t interrupted = 0;  ///< presentations cut short
   bool ended = false;
+  std::string state;                 ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::int64_t units = 0, done = 0;  ///< pages and trials
+  std::int64_t excluded = 0;         ///< trials
 };
 
 struct StudyStatus {
   std::vector<ProtocolRow> protocols;
-  std::vector<SessionRow> sessions;  ///< by protocol, then in the order of planning
+  std::vector<SessionRow> sessions;    ///< by protocol, then in the order of planning
+  std::vector<std::string> withdrawn;  ///< codes of those who withdrew
   std::int64_t frames = 0;
 };
 StudyStatus read_status(const std::filesystem::path& database);
 
-/// Timing of all answered presentations of one setting: a line of the certificate.
+/// Timing of all answered presentations of one cell: a line of the certificate.
 struct CertificateRow {
-  FpsSetting nominal;
-  std::int64_t trials = 0;
-  double mean = 0;        ///< mean over the trials of the realised mean, frames/s
-  double mean_worst = 0;  ///< largest distance from nominal, frames/s
-  double sd = 0;          ///< mean over the trials of the realised sd, frames/s
+  StimulusSpec what;
+  FpsSetting nominal;       ///< moments 0: as fast as the method ran, without verdicts
+  std::int64_t trials = 0;  ///< presentations
+  double mean = 0;          ///< mean over the trials of the realised mean, frames/s
+  double mean_worst = 0;    ///< largest distance from nominal, frames/s
+  double sd = 0;            ///< mean over the trials of the realised sd, frames/s
   double sd_worst = 0;
   std::int64_t frames = 0, late = 0;
   double worst_late_ms = 0;

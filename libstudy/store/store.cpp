@@ -19,8 +19,6 @@ using sqlite::Transaction;
 
 namespace {
 
-std::int64_t as_signed(std::uint64_t value) { return static_cast<std::int64_t>(value); }
-
 /// A time relative to another; nothing when it is not known.
 std::optional<std::int64_t> after(std::int64_t time_ns, std::int64_t origin_ns) {
   if (time_ns < 0) return {};
@@ -34,12 +32,14 @@ std::optional<std::string> particles_text(const std::vector<std::int64_t>& parti
   return text;
 }
 
-std::string anchors_text(const Question& question) {
-  std::string text;
-  for (const auto& [score, words] : question.anchors) {
-    text += (text.empty() ? "" : "\n") + std::to_string(score) + " = " + words;
-  }
-  return text;
+const char* state_name(EarlyEnd how) {
+  if (how == EarlyEnd::NotEligible) return "not eligible";
+  return how == EarlyEnd::Stopped ? "stopped" : "dropped out";
+}
+
+std::optional<std::string> words_of(const Answer& answer) {
+  if (answer.words.empty()) return {};
+  return answer.words;
 }
 
 }  // namespace
@@ -79,24 +79,22 @@ struct Store::Statements {
               "INSERT INTO event (session_id, presentation_id, utc, clock_ns, kind, detail) VALUES "
               "(?,?,?,?,?,?)"),
         begin(database,
-              "INSERT INTO presentation (trial_id, attempt, state, started_utc, start_ns) VALUES "
-              "(?,?,'running',?,?)"),
+              "INSERT INTO presentation (trial_id, attempt, interval, cell, state, started_utc, start_ns) "
+              "VALUES (?,?,?,?,'running',?,?)"),
         end(database,
             "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
-            "frames = ?, "
-            "mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, shortest_ms = ?, "
-            "lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
-        response(
-            database,
-            "INSERT INTO response (trial_id, presentation_id, question_id, score, response_time_s, "
-            "answered_utc) "
-            "SELECT ?1, ?2, q.question_id, ?4, ?5, ?6 FROM question q JOIN session s USING (protocol_id) "
-            "WHERE s.session_id = ?7 AND q.code = ?3 RETURNING response_id"),
-        answered(database, "UPDATE trial SET state = 'answered' WHERE trial_id = ?"),
-        ended(database,
-              "UPDATE session SET ended_utc = ?2 WHERE session_id = ?1 AND NOT EXISTS "
-              "(SELECT 1 FROM trial t WHERE t.session_id = ?1 AND t.state = 'planned')") {}
-  Statement frame, event, begin, end, response, answered, ended;
+            "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "
+            "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
+        // No answer to what is personal, done, of another session or answered since it was last set aside.
+        response(database,
+                 "INSERT INTO response (unit_id, attempt, question_id, score, words, response_time_s, "
+                 "answered_utc) SELECT u.unit_id, ?3, q.question_id, ?5, ?6, ?7, ?8 "
+                 "FROM unit u JOIN session s USING (session_id) JOIN question q USING (protocol_id) "
+                 "LEFT JOIN trial t USING (trial_id) WHERE s.session_id = ?1 AND u.unit_id = ?2 "
+                 "AND q.code = ?4 AND q.personal = 0 AND u.state = 'planned' AND NOT EXISTS "
+                 "(SELECT 1 FROM response r WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
+                 "AND r.attempt > coalesce(t.set_aside, -1)) RETURNING response_id") {}
+  Statement frame, event, begin, end, response;
 };
 
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
@@ -118,116 +116,19 @@ Store::~Store() {
   if (blank_) fs::remove(path_, ignored);
 }
 
-std::int64_t Store::add_run(const RunPlan& run) {
-  Transaction transaction(*database_);
-  const std::int64_t protocol_id = find_or_add_protocol(run);
-  const std::int64_t run_id =
-      Statement(*database_, "INSERT INTO run (started_utc, program_version, options) VALUES (?,?,?)")
-          .bind(0, base::utc_now())
-          .bind(1, base::version())
-          .bind(2, run.options)
-          .run();
-  for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
-  transaction.commit();
-  blank_ = false;
-  return run_id;
-}
-
-std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
-  const Protocol& protocol = run.protocol;
-  Statement same(*database_, "SELECT protocol_id FROM protocol WHERE sha256 = ?");
-  if (same.bind(0, protocol.sha256).step()) return same.integer(0);
-
-  Statement changed(*database_,
-                    "SELECT sha256 FROM protocol WHERE name = ? AND version = ? AND test_data = 0");
-  if (!protocol.test_data && changed.bind(0, protocol.name).bind(1, protocol.version).step()) {
-    throw base::Error(database_->path().string(),
-                      "protocol '" + protocol.name + "' version " + protocol.version +
-                          " stands here with another text (" + changed.text(0).substr(0, 12) + ", now " +
-                          protocol.sha256.substr(0, 12) + "); a changed protocol begins a new dataset",
-                      "give the changed protocol a new version, or use another database");
-  }
-  const std::int64_t id =
-      Statement(
-          *database_,
-          "INSERT INTO protocol (sha256, name, version, text, trial_seconds, test_data) VALUES (?,?,?,?,?,?)")
-          .bind(0, protocol.sha256)
-          .bind(1, protocol.name)
-          .bind(2, protocol.version)
-          .bind(3, protocol.text)
-          .bind(4, protocol.trial_seconds)
-          .bind(5, protocol.test_data ? 1 : 0)
-          .run();
-  const Question& question = protocol.question;
-  Statement(*database_,
-            "INSERT INTO question (protocol_id, code, wording, language, scale_min, scale_max, anchors) "
-            "VALUES (?,?,?,?,?,?,?)")
-      .bind(0, id)
-      .bind(1, question.id)
-      .bind(2, question.text)
-      .bind(3, question.language)
-      .bind(4, question.scale_min)
-      .bind(5, question.scale_max)
-      .bind(6, anchors_text(question))
-      .run();
-  return id;
-}
-
-void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
-                        const SessionPlan& plan) {
-  check_participant_code(plan.participant);
-  Statement present(*database_,
-                    "SELECT 1 FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
-  if (present.bind(0, protocol_id).bind(1, plan.participant).bind(2, plan.visit).step()) {
-    throw base::Error(database_->path().string(),
-                      "participant " + plan.participant + " has visit " + std::to_string(plan.visit) +
-                          " of this protocol already",
-                      "continue with vip-study resume --db " + database_->path().string() +
-                          ", or give other codes or another --visit");
-  }
-  const std::int64_t session =
-      Statement(
-          *database_,
-          "INSERT INTO session (run_id, protocol_id, participant, visit, seed, test_data, observer, clock, "
-          "display, stimulus, machine, time_zone, ptpe) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)")
-          .bind(0, run_id)
-          .bind(1, protocol_id)
-          .bind(2, plan.participant)
-          .bind(3, plan.visit)
-          .bind(4, as_signed(plan.seed))
-          .bind(5, plan.test_data ? 1 : 0)
-          .bind(6, plan.observer)
-          .bind(7, plan.virtual_clock ? "virtual" : "real")
-          .bind(8, plan.display)
-          .bind(9, plan.stimulus)
-          .bind(10, plan.machine)
-          .bind(11, plan.time_zone)
-          .bind(12, plan.ptpe)
-          .run();
-  Statement insert(
-      *database_,
-      "INSERT INTO trial (session_id, position, setting, practice, nominal_mean_fps, nominal_sd_fps, "
-      "duration_s, schedule_seed, state) VALUES (?,?,?,0,?,?,?,?,'planned')");
-  for (const PlannedTrial& trial : plan.trials) {
-    const FpsSetting& setting = protocol.settings.at(static_cast<std::size_t>(trial.setting));
-    insert.bind(0, session).bind(1, trial.position).bind(2, trial.setting);
-    insert.bind(3, setting.mean).bind(4, setting.sd).bind(5, setting.duration_s);
-    insert.bind(6, as_signed(trial.schedule_seed)).run();
-  }
-  insert_event(session, {}, "planned", "program " + base::version(), {});
-}
-
-std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt,
-                                       std::int64_t start_ns) {
+std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
+                                       int cell, std::int64_t start_ns) {
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
-  const std::int64_t id =
-      statements_->begin.bind(0, trial).bind(1, attempt).bind(2, now).bind(3, start_ns).run();
+  Statement& begin = statements_->begin;
+  begin.bind(0, trial).bind(1, attempt).bind(2, interval).bind(3, cell).bind(4, now).bind(5, start_ns);
+  const std::int64_t id = begin.run();
   Statement(*database_, "UPDATE session SET started_utc = ? WHERE session_id = ? AND started_utc IS NULL")
       .bind(0, now)
       .bind(1, session)
       .run();
-  insert_event(session, id, "trial shown", "attempt " + std::to_string(attempt), start_ns);
+  insert_event(session, id, "trial shown",
+               "attempt " + std::to_string(attempt) + ", interval " + std::to_string(interval), start_ns);
   transaction.commit();
   return id;
 }
@@ -260,8 +161,9 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
   Transaction transaction(*database_);
   insert_frames(presentation, start_ns, frames);
   Statement& end = statements_->end;
-  end.bind(0, end_ns).bind(1, verdict_name(verdict.verdict)).bind(2, grade_name(verdict.grade));
-  end.bind(3, verdict.reason).bind(4, static_cast<std::int64_t>(verdict.realised.frames));
+  end.bind(0, end_ns).bind_null(1).bind(2, grade_name(verdict.grade)).bind_null(3);
+  if (verdict.nominal.mean > 0) end.bind(1, verdict_name(verdict.verdict)).bind(3, verdict.reason);
+  end.bind(4, static_cast<std::int64_t>(verdict.realised.frames));
   end.bind(5, verdict.realised.mean).bind(6, verdict.realised.mean_arithmetic).bind(7, verdict.realised.sd);
   end.bind(8, verdict.p95_ms)
       .bind(9, verdict.longest_ms)
@@ -281,21 +183,130 @@ void Store::interrupt_presentation(std::int64_t session, std::int64_t presentati
   transaction.commit();
 }
 
-void Store::answer(std::int64_t session, std::int64_t trial, std::int64_t presentation,
-                   const std::string& question, int score, double response_time_s, std::int64_t clock_ns) {
+void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
+                   std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns) {
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
   Statement& insert = statements_->response;
-  insert.bind(0, trial).bind(1, presentation).bind(2, question).bind(3, score).bind(4, response_time_s);
-  if (!insert.bind(5, now).bind(6, session).step()) {
-    throw base::Error(database_->path().string(), "holds no question '" + question + "' for this session",
-                      "restore a backup of it");
+  for (const KeptAnswer& kept : answers) {
+    const Answer& answer = kept.answer.answer;
+    insert.bind(0, session).bind(1, unit.id).bind(2, attempt).bind(3, kept.question);
+    insert.bind(4, answer.score).bind(5, words_of(answer)).bind(6, kept.answer.response_time_s);
+    const bool taken = insert.bind(7, now).step();
+    insert.reset();
+    if (!taken) {
+      throw base::Error(
+          path_.string(),
+          "takes no answer to question '" + kept.question + "' here: unknown, personal or answered before",
+          "run vip-study resume, which asks what is open");
+    }
   }
-  insert.reset();
-  statements_->answered.bind(0, trial).run();
-  statements_->ended.bind(0, session).bind(1, now).run();
-  insert_event(session, presentation, "answered", "", clock_ns);
+  const std::string where = "unit " + std::to_string(unit.plan.position);
+  if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
+  if (last) mark_done(session, unit.id, now, clock_ns);
   transaction.commit();
+}
+
+void Store::finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns) {
+  Transaction transaction(*database_);
+  mark_done(session, unit, base::utc_now(), clock_ns);
+  transaction.commit();
+}
+
+void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string& now,
+                      std::int64_t clock_ns) {
+  Statement done(*database_,
+                 "UPDATE unit SET state = 'done', done_utc = ? WHERE unit_id = ? AND session_id = ? "
+                 "RETURNING position");
+  if (!done.bind(0, now).bind(1, unit).bind(2, session).step())
+    throw base::Error(path_.string(), "holds no such unit of this session", "restore a backup of it");
+  const std::string where = "unit " + done.text(0);
+  done.reset();
+  Statement(*database_,
+            "UPDATE trial SET state = 'answered' WHERE trial_id = "
+            "(SELECT trial_id FROM unit WHERE unit_id = ?)")
+      .bind(0, unit)
+      .run();
+  Statement(*database_,
+            "UPDATE session SET state = 'done', ended_utc = ?2 WHERE session_id = ?1 AND state = 'open' "
+            "AND NOT EXISTS (SELECT 1 FROM unit u WHERE u.session_id = ?1 AND u.state = 'planned')")
+      .bind(0, session)
+      .bind(1, now)
+      .run();
+  insert_event(session, {}, "done", where, clock_ns);
+}
+
+void Store::end_session(std::int64_t session, EarlyEnd how, const std::string& reason,
+                        std::int64_t clock_ns) {
+  Transaction transaction(*database_);
+  Statement(*database_, "UPDATE session SET state = ?, ended_utc = ? WHERE session_id = ? AND state = 'open'")
+      .bind(0, state_name(how))
+      .bind(1, base::utc_now())
+      .bind(2, session)
+      .run();
+  insert_event(session, {}, "ended early", state_name(how), clock_ns);
+  if (!reason.empty()) insert_note(session, {}, reason);
+  transaction.commit();
+}
+
+void Store::repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason) {
+  Transaction transaction(*database_);
+  Statement open(*database_,
+                 "UPDATE trial SET state = 'planned', set_aside = (SELECT coalesce(max(attempt), 0) "
+                 "FROM presentation p WHERE p.trial_id = ?1) WHERE trial_id = ?1 AND session_id = ?2 "
+                 "RETURNING position");
+  if (!open.bind(0, trial).bind(1, session).step()) throw_no_trial();
+  const std::string where = "trial " + open.text(0);
+  open.reset();
+  Statement(*database_, "UPDATE unit SET state = 'planned', done_utc = NULL WHERE trial_id = ?")
+      .bind(0, trial)
+      .run();
+  Statement(*database_,
+            "UPDATE session SET state = 'open', ended_utc = NULL WHERE session_id = ? AND state = 'done'")
+      .bind(0, session)
+      .run();
+  insert_event(session, {}, "trial set aside", where, {});
+  if (!reason.empty()) insert_note(session, trial_unit(trial), reason);
+  transaction.commit();
+}
+
+void Store::exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason) {
+  if (reason.empty())
+    throw base::Error("exclusion of a trial", "has no reason", "say why the analyses shall leave it out");
+  Transaction transaction(*database_);
+  Statement exclude(*database_,
+                    "UPDATE trial SET excluded = ?3 WHERE trial_id = ?1 AND session_id = ?2 "
+                    "RETURNING position");
+  if (!exclude.bind(0, trial).bind(1, session).bind(2, reason).step()) throw_no_trial();
+  const std::string where = "trial " + exclude.text(0);
+  exclude.reset();
+  insert_event(session, {}, "trial excluded", where, {});
+  transaction.commit();
+}
+
+void Store::throw_no_trial() const {
+  throw base::Error(path_.string(), "holds no such trial of this session", "name a trial of the session");
+}
+
+std::int64_t Store::trial_unit(std::int64_t trial) {
+  Statement row(*database_, "SELECT unit_id FROM unit WHERE trial_id = ?");
+  return row.bind(0, trial).step() ? row.integer(0) : 0;
+}
+
+void Store::note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
+  Transaction transaction(*database_);
+  insert_note(session, unit, words);
+  insert_event(session, {}, "note", "", {});
+  transaction.commit();
+}
+
+void Store::insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
+  Statement(*database_, "INSERT INTO note (session_id, unit_id, utc, words) VALUES (?,?,?,?)")
+      .bind(0, session)
+      .bind(1, unit)
+      .bind(2, base::utc_now())
+      .bind(3, words)
+      .run();
 }
 
 void Store::insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,

@@ -102,7 +102,7 @@ class Store {
   std::vector<OpenRun> open_runs();
 
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
-  /// not eligible or dropped out, and test data.
+  /// not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id.
@@ -119,13 +119,15 @@ class Store {
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
   /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well.
+  /// base::Error, with nothing kept, for a question that is personal, unknown or answered here before.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
               bool last, std::int64_t clock_ns);
   /// Commits that a unit without answers is done.
   void finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns);
-  /// Ends a session before its last unit; what is not done stays planned.
+  /// Ends a session before its last unit; what is not done stays planned. The reason becomes a note.
   void end_session(std::int64_t session, EarlyEnd how, const std::string& reason, std::int64_t clock_ns);
-  /// Opens a done trial again: it is shown once more as a new attempt, and its answers are kept apart.
+  /// Opens a trial again, done or under way: it is shown once more as a new attempt, and the answers it has
+  /// are kept apart. The reason becomes a note.
   void repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
   /// Marks a trial so that analyses leave it out.
   void exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
@@ -142,7 +144,12 @@ class Store {
   std::int64_t find_or_add_protocol(const RunPlan& run);
   void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
                    const SessionPlan& plan);
+  void check_newcomer(std::int64_t protocol_id, const SessionPlan& plan);
   void mark_cut_presentations();
+  void mark_done(std::int64_t session, std::int64_t unit, const std::string& now, std::int64_t clock_ns);
+  [[noreturn]] void throw_no_trial() const;
+  std::int64_t trial_unit(std::int64_t trial);
+  void insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   void insert_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
   void insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,
                     const std::string& kind, const std::string& detail, std::optional<std::int64_t> clock_ns);

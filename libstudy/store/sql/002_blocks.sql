@@ -1,5 +1,67 @@
--- Step 2. Sessions of blocks: pages beside trials, pairs, withdrawal. Runs with foreign keys off and checked
--- afterwards, since SQLite changes a CHECK only by making a table anew.
+-- Step 2. Sessions of blocks: pages beside trials, pairs, withdrawal, merging. Runs with foreign keys off and checked
+-- afterwards, since SQLite changes a CHECK, and keeps the comments of new columns, only by making a table anew.
+
+CREATE TABLE question_2 (
+  question_id INTEGER PRIMARY KEY, -- row number
+  protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol that asks it
+  code TEXT NOT NULL, -- id in the protocol file
+  wording TEXT NOT NULL, -- exact wording
+  language TEXT NOT NULL, -- language of the wording
+  kind TEXT NOT NULL CHECK (kind IN ('scale', 'choice', 'number', 'text')), -- scale, choice, number or text
+  scale_min INTEGER NOT NULL, -- lowest score; of no meaning for text
+  scale_max INTEGER NOT NULL CHECK (scale_max >= scale_min), -- highest score
+  anchors TEXT NOT NULL, -- one line "score = words" for each labelled score
+  personal INTEGER NOT NULL CHECK (personal IN (0, 1)), -- 1: answers stand in the file of personal data alone
+  UNIQUE (protocol_id, code)
+) STRICT;
+
+-- Which block asks what.
+CREATE TABLE ask (
+  protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol
+  block TEXT NOT NULL, -- id of the block
+  place INTEGER NOT NULL CHECK (place >= 0), -- order among the questions of the block, from 0
+  question_id INTEGER NOT NULL REFERENCES question, -- question asked
+  PRIMARY KEY (protocol_id, block, place)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE run_2 (
+  run_id INTEGER PRIMARY KEY, -- row number
+  uid TEXT NOT NULL UNIQUE, -- recognises the run in copies of the database
+  started_utc TEXT NOT NULL, -- when the command was given
+  program_version TEXT NOT NULL, -- version of the program
+  options TEXT NOT NULL -- options of the command, from which resume rebuilds everything
+) STRICT;
+
+-- A code given twice at different stations is made two by a merge; uid, person and code never change.
+CREATE TABLE session_2 (
+  session_id INTEGER PRIMARY KEY, -- row number
+  uid TEXT NOT NULL UNIQUE, -- recognises the session in copies of the database
+  run_id INTEGER NOT NULL REFERENCES run, -- command that planned it
+  protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol followed
+  participant TEXT NOT NULL CHECK (length(participant) BETWEEN 1 AND 32
+    AND participant NOT GLOB '*[^A-Za-z0-9_-]*'), -- participant code, never a name
+  person TEXT NOT NULL, -- recognises the participant in copies of the database
+  code TEXT NOT NULL, -- participant code as given at the station
+  visit INTEGER NOT NULL CHECK (visit >= 1), -- visit of this participant under this protocol
+  seed INTEGER NOT NULL, -- seed of plan and schedules
+  slot INTEGER NOT NULL CHECK (slot >= 0), -- place in the balanced assignment
+  state TEXT NOT NULL CHECK (state IN ('open', 'done', 'not eligible', 'stopped', 'dropped out')), -- open, done, or how it ended early
+  test_data INTEGER NOT NULL CHECK (test_data IN (0, 1)), -- 1: overridden or marked as a test, never pooled with real data
+  observer TEXT, -- simulated observer that answered; empty: a person
+  clock TEXT NOT NULL CHECK (clock IN ('real', 'virtual')), -- real or virtual clock
+  display TEXT NOT NULL, -- where frames were shown
+  stimulus TEXT NOT NULL, -- what was shown
+  machine TEXT NOT NULL, -- operating system, processor, cores
+  station TEXT NOT NULL, -- where it was recorded
+  time_zone TEXT NOT NULL, -- time zone of the station
+  gaze_source TEXT NOT NULL CHECK (gaze_source IN ('tracked', 'mouse', 'fixed', 'none')), -- tracked, mouse, fixed or none
+  screen_width_mm REAL CHECK (screen_width_mm > 0), -- width of the picture on the screen, mm
+  viewing_distance_mm REAL CHECK (viewing_distance_mm > 0), -- eye to screen, mm
+  ptpe TEXT, -- PTPE file in force, in full; empty: none
+  started_utc TEXT, -- first trial began
+  ended_utc TEXT, -- last unit done, or ended early
+  UNIQUE (participant, protocol_id, visit)
+) STRICT;
 
 CREATE TABLE cell (
   protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol that shows it
@@ -19,6 +81,7 @@ CREATE TABLE unit (
   session_id INTEGER NOT NULL REFERENCES session, -- session it belongs to
   position INTEGER NOT NULL CHECK (position >= 0), -- order in the session, from 0
   block TEXT NOT NULL, -- id of its block in the protocol
+  block_index INTEGER NOT NULL CHECK (block_index >= 0), -- index of its block in the protocol, from 0
   kind TEXT NOT NULL, -- kind of the block
   trial_id INTEGER REFERENCES trial, -- trial; empty: a page
   state TEXT NOT NULL CHECK (state IN ('planned', 'done')), -- planned or done
@@ -35,6 +98,7 @@ CREATE TABLE trial_2 (
   second_cell INTEGER CHECK (second_cell >= 0), -- cell shown second; empty: no pair
   schedule_seed INTEGER NOT NULL, -- orders the intervals; 64 bits, two's complement
   state TEXT NOT NULL CHECK (state IN ('planned', 'answered')), -- planned or answered
+  set_aside INTEGER NOT NULL CHECK (set_aside >= 0), -- showings up to this one were set aside, so that it is shown again; 0: none
   excluded TEXT, -- reason why the experimenter excluded it; empty: not excluded
   UNIQUE (session_id, position)
 ) STRICT;
@@ -87,36 +151,59 @@ CREATE TABLE note (
   words TEXT NOT NULL -- what was noted
 ) STRICT;
 
--- Who withdrew. It wins over data of the same code in every later merge.
+-- Who withdrew: all that is left of them. It wins over data of the same person in every merge.
 CREATE TABLE tombstone (
-  participant TEXT PRIMARY KEY, -- participant code
+  person TEXT PRIMARY KEY, -- recognises the participant in copies of the database
+  participant TEXT NOT NULL UNIQUE, -- participant code
+  code TEXT NOT NULL, -- participant code as given at the station
+  station TEXT NOT NULL, -- station of the first session
   withdrawn_utc TEXT NOT NULL -- when
 ) STRICT;
 
--- What earlier versions wrote: every trial was one stimulus and one answer.
+-- What earlier versions wrote: every trial was one stimulus and one answer. Copies of one database get the same uids.
+INSERT INTO question_2 SELECT question_id, protocol_id, code, wording, language, 'scale', scale_min, scale_max, anchors, 0
+  FROM question;
+INSERT INTO ask SELECT protocol_id, 'trials', row_number() OVER (PARTITION BY protocol_id ORDER BY question_id) - 1, question_id
+  FROM question;
+INSERT INTO run_2 SELECT run_id, format('1/%d/%s/%s', run_id, started_utc, (SELECT s.participant || '/' || s.seed
+  FROM session s WHERE s.run_id = run.run_id ORDER BY session_id LIMIT 1)), started_utc, program_version, options FROM run;
+INSERT INTO session_2 SELECT s.session_id, format('%s/%d', r.uid, s.session_id), s.run_id, s.protocol_id, s.participant,
+  (SELECT format('%s/%d', q.uid, f.session_id) FROM session f JOIN run_2 q USING (run_id) WHERE f.participant = s.participant
+    ORDER BY f.session_id LIMIT 1),
+  s.participant, s.visit, s.seed, 0, iif(s.ended_utc IS NULL, 'open', 'done'), s.test_data, s.observer, s.clock, s.display,
+  s.stimulus, s.machine, '', s.time_zone, 'none', NULL, NULL, s.ptpe, s.started_utc, s.ended_utc
+  FROM session s JOIN run_2 r USING (run_id);
 INSERT INTO cell SELECT DISTINCT s.protocol_id, t.setting, '', '', '', t.nominal_mean_fps, t.nominal_sd_fps, t.duration_s
   FROM trial t JOIN session s USING (session_id);
-INSERT INTO trial_2 SELECT trial_id, session_id, position, 0, setting, NULL, schedule_seed, state, NULL FROM trial;
+INSERT INTO trial_2 SELECT trial_id, session_id, position, 0, setting, NULL, schedule_seed, state, 0, NULL FROM trial;
 INSERT INTO presentation_2 SELECT p.presentation_id, p.trial_id, p.attempt, 0, t.setting, p.state, p.started_utc, p.start_ns,
   p.end_ns, p.verdict, p.grade, p.reason, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.p95_ms, p.longest_ms,
   p.shortest_ms, p.lag1, p.late_frames, p.worst_late_ms FROM presentation p JOIN trial t USING (trial_id);
-INSERT INTO unit (session_id, position, block, kind, trial_id, state, done_utc)
-  SELECT t.session_id, t.position, 'trials', iif(t.practice, 'practice', 'stimulus'), t.trial_id,
-  iif(t.state = 'answered', 'done', 'planned'), r.answered_utc FROM trial t LEFT JOIN response r USING (trial_id);
+INSERT INTO unit (session_id, position, block, block_index, kind, trial_id, state, done_utc)
+  SELECT t.session_id, t.position, 'trials', 0, iif(t.practice, 'practice', 'stimulus'), t.trial_id,
+  iif(t.state = 'answered', 'done', 'planned'), (SELECT max(r.answered_utc) FROM response r WHERE r.trial_id = t.trial_id)
+  FROM trial t ORDER BY t.trial_id;
 INSERT INTO response_2 SELECT r.response_id, u.unit_id, p.attempt, r.question_id, r.score, NULL, r.response_time_s,
   r.answered_utc FROM response r JOIN unit u USING (trial_id) JOIN presentation p USING (presentation_id);
 
 DROP TABLE response;
 DROP TABLE presentation;
 DROP TABLE trial;
+DROP TABLE session;
+DROP TABLE run;
+DROP TABLE question;
+ALTER TABLE question_2 RENAME TO question;
+ALTER TABLE run_2 RENAME TO run;
+ALTER TABLE session_2 RENAME TO session;
 ALTER TABLE trial_2 RENAME TO trial;
 ALTER TABLE presentation_2 RENAME TO presentation;
 ALTER TABLE response_2 RENAME TO response;
 
-ALTER TABLE session ADD COLUMN slot INTEGER NOT NULL DEFAULT 0; -- place in the balanced assignment
-ALTER TABLE session ADD COLUMN state TEXT NOT NULL DEFAULT 'open'; -- open, done, ended early or dropped out
-ALTER TABLE session ADD COLUMN gaze_source TEXT NOT NULL DEFAULT 'none'; -- tracked, mouse, fixed or none
-ALTER TABLE session ADD COLUMN station TEXT NOT NULL DEFAULT ''; -- where it was recorded
-ALTER TABLE session ADD COLUMN screen_width_mm REAL; -- width of the picture on the screen, mm
-ALTER TABLE session ADD COLUMN viewing_distance_mm REAL; -- eye to screen, mm
-ALTER TABLE question ADD COLUMN kind TEXT NOT NULL DEFAULT 'scale'; -- scale, choice, number or text
+CREATE INDEX session_of_person ON session (person);
+CREATE INDEX unit_of_trial ON unit (trial_id);
+
+-- The log of who withdrew goes with them, and no other.
+DROP TRIGGER event_is_kept;
+CREATE TRIGGER event_is_kept BEFORE DELETE ON event
+  WHEN NOT EXISTS (SELECT 1 FROM session s JOIN tombstone t USING (person) WHERE s.session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'the event log is append-only'); END;

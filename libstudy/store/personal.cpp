@@ -1,0 +1,72 @@
+#include "libstudy/store/personal.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+namespace {
+
+// A journal that goes with each commit instead of a log: nothing beside the file keeps what was deleted.
+constexpr const char* opening =
+    "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA;"
+    "CREATE TABLE IF NOT EXISTS personal (participant TEXT NOT NULL, question TEXT NOT NULL, "
+    "wording TEXT NOT NULL, answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT";
+
+/// Made, or taken over, with no rights for others before anything stands in it.
+void make_private(const fs::path& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  const bool done = fd >= 0 && ::fchmod(fd, 0600) == 0;
+  const int problem = errno;
+  if (fd >= 0) ::close(fd);
+  if (!done) {
+    throw base::Error(path.string(), std::string("cannot be kept private: ") + std::strerror(problem),
+                      "use a folder and a file that are yours");
+  }
+}
+
+}  // namespace
+
+PersonalFile::PersonalFile(const fs::path& database) {
+  const fs::path path = beside(database);
+  make_private(path);
+  file_ = std::make_unique<sqlite::Connection>(path, sqlite::Open::Write);
+  file_->execute(opening);
+}
+
+fs::path PersonalFile::beside(const fs::path& database) { return database.string() + ".personal"; }
+
+void PersonalFile::keep(const std::vector<PersonalEntry>& entries) {
+  Transaction transaction(*file_);
+  Statement insert(*file_, "INSERT OR REPLACE INTO personal VALUES (?,?,?,?)");
+  for (const PersonalEntry& entry : entries) {
+    insert.bind(0, entry.participant).bind(1, entry.question).bind(2, entry.wording);
+    insert.bind(3, entry.answer).run();
+  }
+  transaction.commit();
+}
+
+std::vector<PersonalEntry> PersonalFile::read(const std::string& participant) {
+  Statement row(*file_, "SELECT * FROM personal WHERE participant = ? ORDER BY rowid");
+  row.bind(0, participant);
+  std::vector<PersonalEntry> entries;
+  while (row.step()) entries.push_back({row.text(0), row.text(1), row.text(2), row.text(3)});
+  return entries;
+}
+
+void PersonalFile::forget(const std::string& participant) {
+  Statement(*file_, "DELETE FROM personal WHERE participant = ?").bind(0, participant).run();
+  file_->execute("VACUUM");
+}
+
+}  // namespace study

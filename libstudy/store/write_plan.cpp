@@ -1,0 +1,207 @@
+/// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
+#include "libstudy/store/store.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace study {
+
+using sqlite::Statement;
+using sqlite::Transaction;
+
+namespace {
+
+std::int64_t as_signed(std::uint64_t value) { return static_cast<std::int64_t>(value); }
+
+std::string anchors_text(const Question& question) {
+  std::string text;
+  for (const auto& [score, words] : question.anchors) {
+    text += (text.empty() ? "" : "\n") + std::to_string(score) + " = " + words;
+  }
+  return text;
+}
+
+const char* kind_name(AnswerKind kind) {
+  switch (kind) {
+    case AnswerKind::Scale:
+      return "scale";
+    case AnswerKind::Choice:
+      return "choice";
+    case AnswerKind::Number:
+      return "number";
+    case AnswerKind::Text:
+      break;
+  }
+  return "text";
+}
+
+void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
+  Statement insert(database,
+                   "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
+                   "anchors, personal) VALUES (?,?,?,?,?,?,?,?,?)");
+  for (const auto& [block, question] : all_questions(protocol)) {
+    insert.bind(0, protocol_id).bind(1, question->id).bind(2, question->text).bind(3, question->language);
+    insert.bind(4, kind_name(question->kind)).bind(5, question->scale_min).bind(6, question->scale_max);
+    insert.bind(7, anchors_text(*question)).bind(8, question->personal ? 1 : 0).run();
+  }
+}
+
+/// Ids of what a block asks: in the steps of its trials, or on its page.
+std::vector<std::string> asked_by(const Block& block) {
+  std::vector<std::string> ids;
+  for (const TrialStep& step : block.steps) ids.insert(ids.end(), step.asks.begin(), step.asks.end());
+  if (!has_trials(block.kind)) {
+    for (const Question& question : block.questions) ids.push_back(question.id);
+  }
+  return ids;
+}
+
+void add_asks(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
+  Statement insert(database,
+                   "INSERT INTO ask (protocol_id, block, place, question_id) SELECT protocol_id, ?, ?, "
+                   "question_id FROM question WHERE protocol_id = ? AND code = ?");
+  for (const Block& block : protocol.blocks) {
+    int place = 0;
+    for (const std::string& id : asked_by(block))
+      insert.bind(0, block.id).bind(1, place++).bind(2, protocol_id).bind(3, id).run();
+  }
+}
+
+void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
+  Statement insert(database, "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?)");
+  int index = 0;
+  for (const Cell& cell : protocol.design.cells) {
+    insert.bind(0, protocol_id).bind(1, index++).bind(2, cell.stimulus.scene).bind(3, cell.stimulus.method);
+    insert.bind(4, cell.stimulus.n_star).bind(5, cell.setting.mean).bind(6, cell.setting.sd);
+    insert.bind(7, cell.setting.duration_s).run();
+  }
+}
+
+/// Row of each trial, by position.
+std::vector<std::int64_t> add_trials(sqlite::Connection& database, std::int64_t session, const Plan& plan) {
+  Statement insert(database,
+                   "INSERT INTO trial (session_id, position, group_index, first_cell, second_cell, "
+                   "schedule_seed, state, set_aside) VALUES (?,?,?,?,?,?,'planned',0)");
+  std::vector<std::int64_t> rows;
+  for (const PlannedTrial& trial : plan.trials) {
+    insert.bind(0, session).bind(1, trial.position).bind(2, trial.group).bind(3, trial.first);
+    insert.bind(4, trial.second).bind(5, as_signed(trial.schedule_seed));
+    rows.push_back(insert.run());
+  }
+  return rows;
+}
+
+void add_units(sqlite::Connection& database, std::int64_t session, const Protocol& protocol,
+               const Plan& plan) {
+  const auto trials = add_trials(database, session, plan);
+  Statement insert(database,
+                   "INSERT INTO unit (session_id, position, block, block_index, kind, trial_id, state) "
+                   "VALUES (?,?,?,?,?,?,'planned')");
+  for (const PlannedUnit& unit : plan.units) {
+    const Block& block = protocol.blocks.at(static_cast<std::size_t>(unit.block));
+    std::optional<std::int64_t> trial;
+    if (unit.trial) trial = trials.at(static_cast<std::size_t>(*unit.trial));
+    insert.bind(0, session).bind(1, unit.position).bind(2, block.id).bind(3, unit.block);
+    insert.bind(4, block_kind_name(block.kind)).bind(5, trial).run();
+  }
+}
+
+}  // namespace
+
+std::int64_t Store::add_run(const RunPlan& run) {
+  Transaction transaction(*database_);
+  const std::int64_t protocol_id = find_or_add_protocol(run);
+  const std::int64_t run_id = Statement(*database_,
+                                        "INSERT INTO run (uid, started_utc, program_version, options) "
+                                        "VALUES (lower(hex(randomblob(16))),?,?,?)")
+                                  .bind(0, base::utc_now())
+                                  .bind(1, base::version())
+                                  .bind(2, run.options)
+                                  .run();
+  for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
+  transaction.commit();
+  blank_ = false;
+  return run_id;
+}
+
+std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
+  const Protocol& protocol = run.protocol;
+  Statement same(*database_, "SELECT protocol_id FROM protocol WHERE sha256 = ?");
+  if (same.bind(0, protocol.sha256).step()) return same.integer(0);
+
+  Statement changed(*database_,
+                    "SELECT sha256 FROM protocol WHERE name = ? AND version = ? AND test_data = 0");
+  if (!protocol.test_data && changed.bind(0, protocol.name).bind(1, protocol.version).step()) {
+    throw base::Error(database_->path().string(),
+                      "protocol '" + protocol.name + "' version " + protocol.version +
+                          " stands here with another text (" + changed.text(0).substr(0, 12) + ", now " +
+                          protocol.sha256.substr(0, 12) + "); a changed protocol begins a new dataset",
+                      "give the changed protocol a new version, or use another database");
+  }
+  const std::int64_t id =
+      Statement(
+          *database_,
+          "INSERT INTO protocol (sha256, name, version, text, trial_seconds, test_data) VALUES (?,?,?,?,?,?)")
+          .bind(0, protocol.sha256)
+          .bind(1, protocol.name)
+          .bind(2, protocol.version)
+          .bind(3, protocol.text)
+          .bind(4, protocol.trial_seconds)
+          .bind(5, protocol.test_data ? 1 : 0)
+          .run();
+  add_questions(*database_, id, protocol);
+  add_asks(*database_, id, protocol);
+  add_cells(*database_, id, protocol);
+  return id;
+}
+
+void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
+  check_participant_code(plan.participant);
+  Statement present(*database_,
+                    "SELECT 1 FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
+  if (present.bind(0, protocol_id).bind(1, plan.participant).bind(2, plan.visit).step()) {
+    throw base::Error(
+        path_.string(),
+        "participant " + plan.participant + " has visit " + std::to_string(plan.visit) +
+            " of this protocol already",
+        "continue with vip-study resume --db " + path_.string() + ", or give other codes or another --visit");
+  }
+  Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
+  if (gone.bind(0, plan.participant).step()) {
+    throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
+                      "give another code: every merge deletes what stands under this one");
+  }
+}
+
+void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
+                        const SessionPlan& plan) {
+  check_newcomer(protocol_id, plan);
+  Statement insert(
+      *database_,
+      "INSERT INTO session (uid, run_id, protocol_id, participant, code, visit, seed, slot, state, "
+      "test_data, observer, clock, display, stimulus, machine, station, time_zone, gaze_source, "
+      "screen_width_mm, viewing_distance_mm, ptpe, person) SELECT lower(hex(randomblob(16))), "
+      "?1, ?2, ?3, coalesce((SELECT code FROM session WHERE participant = ?3), ?3), ?4, ?5, ?6, 'open', "
+      "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, "
+      "coalesce((SELECT person FROM session WHERE participant = ?3), lower(hex(randomblob(16))))");
+  insert.bind(0, run_id).bind(1, protocol_id).bind(2, plan.participant).bind(3, plan.visit);
+  insert.bind(4, as_signed(plan.seed)).bind(5, plan.plan.slot).bind(6, plan.test_data ? 1 : 0);
+  insert.bind(7, plan.observer).bind(8, plan.virtual_clock ? "virtual" : "real").bind(9, plan.display);
+  insert.bind(10, plan.stimulus).bind(11, plan.machine).bind(12, plan.station).bind(13, plan.time_zone);
+  insert.bind(14, plan.gaze_source).bind(15, plan.screen_width_mm).bind(16, plan.viewing_distance_mm);
+  const std::int64_t session = insert.bind(17, plan.ptpe).run();
+  add_units(*database_, session, protocol, plan.plan);
+  insert_event(session, {}, "planned", "program " + base::version(), {});
+}
+
+std::vector<int> Store::taken_slots(const std::string& protocol_sha256) {
+  Statement row(*database_,
+                "SELECT s.slot FROM session s JOIN protocol p USING (protocol_id) WHERE p.sha256 = ? "
+                "AND s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped') "
+                "ORDER BY s.session_id");
+  row.bind(0, protocol_sha256);
+  std::vector<int> slots;
+  while (row.step()) slots.push_back(static_cast<int>(row.integer(0)));
+  return slots;
+}
+
+}  // namespace study
