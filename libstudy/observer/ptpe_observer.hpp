@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "libstudy/observer/responder.hpp"
+#include "libstudy/observer/observer.hpp"
 
 namespace study {
 
@@ -32,15 +32,17 @@ struct PtpeObserverParameters {
 /// anything else: another kind, a key unknown, repeated or missing, a bad number or one out of range.
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
 
-/// The score is a pure function of the parameters, (seed, participant, position), the moments and the scale.
-class PtpeObserver final : public Responder {
+/// The first question about a stimulus is answered by the model; of two stimuli the one with the larger x of
+/// its own noise is preferred. Everything else as by a bystander.
+class PtpeObserver final : public Observer {
  public:
   explicit PtpeObserver(const PtpeObserverParameters& parameters) : parameters_(parameters) {}
   std::optional<std::string> simulated() const override;
-  /// At once: no time passes.
-  Answer answer(const Question& question, const ShownTrial& trial, Clock& clock) override;
+  int score(const Question& question, const Occasion& occasion, bool judges) const override;
 
  private:
+  double latent(const Occasion& occasion, std::size_t interval) const;
+
   PtpeObserverParameters parameters_;
 };
 

@@ -82,6 +82,24 @@ void describe_intervals(TimingVerdict& trial, const std::vector<double>& interva
   trial.lag1 = lag1(rates);
 }
 
+/// False when the onsets do not ascend.
+bool measure(TimingVerdict& trial, const PlayedTrial& played) {
+  const auto intervals_s = realised_intervals(played, trial.grade);
+  if (*std::min_element(intervals_s.begin(), intervals_s.end()) <= 0) return false;
+  trial.realised = stats::fps_moments(intervals_s);
+  describe_intervals(trial, intervals_s);
+  return true;
+}
+
+TimingVerdict blank_verdict(const FpsSetting& nominal, const PlayedTrial& played, TimingGrade grade) {
+  if (played.frames.empty())
+    throw base::Error("trial " + setting_name(nominal), "has no frames to judge", "play it first");
+  TimingVerdict trial;
+  trial.grade = grade;
+  trial.nominal = nominal;
+  return trial;
+}
+
 }  // namespace
 
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade) {
@@ -99,17 +117,10 @@ std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade gr
 
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade) {
-  if (played.frames.empty())
-    throw base::Error("trial " + setting_name(nominal), "has no frames to judge", "play it first");
-  TimingVerdict trial;
-  trial.grade = grade;
-  trial.nominal = nominal;
+  TimingVerdict trial = blank_verdict(nominal, played, grade);
   Judgement judgement;
   judge_lateness(judgement, trial, played, tolerance);
-  const auto intervals_s = realised_intervals(played, grade);
-  if (*std::min_element(intervals_s.begin(), intervals_s.end()) > 0) {
-    trial.realised = stats::fps_moments(intervals_s);
-    describe_intervals(trial, intervals_s);
+  if (measure(trial, played)) {
     const double mean =
         rules.mean == FpsMean::Harmonic ? trial.realised.mean : trial.realised.mean_arithmetic;
     judge_moments(judgement, trial, mean, tolerance);
@@ -118,6 +129,13 @@ TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, c
   }
   trial.verdict = judgement.verdict();
   trial.reason = judgement.reason();
+  return trial;
+}
+
+TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade) {
+  TimingVerdict trial = blank_verdict({0, 0, 0}, played, grade);
+  trial.verdict = Verdict::Pass;
+  if (!measure(trial, played)) trial.reason = "the onsets do not ascend";
   return trial;
 }
 

@@ -51,6 +51,13 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
                        Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
                        const std::function<void(const FrameRecord&)>& each);
 
+/// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
+/// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays on
+/// until the one after it, which is no longer shown, is ready. base::Error when the clock stands still
+/// meanwhile (VirtualClock) or the content ends before start_frame.
+PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
+                        Clock& clock, const std::function<void(const FrameRecord&)>& each);
+
 /// Tolerances of a protocol.
 struct TimingTolerance {
   double late_after_ms = 0.5;
@@ -86,6 +93,10 @@ std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade gr
 /// not ascend are a fail with that reason.
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade);
+
+/// What was shown without a schedule: realised moments and intervals; the nominal moments are 0 and `verdict`
+/// says nothing.
+TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade);
 
 /// "pass", "degraded" or "fail".
 std::string verdict_name(Verdict verdict);

@@ -56,6 +56,17 @@ class ContentCourse {
   std::int64_t step_ = 0;
 };
 
+/// Prepares and renders frame `index` of a trial.
+FrameRecord make_frame(std::int64_t index, std::int64_t onset_ns, ContentCourse& course, Stimulus& stimulus,
+                       Display& display) {
+  FrameRecord record;
+  record.index = index;
+  record.facts = course.prepare(index, onset_ns);
+  record.content_step = course.step();
+  display.render(stimulus);
+  return record;
+}
+
 void check_intervals(const std::vector<std::int64_t>& intervals_ns) {
   const bool good = !intervals_ns.empty() && std::all_of(intervals_ns.begin(), intervals_ns.end(),
                                                          [](std::int64_t ns) { return ns > 0; });
@@ -77,11 +88,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
-    FrameRecord record;
-    record.index = static_cast<std::int64_t>(i);
-    record.facts = course.prepare(record.index, onset_ns);
-    record.content_step = course.step();
-    display.render(stimulus);
+    FrameRecord record = make_frame(static_cast<std::int64_t>(i), onset_ns, course, stimulus, display);
     if (i == 0) first_ns = clock.now_ns() + lead_ns;
     record.scheduled_ns = first_ns + onset_ns;
     clock.wait_until(record.scheduled_ns);
@@ -96,6 +103,28 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   clock.wait_until(last_ns < planned_end_ns ? planned_end_ns : last_ns + intervals_ns.back());
   played.end_ns = clock.now_ns();
   return played;
+}
+
+PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
+                        Clock& clock, const std::function<void(const FrameRecord&)>& each) {
+  ContentCourse course(content, stimulus);
+  PlayedTrial played;
+  const auto duration_ns = static_cast<std::int64_t>(1e9 * duration_s);
+  for (std::int64_t index = 0;; ++index) {
+    const std::int64_t begun_ns = played.frames.empty() ? 0 : clock.now_ns() - played.frames[0].scheduled_ns;
+    FrameRecord record = make_frame(index, begun_ns, course, stimulus, display);
+    record.scheduled_ns = clock.now_ns();
+    if (index > 0 && record.scheduled_ns <= played.frames.back().scheduled_ns) {
+      throw base::Error("native timing", "needs a clock that runs while frames are made", "use --clock real");
+    }
+    if (index > 0 && record.scheduled_ns - played.frames[0].scheduled_ns >= duration_ns) {
+      played.end_ns = record.scheduled_ns;
+      return played;
+    }
+    record.times = display.present(clock);
+    played.frames.push_back(record);
+    if (each) each(record);
+  }
 }
 
 }  // namespace study

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,12 @@ enum class PauseKind {
 /// Asked often while a person may be waiting; throws Stopped to end the session there.
 using Check = std::function<void()>;
 
+/// Thrown by a participant who leaves for good: the session ends there (EarlyEnd::DroppedOut).
+class Left : public std::runtime_error {
+ public:
+  Left() : std::runtime_error("the participant left") {}
+};
+
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -53,6 +60,8 @@ class Participant {
   /// Asks `questions` on one page. One answer each, on its scale or within its rules.
   virtual std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                        const Occasion& occasion, Clock& clock, const Check& check) = 0;
+  /// Called before each showing of a trial; may throw Left.
+  virtual void before_trial(const Occasion&) {}
   /// Waits `seconds` on `clock`, and for a Break until the participant goes on.
   virtual void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) = 0;
 };

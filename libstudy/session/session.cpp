@@ -1,144 +1,113 @@
 #include "libstudy/session/session.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "libstudy/pacing/running_tolerance.hpp"
-#include "libstudy/session/frame_journal.hpp"
+#include "libstudy/session/questioning.hpp"
+#include "libstudy/session/trial_player.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
 
 namespace {
 
-constexpr double ns_per_s = 1e9, ns_per_ms = 1e6;
-constexpr std::int64_t stop_check_ns = 50'000'000;
-
-/// Hold counts as nanoseconds that add up without drift.
-std::vector<std::int64_t> holds_ns(const std::vector<int>& holds, double refresh_hz) {
-  std::vector<std::int64_t> intervals;
-  std::int64_t periods = 0, before = 0;
-  for (const int hold : holds) {
-    periods += hold;
-    const std::int64_t now = std::llround(static_cast<double>(periods) * ns_per_s / refresh_hz);
-    intervals.push_back(now - before);
-    before = now;
-  }
-  return intervals;
-}
+// After a stop nobody is sent away at once: a rest of at least this long, then until they feel well.
+constexpr double stop_rest_s = 60;
+constexpr double pause_look_s = 0.1;
 
 /// One session under way.
-class Runner {
+class SessionRun {
  public:
-  Runner(const Protocol& protocol, const OpenSession& session, const SessionParts& parts,
-         const SessionHooks& hooks)
-      : protocol_(protocol), session_(session), parts_(parts), hooks_(hooks) {}
+  explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}
 
-  void run_trial(const OpenTrial& trial) {
-    pause();
-    const FpsSetting& setting = protocol_.settings.at(static_cast<std::size_t>(trial.plan.setting));
-    const auto intervals = trial_intervals(protocol_, setting, parts_.display, trial.plan.schedule_seed);
-    TrialDone done{session_.plan.participant, trial.plan.position, trial.attempts + 1, {}};
-    const std::int64_t start_ns = parts_.clock.now_ns();
-    const std::int64_t presentation =
-        parts_.store.begin_presentation(session_.id, trial.id, done.attempt, start_ns);
-    done.verdict = show(presentation, start_ns, setting, intervals);
-    ask(trial, presentation, setting, done.verdict);
-    if (hooks_.answered) hooks_.answered(done);
+  /// Returns how the session ended early, if it did.
+  std::optional<SessionEnds> go() {
+    for (const OpenUnit& unit : run_.session.units) {
+      wait_while_paused();
+      if (run_.hooks.begins) run_.hooks.begins(unit);
+      if (auto ends = unit.trial ? trials_.play(unit) : page(unit)) return ends;
+    }
+    return {};
   }
 
  private:
-  bool stop_wished() const { return hooks_.stop && hooks_.stop(); }
+  void wait_while_paused() {
+    const auto check = [this] { heed(run_, false); };
+    for (check(); run_.wish() == Wish::Pause;)
+      run_.parts.participant.pause(PauseKind::Black, pause_look_s, run_.parts.clock, check);
+  }
 
-  void pause() {
-    const std::int64_t until = parts_.clock.now_ns() + std::llround(protocol_.gap_s * ns_per_s);
-    while (parts_.clock.now_ns() < until) {
-      if (stop_wished()) throw Stopped();
-      parts_.clock.wait_until(std::min(until, parts_.clock.now_ns() + stop_check_ns));
+  std::optional<SessionEnds> page(const OpenUnit& unit) {
+    const Block& block = run_.block(unit);
+    const Check check = [this] { heed(run_, false); };
+    switch (block.kind) {
+      case BlockKind::Instructions:
+      case BlockKind::Debrief:
+        run_.parts.participant.read(block, block.seconds, run_.parts.clock, check);
+        break;
+      case BlockKind::Rest:
+        pause(PauseKind::Rest, block.seconds, check);
+        break;
+      case BlockKind::Break:
+        pause(PauseKind::Break, block.seconds, check);
+        break;
+      case BlockKind::Black:
+        pause(PauseKind::Black, block.seconds, check);
+        break;
+      case BlockKind::Stimulus:  // between two groups
+        pause(PauseKind::Break, block.between_groups_s, check);
+        break;
+      default: {
+        auto ends = questioning_.ask(unit, 0, block.questions, run_.occasion(unit), true, check);
+        if (!ends || ends->how != EarlyEnd::NotEligible) run_.tell(unit, 0, {});
+        return ends;
+      }
     }
-    if (stop_wished()) throw Stopped();
+    run_.parts.store.finish_unit(run_.session.id, unit.id, run_.now_ns());
+    run_.tell(unit, 0, {});
+    return {};
   }
 
-  TimingVerdict show(std::int64_t presentation, std::int64_t start_ns, const FpsSetting& setting,
-                     const std::vector<std::int64_t>& intervals) {
-    FrameJournal journal(parts_.store, presentation, start_ns, !parts_.virtual_clock);
-    std::optional<RunningTolerance> tolerance;
-    if (parts_.ptpe) tolerance.emplace(*parts_.ptpe);
-    const auto each = [&](FrameRecord frame) {
-      if (tolerance) frame.facts.tolerance = tolerance->next(frame.times.submitted_ns);
-      journal.add(frame);
-      if (stop_wished()) throw Stopped();
-    };
-    try {
-      const auto late_after_ns = std::llround(protocol_.timing.late_after_ms * ns_per_ms);
-      const PlayedTrial played = play_trial(intervals, protocol_.content, parts_.stimulus, parts_.display,
-                                            parts_.clock, late_after_ns, each);
-      const TimingVerdict verdict =
-          judge_trial(setting, for_display(protocol_.pacing, parts_.display.refresh_hz()), played,
-                      protocol_.timing, parts_.display.grade());
-      parts_.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(), verdict);
-      return verdict;
-    } catch (const Stopped&) {
-      keep_cut(journal, presentation, start_ns);
-      throw;
-    }
+  void pause(PauseKind kind, double seconds, const Check& check) {
+    run_.parts.participant.pause(kind, seconds, run_.parts.clock, check);
   }
 
-  void keep_cut(FrameJournal& journal, std::int64_t presentation, std::int64_t start_ns) {
-    parts_.store.add_frames(presentation, start_ns, journal.finish());
-    parts_.store.interrupt_presentation(session_.id, presentation, parts_.clock.now_ns());
-  }
-
-  void ask(const OpenTrial& trial, std::int64_t presentation, const FpsSetting& setting,
-           const TimingVerdict& verdict) {
-    const Question& question = protocol_.question;
-    const ShownTrial shown{session_.plan.participant, session_.plan.seed, trial.plan.position, setting,
-                           verdict.realised};
-    const std::int64_t asked_ns = parts_.clock.now_ns();
-    const Answer answer = parts_.responder.answer(question, shown, parts_.clock);
-    if (answer.score < question.scale_min || answer.score > question.scale_max) {
-      throw base::Error("question '" + question.id + "'",
-                        "was answered with " + std::to_string(answer.score) + ", off its scale",
-                        "answer on the scale");
-    }
-    const std::int64_t now_ns = parts_.clock.now_ns();
-    parts_.store.answer(session_.id, trial.id, presentation, question.id, answer.score,
-                        static_cast<double>(now_ns - asked_ns) / ns_per_s, now_ns);
-  }
-
-  const Protocol& protocol_;
-  const OpenSession& session_;
-  const SessionParts& parts_;
-  const SessionHooks& hooks_;
+  const Running& run_;
+  Questioning questioning_;
+  TrialPlayer trials_;
 };
+
+void check_personal(const Running& run) {
+  const auto all = all_questions(run.protocol);
+  const bool asks =
+      std::any_of(all.begin(), all.end(), [](const auto& entry) { return entry.second->personal; });
+  if (asks && !run.parts.personal) {
+    throw base::Error("protocol " + run.protocol.name, "asks something personal, and there is no file for it",
+                      "give the session a file of personal data");
+  }
+}
+
+void rest_after_stop(const Running& run) {
+  run.parts.participant.pause(PauseKind::Break, stop_rest_s, run.parts.clock, [&run] {
+    if (run.wish() == Wish::Stop) throw Stopped();
+  });
+}
 
 }  // namespace
 
-std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSetting& setting,
-                                          const Display& display, std::uint64_t schedule_seed) {
-  const double refresh_hz = display.refresh_hz();
-  const PacingRules rules = for_display(protocol.pacing, refresh_hz);
-  if (refresh_hz == 0) return compile_schedule(setting, rules, schedule_seed).intervals_ns;
-
-  const RefreshVerdict found = quantise(setting, rules, refresh_hz, schedule_seed);
-  const bool shown = found.feasibility == Feasibility::Exact ||
-                     (found.feasibility == Feasibility::Approximate && protocol.accept_approximate);
-  if (!shown) {
-    throw base::Error(protocol.name + " on " + display.description(),
-                      "setting " + setting_name(setting) + " cannot be shown: " + found.reason,
-                      "see vip-study check --refresh; use another display or accept_approximate = true");
-  }
-  return holds_ns(found.holds, refresh_hz);
-}
-
-void check_settings(const Protocol& protocol, const Display& display) {
-  for (const FpsSetting& setting : protocol.settings) trial_intervals(protocol, setting, display, 0);
-}
-
 void run_session(const Protocol& protocol, const OpenSession& session, const SessionParts& parts,
                  const SessionHooks& hooks) {
-  Runner runner(protocol, session, parts, hooks);
-  for (const OpenTrial& trial : session.trials) runner.run_trial(trial);
+  const Running run{protocol, session, parts, hooks};
+  check_personal(run);
+  std::optional<SessionEnds> ends;
+  try {
+    ends = SessionRun(run).go();
+  } catch (const SessionEnds& wished) {
+    parts.store.end_session(session.id, wished.how, wished.reason, run.now_ns());
+    ends = wished;
+  } catch (const Left& left) {
+    parts.store.end_session(session.id, EarlyEnd::DroppedOut, left.what(), run.now_ns());
+  }
+  if (ends && ends->how == EarlyEnd::Stopped) rest_after_stop(run);
 }
 
 }  // namespace study

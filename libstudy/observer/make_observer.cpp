@@ -1,0 +1,41 @@
+#include "libstudy/observer/adversaries.hpp"
+#include "libstudy/observer/frames_observer.hpp"
+#include "libstudy/observer/ptpe_observer.hpp"
+#include "libstudy/observer/specification.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr std::string_view constant = "constant:", dropout = "dropout:";
+const std::string kinds = "write ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2";
+
+std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSource& features) {
+  const std::size_t end = std::min(specification.find(','), specification.size());
+  const double probability =
+      read_observer_number(specification, dropout.size(),
+                           specification.substr(dropout.size(), end - dropout.size()), 0, 1,
+                           "write dropout:0.2, a probability from 0 to 1");
+  const std::string_view rest = specification.substr(std::min(end + 1, specification.size()));
+  return std::make_unique<DropoutObserver>(probability,
+                                           make_observer(rest.empty() ? "random" : rest, features));
+}
+
+}  // namespace
+
+std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features) {
+  if (specification == "random") return std::make_unique<RandomObserver>();
+  if (specification.starts_with(constant)) {
+    return std::make_unique<ConstantObserver>(
+        read_observer_number(specification, constant.size(), specification.substr(constant.size()), -1e4, 1e4,
+                             "write constant:4"));
+  }
+  if (specification.starts_with(dropout)) return make_dropout(specification, features);
+  if (specification.starts_with("frames"))
+    return std::make_unique<FramesObserver>(parse_frames_observer(specification), features);
+  if (specification.starts_with("ptpe:"))
+    return std::make_unique<PtpeObserver>(parse_ptpe_observer(specification));
+  fail_observer(specification, 0, "is not a kind of observer", kinds);
+}
+
+}  // namespace study

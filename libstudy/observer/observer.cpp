@@ -1,0 +1,100 @@
+#include "libstudy/observer/observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libstudy/design/random.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr std::int64_t look_ns = 50'000'000;
+
+bool is_judged(const Question& question) {
+  return question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
+}
+
+Answer answer_of(const Observer& observer, const Question& question, const Occasion& occasion, bool judges) {
+  if (question.kind == AnswerKind::Text) return {{}, question.required ? "simulated" : ""};
+  if (question.accept) return {question.accept->first, ""};
+  return {observer.score(question, occasion, judges), ""};
+}
+
+}  // namespace
+
+std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> questions,
+                                       const Occasion& occasion, Clock&, const Check& check) {
+  if (check) check();
+  std::vector<TimedAnswer> out;
+  bool judged = occasion.shown.empty();
+  for (const Question& question : questions) {
+    const bool judges = !judged && is_judged(question);
+    judged = judged || judges;
+    out.push_back({answer_of(*this, question, occasion, judges), 0});
+  }
+  return out;
+}
+
+void Observer::pause(PauseKind, double seconds, Clock& clock, const Check& check) {
+  const std::int64_t until = clock.now_ns() + std::llround(seconds * 1e9);
+  for (;;) {
+    if (check) check();
+    if (clock.now_ns() >= until) return;
+    clock.wait_until(std::min(until, clock.now_ns() + look_ns));
+  }
+}
+
+double uniform_of(std::uint64_t key, std::uint64_t counter) {
+  return (static_cast<double>(counter_random(key, counter) >> 11) + 0.5) * 0x1p-53;
+}
+
+double normal_of(std::uint64_t key, std::uint64_t counter) {
+  const double radius = std::sqrt(-2 * std::log(uniform_of(key, 2 * counter)));
+  return radius * std::cos(2 * std::numbers::pi * uniform_of(key, 2 * counter + 1));
+}
+
+std::uint64_t person_key(const Occasion& occasion) {
+  return random_key("observer\n" + std::to_string(occasion.seed) + '\n' + occasion.participant);
+}
+
+std::uint64_t question_key(const Occasion& occasion, const Question& question) {
+  return random_key("observer\n" + std::to_string(occasion.seed) + '\n' + occasion.participant + '\n' +
+                    question.id);
+}
+
+std::vector<int> scores_of(const Question& question) {
+  std::vector<int> out;
+  if (question.kind == AnswerKind::Choice) {
+    for (const auto& [score, words] : question.anchors) out.push_back(score);
+    return out;
+  }
+  for (int score = question.scale_min; score <= question.scale_max; ++score) out.push_back(score);
+  return out;
+}
+
+int nearest_score(const Question& question, double x) {
+  const auto scores = scores_of(question);
+  // Counting the thresholds below x needs no clamp at the ends of the scale.
+  std::size_t i = 0;
+  while (i + 1 < scores.size() && x > 0.5 * (scores[i] + scores[i + 1])) ++i;
+  return scores[i];
+}
+
+int random_score(const Question& question, const Occasion& occasion) {
+  const auto scores = scores_of(question);
+  RandomStream random(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position) << 8);
+  return scores[random.below(scores.size())];
+}
+
+int bystander_score(const Question& question, const Occasion& occasion) {
+  if (question.expect) return *question.expect;
+  const bool symptom = question.kind == AnswerKind::Scale && question.scale_min == 0;
+  if (!symptom) return random_score(question, occasion);
+  const double u =
+      uniform_of(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position));
+  return nearest_score(question, -0.15 * (question.scale_max - question.scale_min) * std::log(u));
+}
+
+}  // namespace study

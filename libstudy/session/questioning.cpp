@@ -1,0 +1,121 @@
+#include "libstudy/session/questioning.hpp"
+
+#include <algorithm>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+bool in_span(int score, const std::pair<int, int>& span) {
+  return score >= span.first && score <= span.second;
+}
+
+void check_answers(std::span<const Question> questions, std::span<const TimedAnswer> answers) {
+  if (answers.size() != questions.size()) {
+    throw base::Error("a page of " + std::to_string(questions.size()) + " questions",
+                      "came back with " + std::to_string(answers.size()) + " answers",
+                      "mend the part that asks");
+  }
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (is_valid(questions[i], answers[i].answer)) continue;
+    throw base::Error("question '" + questions[i].id + "'", "was answered off its scale",
+                      "answer on the scale");
+  }
+}
+
+std::optional<SessionEnds> ending(const Block& block, std::span<const Question> questions,
+                                  std::span<const TimedAnswer> answers) {
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const auto& accept = questions[i].accept;
+    const auto score = answers[i].answer.score;
+    if (accept && !(score && in_span(*score, *accept)))
+      return SessionEnds{EarlyEnd::NotEligible, "block " + block.id};
+  }
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const auto score = answers[i].answer.score;
+    if (questions[i].stop_at && score && *score >= *questions[i].stop_at)
+      return SessionEnds{EarlyEnd::Stopped, "stop rule of block " + block.id};
+  }
+  return {};
+}
+
+/// A choice in its words, any other score as a number.
+std::string in_words(const Question& question, const Answer& answer) {
+  if (!answer.score) return answer.words;
+  for (const auto& [score, words] : question.anchors) {
+    if (question.kind == AnswerKind::Choice && score == *answer.score) return words;
+  }
+  return std::to_string(*answer.score);
+}
+
+}  // namespace
+
+bool is_valid(const Question& question, const Answer& answer) {
+  if (question.kind == AnswerKind::Text)
+    return !answer.score && (!question.required || !answer.words.empty());
+  if (!answer.words.empty()) return false;
+  if (!answer.score) return !question.required;
+  if (!in_span(*answer.score, {question.scale_min, question.scale_max})) return false;
+  const auto offers = [&](const auto& anchor) { return anchor.first == *answer.score; };
+  return question.kind != AnswerKind::Choice ||
+         std::any_of(question.anchors.begin(), question.anchors.end(), offers);
+}
+
+std::vector<Question> Questioning::left(const OpenUnit& unit, const std::vector<Question>& questions) const {
+  const bool any_personal =
+      std::any_of(questions.begin(), questions.end(), [](const Question& q) { return q.personal; });
+  std::vector<PersonalEntry> known;
+  if (any_personal) known = run_.parts.personal->read(run_.session.plan.participant);
+  std::vector<Question> out;
+  for (const Question& question : questions) {
+    const bool answered =
+        std::find(unit.answered.begin(), unit.answered.end(), question.id) != unit.answered.end();
+    const bool told = question.personal && std::any_of(known.begin(), known.end(), [&](const auto& entry) {
+                        return entry.question == question.id && entry.wording == question.text;
+                      });
+    if (!answered && !told) out.push_back(question);
+  }
+  return out;
+}
+
+void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Question> questions,
+                       std::span<const TimedAnswer> answers, bool last) {
+  std::vector<KeptAnswer> kept;
+  std::vector<PersonalEntry> personal;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const Question& question = questions[i];
+    if (question.personal) {
+      personal.push_back({run_.session.plan.participant, question.id, question.text,
+                          in_words(question, answers[i].answer)});
+    } else {
+      kept.push_back({question.id, answers[i]});
+    }
+  }
+  if (!personal.empty()) run_.parts.personal->keep(personal);
+  if (!kept.empty()) {
+    run_.parts.store.answer(run_.session.id, unit, attempt, kept, last, run_.now_ns());
+  } else if (last) {
+    run_.parts.store.finish_unit(run_.session.id, unit.id, run_.now_ns());
+  }
+}
+
+std::optional<SessionEnds> Questioning::ask(const OpenUnit& unit, int attempt,
+                                            const std::vector<Question>& questions, const Occasion& occasion,
+                                            bool last, const Check& check) {
+  const std::vector<Question> asked = left(unit, questions);
+  std::vector<TimedAnswer> answers;
+  const Block& block = run_.block(unit);
+  if (!asked.empty()) {
+    answers = run_.parts.participant.ask(block, asked, occasion, run_.parts.clock, check);
+    check_answers(asked, answers);
+  }
+  auto ends = ending(block, asked, answers);
+  if (ends) run_.parts.store.end_session(run_.session.id, ends->how, ends->reason, run_.now_ns());
+  const bool refused = ends && ends->how == EarlyEnd::NotEligible && block.kind == BlockKind::Consent;
+  if (!refused) keep(unit, attempt, asked, answers, last);
+  return ends;
+}
+
+}  // namespace study

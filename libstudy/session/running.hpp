@@ -1,0 +1,55 @@
+#pragma once
+/// What the parts of a running session share: who is in it, and what ends it early.
+
+#include <functional>
+#include <string>
+
+#include "libstudy/session/session.hpp"
+
+namespace study {
+
+struct Running {
+  const Protocol& protocol;
+  const OpenSession& session;
+  const SessionParts& parts;
+  const SessionHooks& hooks;
+
+  Wish wish() const { return hooks.wish ? hooks.wish() : Wish::GoOn; }
+  std::int64_t now_ns() const { return parts.clock.now_ns(); }
+  const Block& block(const OpenUnit& unit) const {
+    return protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
+  }
+  Occasion occasion(const OpenUnit& unit) const {
+    return {session.plan.participant, session.plan.seed, unit.plan.position, block(unit).kind, {}};
+  }
+  void tell(const OpenUnit& unit, int attempt, const std::vector<TimingVerdict>& verdicts) const {
+    if (hooks.done) hooks.done({session.plan.participant, unit.plan, attempt, verdicts});
+  }
+};
+
+/// Thrown to end a session before its last unit.
+struct SessionEnds {
+  EarlyEnd how = EarlyEnd::Stopped;
+  std::string reason;  ///< for the log: no answers
+};
+
+/// Thrown to cut a trial and show it again.
+struct TrialAgain {};
+
+/// Heeds what the experimenter wishes at once: Stopped or SessionEnds. TrialAgain too where there is a trial.
+inline void heed(const Running& run, bool in_trial) {
+  switch (run.wish()) {
+    case Wish::Stop:
+      throw Stopped();
+    case Wish::EndSession:
+      throw SessionEnds{EarlyEnd::Stopped, "ended by the experimenter"};
+    case Wish::RepeatTrial:
+      if (in_trial) throw TrialAgain{};
+      break;
+    case Wish::Pause:
+    case Wish::GoOn:
+      break;
+  }
+}
+
+}  // namespace study

@@ -1,0 +1,222 @@
+#include "libstudy/session/trial_player.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libstudy/pacing/running_tolerance.hpp"
+#include "libstudy/session/frame_journal.hpp"
+
+namespace study {
+
+namespace {
+
+int cell_index(const PlannedTrial& trial, int interval) {
+  return interval == 0 ? trial.first : trial.second.value();
+}
+
+/// Simulated time that went by from frame to frame over the time they took; a rewind counts nothing.
+double play_speed(const PlayedTrial& played) {
+  double simulated_s = 0;
+  for (std::size_t i = 1; i < played.frames.size(); ++i) {
+    simulated_s += std::max(0.0, played.frames[i].facts.simulation_time_s -
+                                     played.frames[i - 1].facts.simulation_time_s);
+  }
+  const auto shown_ns =
+      played.frames.back().times.submitted_ns - played.frames.front().times.submitted_ns;
+  return shown_ns > 0 ? simulated_s / (1e-9 * static_cast<double>(shown_ns)) : 0;
+}
+
+std::vector<Question> questions_of(const Protocol& protocol, const std::vector<std::string>& ids) {
+  const auto all = all_questions(protocol);
+  std::vector<Question> out;
+  for (const std::string& id : ids) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.second->id == id; });
+    out.push_back(*found->second);
+  }
+  return out;
+}
+
+/// What a solver goes by: the moments of the schedule where they are replayed, else those of the last frames.
+class FrameTolerance {
+ public:
+  FrameTolerance(const std::optional<stats::PtpeModel>& model, TimingSource timing, const FpsSetting& setting)
+      : replayed_(timing == TimingSource::Table2) {
+    if (!model) return;
+    constant_ = stats::ptpe_tolerance(*model, setting.mean, setting.sd);
+    running_.emplace(*model);
+  }
+  double of(const FrameRecord& frame) {
+    if (!running_) return frame.facts.tolerance;
+    return replayed_ ? constant_ : running_->next(frame.times.submitted_ns);
+  }
+
+ private:
+  bool replayed_;
+  double constant_ = 0;
+  std::optional<RunningTolerance> running_;
+};
+
+}  // namespace
+
+const Cell& TrialPlayer::cell(const OpenUnit& unit, int interval) const {
+  return run_.protocol.design.cells.at(static_cast<std::size_t>(cell_index(*unit.trial, interval)));
+}
+
+std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const PlannedTrial& trial) const {
+  std::array<std::vector<std::int64_t>, 2> out;
+  if (run_.protocol.design.timing == TimingSource::Native) return out;
+  for (const int interval : {0, 1}) {
+    if (interval == 1 && !trial.second) continue;
+    const Cell& shown = run_.protocol.design.cells.at(static_cast<std::size_t>(cell_index(trial, interval)));
+    out[static_cast<std::size_t>(interval)] =
+        trial_intervals(run_.protocol, shown.setting, run_.parts.display,
+                        trial.schedule_seed + static_cast<std::uint64_t>(interval));
+  }
+  return out;
+}
+
+std::optional<SessionEnds> TrialPlayer::play(OpenUnit unit) {
+  Showing showing{unit, unit.attempts + 1, {}, intervals_of(*unit.trial), {}};
+  for (;; again(showing)) {
+    showing.occasion = run_.occasion(unit);
+    try {
+      return play_steps(showing);
+    } catch (const TrialAgain&) {
+    }
+  }
+}
+
+void TrialPlayer::again(Showing& showing) {
+  const std::string reason = "wish of the experimenter";
+  if (showing.done)
+    run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, reason);
+  else
+    run_.parts.store.log(run_.session.id, "trial repeated", reason, run_.now_ns());
+  showing.unit.answered.clear();
+  ++showing.attempt;
+  showing.verdicts.clear();
+  showing.ready = nullptr;
+  showing.next_interval = 0;
+  showing.done = false;
+}
+
+std::optional<SessionEnds> TrialPlayer::play_steps(Showing& showing) {
+  run_.parts.participant.before_trial(showing.occasion);
+  const Block& block = run_.block(showing.unit);
+  const Check check = [this] { heed(run_, true); };
+  const auto shows = [](const TrialStep& step) { return step.kind == StepKind::Stimulus; };
+  for (std::size_t i = 0; i < block.steps.size(); ++i) {
+    const TrialStep& step = block.steps[i];
+    check();
+    switch (step.kind) {
+      case StepKind::Black:
+        black(showing, step.seconds,
+              std::any_of(block.steps.begin() + static_cast<std::ptrdiff_t>(i), block.steps.end(), shows));
+        break;
+      case StepKind::Stimulus:
+        show(showing, step.interval);
+        break;
+      case StepKind::Ask:
+        if (auto ends = ask(showing, i)) return ends;
+        break;
+      case StepKind::Rest:
+        run_.parts.participant.pause(PauseKind::Rest, step.seconds, run_.parts.clock, check);
+        break;
+    }
+  }
+  return {};
+}
+
+/// What takes long is made while the screen is black.
+void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows) {
+  const Check check = [this] { heed(run_, true); };
+  const std::int64_t begun_ns = run_.now_ns();
+  if (stimulus_follows && !showing.ready) {
+    run_.parts.participant.pause(PauseKind::Black, 0, run_.parts.clock, check);
+    make_ready(showing);
+  }
+  const double gone_s = 1e-9 * static_cast<double>(run_.now_ns() - begun_ns);
+  run_.parts.participant.pause(PauseKind::Black, std::max(0.0, seconds - gone_s), run_.parts.clock, check);
+}
+
+void TrialPlayer::make_ready(Showing& showing) {
+  showing.ready = &run_.parts.stimuli.stimulus(cell(showing.unit, showing.next_interval));
+  showing.ready->start(run_.protocol.content.start_frame);
+}
+
+void TrialPlayer::show(Showing& showing, int interval) {
+  showing.next_interval = interval;
+  if (!showing.ready) black(showing, 0, true);
+  const Cell& what = cell(showing.unit, interval);
+  ShownStimulus shown{cell_index(*showing.unit.trial, interval), what, {}, 0, 0};
+  const std::int64_t start_ns = run_.now_ns();
+  const std::int64_t presentation = run_.parts.store.begin_presentation(
+      run_.session.id, showing.unit.trial_id, showing.attempt, interval, shown.cell, start_ns);
+  showing.verdicts.push_back(present(presentation, start_ns, what,
+                                     showing.intervals[static_cast<std::size_t>(interval)], *showing.ready,
+                                     shown));
+  showing.occasion.shown.push_back(shown);
+  showing.ready = nullptr;
+  showing.next_interval = interval + 1;
+}
+
+TimingVerdict TrialPlayer::judge(const Cell& cell, const PlayedTrial& played) const {
+  const TimingGrade grade = run_.parts.display.grade();
+  if (run_.protocol.design.timing == TimingSource::Native) return describe_trial(played, grade);
+  const PacingRules rules = for_display(run_.protocol.pacing, run_.parts.display.refresh_hz());
+  return judge_trial(cell.setting, rules, played, run_.protocol.timing, grade);
+}
+
+TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start_ns, const Cell& cell,
+                                   const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
+                                   ShownStimulus& shown) const {
+  const SessionParts& parts = run_.parts;
+  FrameJournal journal(parts.store, presentation, start_ns, !parts.virtual_clock);
+  FrameTolerance tolerance(parts.ptpe, run_.protocol.design.timing, cell.setting);
+  const auto each = [&](FrameRecord frame) {
+    frame.facts.tolerance = tolerance.of(frame);
+    journal.add(frame);
+    if (run_.hooks.shown) run_.hooks.shown(frame);
+    heed(run_, true);
+  };
+  try {
+    const auto late_after_ns = std::llround(run_.protocol.timing.late_after_ms * 1e6);
+    const ContentRules& content = run_.protocol.content;
+    const PlayedTrial played =
+        intervals.empty()
+            ? play_native(cell.setting.duration_s, content, stimulus, parts.display, parts.clock, each)
+            : play_trial(intervals, content, stimulus, parts.display, parts.clock, late_after_ns, each);
+    const TimingVerdict verdict = judge(cell, played);
+    parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(), verdict);
+    shown.realised = verdict.realised;
+    shown.longest_ms = verdict.longest_ms;
+    shown.play_speed = play_speed(played);
+    return verdict;
+  } catch (...) {
+    // What cut it is the error to tell; should keeping the rest fail too, the next opening marks the cut.
+    try {
+      parts.store.add_frames(presentation, start_ns, journal.finish());
+      parts.store.interrupt_presentation(run_.session.id, presentation, run_.now_ns());
+    } catch (const std::exception&) {
+    }
+    throw;
+  }
+}
+
+std::optional<SessionEnds> TrialPlayer::ask(Showing& showing, std::size_t step) {
+  const Block& block = run_.block(showing.unit);
+  const bool last =
+      std::none_of(block.steps.begin() + static_cast<std::ptrdiff_t>(step) + 1, block.steps.end(),
+                   [](const TrialStep& later) { return later.kind == StepKind::Ask; });
+  auto ends = questioning_.ask(showing.unit, showing.attempt,
+                               questions_of(run_.protocol, block.steps[step].asks), showing.occasion, last,
+                               [this] { heed(run_, true); });
+  if (last) {
+    showing.done = true;
+    run_.tell(showing.unit, showing.attempt, showing.verdicts);
+  }
+  return ends;
+}
+
+}  // namespace study

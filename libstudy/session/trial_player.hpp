@@ -1,0 +1,49 @@
+#pragma once
+/// One trial: its steps in order, as often as the experimenter has it shown.
+
+#include <array>
+#include <vector>
+
+#include "libstudy/session/questioning.hpp"
+
+namespace study {
+
+class TrialPlayer {
+ public:
+  TrialPlayer(const Running& run, Questioning& questioning) : run_(run), questioning_(questioning) {}
+
+  /// Plays the steps until the last one; TrialAgain starts over with a new attempt, for which everything is
+  /// asked anew. Returns how an answer ends the session, if it does.
+  std::optional<SessionEnds> play(OpenUnit unit);
+
+ private:
+  /// What one showing of a trial consists of.
+  struct Showing {
+    OpenUnit& unit;
+    int attempt = 1;
+    Occasion occasion;
+    std::array<std::vector<std::int64_t>, 2> intervals;  ///< of the first and the second stimulus
+    std::vector<TimingVerdict> verdicts;
+    Stimulus* ready = nullptr;  ///< rewound for the next stimulus step
+    int next_interval = 0;
+    bool done = false;  ///< every question is answered
+  };
+
+  std::optional<SessionEnds> play_steps(Showing& showing);
+  void again(Showing& showing);
+  std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
+  const Cell& cell(const OpenUnit& unit, int interval) const;
+  void black(Showing& showing, double seconds, bool stimulus_follows);
+  void make_ready(Showing& showing);
+  void show(Showing& showing, int interval);
+  TimingVerdict present(std::int64_t presentation, std::int64_t start_ns, const Cell& cell,
+                        const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
+                        ShownStimulus& shown) const;
+  TimingVerdict judge(const Cell& cell, const PlayedTrial& played) const;
+  std::optional<SessionEnds> ask(Showing& showing, std::size_t step);
+
+  const Running& run_;
+  Questioning& questioning_;
+};
+
+}  // namespace study
