@@ -125,23 +125,52 @@ void BakedParticles::draw(unsigned framebuffer, int width_px, int height_px) {
 }
 
 LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-                     const sim::RenderOptions& options)
+                     LiveViewing viewing, const sim::RenderOptions& options)
     : scene_(scene),
       frame_dt_s_(frame_dt_s),
       description_(std::move(description)),
       make_(std::move(make)),
+      viewing_(std::move(viewing)),
       options_(options) {}
 
 void LiveFluid::start(std::int64_t start_step) {
-  if (!simulation_ || step_ != 0) simulation_ = make_();
-  for (step_ = 0; step_ < start_step; ++step_) simulation_->step_frame();
+  prepared_.reset();
+  if (!simulation_ || step_ != 0) {
+    simulation_ = make_();
+    view_.reset();
+    if (picture_) picture_->begin(nullptr);
+  }
+  for (step_ = 0; step_ < start_step; ++step_) advance();
 }
 
 study::FrameFacts LiveFluid::prepare(std::int64_t step) {
   if (!simulation_ || step < step_) start(step);
-  for (; step_ < step; ++step_) simulation_->step_frame();
+  tell_frame_time();
+  for (; step_ < step; ++step_) advance();
   simulation_->read_particles(copy_);
   return facts();
+}
+
+void LiveFluid::tell_frame_time() {
+  const auto now = std::chrono::steady_clock::now();
+  if (prepared_) simulation_->frame_time(std::chrono::duration<double, std::milli>(now - *prepared_).count());
+  prepared_ = now;
+}
+
+void LiveFluid::advance() {
+  look();
+  simulation_->step_frame();
+}
+
+/// Before the first picture a method looks along the scene's own axis.
+void LiveFluid::look() {
+  if (!picture_ || !view_) return;
+  const int width = view_->viewport.width, height = view_->viewport.height;
+  std::optional<std::pair<double, double>> point{{0.5 * width, 0.5 * height}};
+  if (viewing_.gaze) point = viewing_.gaze(width, height);
+  sim::Gaze gaze;
+  if (point) gaze = gaze_through(*view_, point->first, point->second);
+  picture_->look(*simulation_, *view_, gaze);
 }
 
 study::FrameFacts LiveFluid::facts() const {
@@ -152,8 +181,11 @@ study::FrameFacts LiveFluid::facts() const {
 }
 
 void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {
-  particles_.upload(copy_);
-  draw_particles(renderer_, scene_, options_, particles_, framebuffer, width_px, height_px);
+  sim::Camera camera = scene_.view;
+  if (viewing_.vertical_fov_deg) camera.vertical_fov_deg = viewing_.vertical_fov_deg(width_px, height_px);
+  if (!picture_) picture_ = std::make_unique<FluidPicture>(scene_, options_);
+  view_ = sim::make_view(camera, width_px, height_px);
+  picture_->draw(*simulation_, *view_, framebuffer);
 }
 
 }  // namespace apps

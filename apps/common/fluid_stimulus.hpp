@@ -5,11 +5,15 @@
 /// All draw in the GL context that is current at the first draw() and hold GL objects of it afterwards:
 /// destroy them before the display. A content step is one frame of the scene.
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "apps/common/fluid_picture.hpp"
 #include "libsim/bake/picture_ring.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/simulation.hpp"
@@ -60,14 +64,23 @@ class BakedParticles final : public study::Stimulus {
   sim::ParticleBuffer particles_;
 };
 
-/// A simulation that advances one frame a content step.
+/// How a live fluid is watched. Empty functions: the gaze rests on the middle of the picture, and the camera
+/// is the scene's.
+struct LiveViewing {
+  /// Where one looks in a picture of this width and height, px from its lower left corner; none: not known.
+  std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
+  /// Vertical field of view of a picture of this width and height, degrees.
+  std::function<double(int, int)> vertical_fov_deg;
+};
+
+/// A simulation that advances one frame a content step, and sees what its viewer saw in the picture before.
 class LiveFluid final : public study::Stimulus {
  public:
   /// Makes the simulation at frame 0; called again for each rewind.
   using MakeSimulation = std::function<std::unique_ptr<sim::Simulation>()>;
 
   LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-            const sim::RenderOptions& options = {});
+            LiveViewing viewing = {}, const sim::RenderOptions& options = {});
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
@@ -78,17 +91,22 @@ class LiveFluid final : public study::Stimulus {
 
  private:
   study::FrameFacts facts() const;
+  void advance();
+  void look();
+  void tell_frame_time();
 
   sim::Scene scene_;
   double frame_dt_s_;
   std::string description_;
   MakeSimulation make_;
+  LiveViewing viewing_;
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::vector<sim::RenderParticle> copy_;
-  std::unique_ptr<sim::FluidRenderer> renderer_;
-  sim::ParticleBuffer particles_;
+  std::unique_ptr<FluidPicture> picture_;
+  std::optional<sim::View> view_;  ///< of the last picture
 };
 
 /// What `vip-study run` shows: a bake when one is named, otherwise a live simulation.
@@ -99,6 +117,10 @@ struct StimulusChoice {
   std::string n_star = "32k";
   std::string backend = "auto";
   double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
+  /// Of temporal acceleration, live fluid only: tau in frames/s, none = as measured.
+  std::optional<double> fixed_tau;
+  stats::PtpeModel model;
+  LiveViewing viewing;  ///< live fluid only
 };
 
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another

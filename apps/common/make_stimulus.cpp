@@ -31,6 +31,8 @@ std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
   options.n_star = sim::parse_n_star(choice.n_star);
   options.backend = sim::choose_backend(choice.backend);
   options.frame_dt_s = choice.content_step_s;
+  options.temporal.fixed_tau = choice.fixed_tau;
+  options.temporal.model = choice.model;
   const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
   const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
                                   std::to_string(options.n_star) + ", on " +
@@ -41,7 +43,7 @@ std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
     if (!options.start) options.start = simulation->read_state();
     return simulation;
   };
-  return std::make_unique<LiveFluid>(scene, dt, description, make);
+  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing);
 }
 
 }  // namespace

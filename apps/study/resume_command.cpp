@@ -27,10 +27,10 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
 void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {
-    if (session.plan.stimulus != setup.stimulus->description()) {
+    if (session.plan.stimulus != setup.stimuli->description()) {
       throw base::Error(place,
                         "participant " + session.plan.participant + " was shown '" + session.plan.stimulus +
-                            "', which is now '" + setup.stimulus->description() + "'",
+                            "', which is now '" + setup.stimuli->description() + "'",
                         "put the same bake or scene back in its place");
     }
     store.log(session.id, "resumed", study::describe_machine() + "; display " + setup.display->description(),
@@ -43,10 +43,11 @@ void resume(const PlayOptions& options) {
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages);
   const auto runs = store.open_runs();
-  if (runs.empty()) std::printf("%s: every planned trial is answered\n", place.c_str());
+  if (runs.empty()) std::printf("%s: nothing is left to do\n", place.c_str());
   for (const study::OpenRun& run : runs) {
     const study::Protocol protocol = rebuild_protocol(run, place);
-    SessionSetup setup = make_session_setup(parse_run_options(run.options, place), protocol);
+    SessionSetup setup = make_session_setup(parse_run_options(run.options, place), protocol,
+                                            run.sessions.front().plan.ptpe, place);
     check_unchanged(store, run, setup, place);
     play_run(store, run, protocol, setup, options);
     print_certificate(options.database, run, protocol);

@@ -33,10 +33,21 @@ struct RunCommand {
 /// P01, P02, ... or the codes given.
 std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
   if (!command.codes.empty()) return command.codes;
+  if (command.run.observer.empty())
+    throw base::Error("--participant", "is missing: nobody is named",
+                      "write --participant P07, or name an --observer");
   const int count = command.participants > 0 ? command.participants : protocol.participants;
   std::vector<std::string> codes;
   for (int i = 1; i <= count; ++i) codes.push_back((i < 10 ? "P0" : "P") + std::to_string(i));
   return codes;
+}
+
+/// What was not said: a person sits at a window in real time, an observer needs neither.
+void choose_defaults(RunOptions& run) {
+  const bool person = run.observer.empty();
+  if (run.clock.empty()) run.clock = person ? "real" : "virtual";
+  if (run.display.empty()) run.display = person ? "window" : "none";
+  if (run.gaze.empty()) run.gaze = run.display == "none" ? "none" : "fixed";
 }
 
 void read_size(const std::string& text, RunOptions& run) {
@@ -58,24 +69,35 @@ std::optional<std::string> read_ptpe(const std::string& path) {
   return base::read_file(path, 1 << 20);
 }
 
-study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
-                             const SessionSetup& setup) {
-  study::RunPlan run{protocol, format_run_options(command.run), {}};
+study::SessionPlan common_plan(const RunCommand& command, const study::Protocol& protocol,
+                               const SessionSetup& setup, const std::optional<std::string>& ptpe) {
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data || !setup.departure.empty();
-  session.observer = setup.responder->simulated();
+  session.test_data = protocol.test_data || !setup.stimuli->departure().empty();
+  session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;
   session.display = setup.display->description();
-  session.stimulus = setup.stimulus->description();
+  session.stimulus = setup.stimuli->description();
   session.machine = study::describe_machine();
   session.time_zone = study::local_time_zone();
-  session.ptpe = read_ptpe(command.ptpe);
-  for (const std::string& code : participant_codes(command, protocol)) {
-    study::check_participant_code(code);
+  session.ptpe = ptpe;
+  session.gaze_source = command.run.gaze;
+  session.station = command.run.station;
+  session.screen_width_mm = command.run.screen_width_mm;
+  session.viewing_distance_mm = command.run.viewing_distance_mm;
+  return session;
+}
+
+/// Each participant takes the slot that is least taken by then.
+study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
+                             study::SessionPlan session, const std::vector<std::string>& codes,
+                             std::vector<int> taken) {
+  study::RunPlan run{protocol, format_run_options(command.run), {}};
+  for (const std::string& code : codes) {
+    taken.push_back(study::next_slot(protocol, taken));
     session.participant = code;
-    session.trials = study::make_plan(protocol, code, session.seed);
+    session.plan = study::make_plan(protocol, code, session.seed, taken.back());
     run.sessions.push_back(session);
   }
   return run;
@@ -84,21 +106,25 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   read_size(command.size, command.run);
+  choose_defaults(command.run);
   if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
-  SessionSetup setup = make_session_setup(command.run, protocol);
+  const auto codes = participant_codes(command, protocol);
+  for (const std::string& code : codes) study::check_participant_code(code);
+  const auto ptpe = read_ptpe(command.ptpe);
+  SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
   // Complete with today's defaults, which another version may change.
-  command.run.observer = setup.responder->simulated().value_or("");
-  const study::RunPlan plan = make_run_plan(command, protocol, setup);
-
-  if (!setup.departure.empty()) {
+  command.run.observer = setup.participant->simulated().value_or("");
+  const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
+  if (!setup.stimuli->departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
-                 setup.departure.c_str());
+                 setup.stimuli->departure().c_str());
   }
 
   const StopSignals signals;
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages);
-  const std::int64_t run_id = store.add_run(plan);
+  const std::int64_t run_id =
+      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
   for (const study::OpenRun& open : store.open_runs()) {
     if (open.id != run_id) continue;
     play_run(store, open, protocol, setup, command.play);
@@ -113,7 +139,7 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
   command.add_option("--max-pages", options.max_pages, "Let the database grow to this many pages of 4 KiB")
       ->check(CLI::PositiveNumber);
   command.add_flag("--events", options.events,
-                   "Print a line for each answer once it is safe, without the answer");
+                   "Print a line for each step of a session once it is safe, without answers");
 }
 
 void add_run_command(CLI::App& app) {
@@ -128,14 +154,22 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--visit", command->visit, "Visit of these participants under this protocol")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  sub.add_option("--observer", command->run.observer, "Simulated observer, such as ptpe:a=31,b=0.035")
-      ->required();
-  sub.add_option("--clock", command->run.clock, "Play in real time, or without waiting")
-      ->check(CLI::IsMember({"real", "virtual"}))
-      ->capture_default_str();
-  sub.add_option("--display", command->run.display, "Where frames go: nowhere, or drawn without a window")
-      ->check(CLI::IsMember({"none", "headless"}))
-      ->capture_default_str();
+  sub.add_option(
+      "--observer", command->run.observer,
+      "Simulated observer: ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2; without: a person");
+  sub.add_option("--clock", command->run.clock,
+                 "Play in real time (a person's), or without waiting (an observer's)")
+      ->check(CLI::IsMember({"real", "virtual"}));
+  sub.add_option("--display", command->run.display,
+                 "Where frames go: a window (a person's), drawn without a window, or nowhere (an observer's)")
+      ->check(CLI::IsMember({"window", "headless", "none"}));
+  sub.add_option("--gaze", command->run.gaze,
+                 "Where one is taken to look: the middle of the picture, the mouse, or not known")
+      ->check(CLI::IsMember({"fixed", "mouse", "none"}));
+  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
+  sub.add_option("--screen-width-mm", command->run.screen_width_mm,
+                 "Width of the picture on the screen; gives the camera's angle");
+  sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");
   sub.add_option("--size", command->size, "Pixels of a headless display")->capture_default_str();
   sub.add_option("--seed", command->seed, "Seed of orders, schedules and observers")
       ->check(CLI::NonNegativeNumber)

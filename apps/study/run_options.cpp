@@ -7,14 +7,33 @@
 namespace apps {
 
 namespace {
-constexpr int format_version = 1;
+
+constexpr int format_version = 2;
+
+nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
 }
 
+std::optional<double> optional_number(const nlohmann::json& json) {
+  if (json.is_null()) return {};
+  return json.get<double>();
+}
+
+}  // namespace
+
 std::string format_run_options(const RunOptions& options) {
-  return nlohmann::ordered_json{{"format", format_version},     {"observer", options.observer},
-                                {"clock", options.clock},       {"display", options.display},
-                                {"width_px", options.width_px}, {"height_px", options.height_px},
-                                {"bake", options.bake},         {"backend", options.backend}}
+  return nlohmann::ordered_json{{"format", format_version},
+                                {"observer", options.observer},
+                                {"clock", options.clock},
+                                {"display", options.display},
+                                {"width_px", options.width_px},
+                                {"height_px", options.height_px},
+                                {"bake", options.bake},
+                                {"backend", options.backend},
+                                {"gaze", options.gaze},
+                                {"station", options.station},
+                                {"screen_width_mm", number_or_null(options.screen_width_mm)},
+                                {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}}
       .dump();
 }
 
@@ -22,7 +41,8 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
   try {
     const auto json = nlohmann::json::parse(text);
     if (json.at("format").get<int>() != format_version) {
-      throw base::Error(place, "options of another format", "use the version of vip-study that wrote it");
+      throw base::Error(place, "options of another format",
+                        "finish it with the version of vip-study that wrote it");
     }
     RunOptions options;
     options.observer = json.at("observer");
@@ -32,6 +52,10 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.height_px = json.at("height_px");
     options.bake = json.at("bake");
     options.backend = json.at("backend");
+    options.gaze = json.at("gaze");
+    options.station = json.at("station");
+    options.screen_width_mm = optional_number(json.at("screen_width_mm"));
+    options.viewing_distance_mm = optional_number(json.at("viewing_distance_mm"));
     return options;
   } catch (const nlohmann::json::exception& error) {
     throw base::Error(place, std::string("options of its run cannot be read: ") + error.what(),

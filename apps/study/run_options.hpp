@@ -2,18 +2,21 @@
 /// What `vip-study run` was asked for, beyond the protocol: kept in the database as text, so that `resume`
 /// needs nothing but the database.
 
-#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace apps {
 
 struct RunOptions {
-  std::string observer;           ///< specification of a simulated observer
-  std::string clock = "virtual";  ///< "real" or "virtual"
-  std::string display = "none";   ///< "none" or "headless"
+  std::string observer;  ///< specification of a simulated observer; empty = a person
+  std::string clock;     ///< "real" or "virtual"
+  std::string display;   ///< "none", "headless" or "window"
   int width_px = 640, height_px = 360;
   std::string bake;  ///< absolute path of the bake played; empty = none
   std::string backend = "auto";
+  std::string gaze;  ///< "fixed": the middle of the picture, "mouse", or "none": not known
+  std::string station;
+  std::optional<double> screen_width_mm, viewing_distance_mm;
 
   bool operator==(const RunOptions&) const = default;
 };

@@ -1,14 +1,17 @@
 #include "apps/study/session_player.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <optional>
 
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/store/personal.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 
@@ -21,10 +24,15 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 void ask_to_stop(int) { stop_flag = true; }
 
-std::size_t trials_left(const study::OpenRun& run) {
+std::size_t units_left(const study::OpenRun& run) {
   std::size_t count = 0;
-  for (const auto& session : run.sessions) count += session.trials.size();
+  for (const auto& session : run.sessions) count += session.units.size();
   return count;
+}
+
+bool asks_personal(const study::Protocol& protocol) {
+  const auto all = study::all_questions(protocol);
+  return std::any_of(all.begin(), all.end(), [](const auto& entry) { return entry.second->personal; });
 }
 
 std::optional<stats::PtpeModel> ptpe_of(const study::OpenSession& session,
@@ -48,22 +56,47 @@ StopSignals::~StopSignals() {
 
 bool StopSignals::stop_wished() { return stop_flag; }
 
+namespace {
+
+void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
+  const auto& block = protocol.blocks.at(static_cast<std::size_t>(unit.unit.block));
+  std::printf("done %s %d %s attempt %d\n", unit.participant.c_str(), unit.unit.position,
+              study::block_kind_name(block.kind).c_str(), unit.attempt);
+  std::fflush(stdout);
+}
+
+/// The console's hooks, and the program's own beside them.
+study::SessionHooks make_hooks(const study::SessionHooks& console,
+                               std::function<void(const study::UnitDone&)> done) {
+  study::SessionHooks hooks = console;
+  hooks.wish = [console] {
+    if (StopSignals::stop_wished()) return study::Wish::Stop;
+    return console.wish ? console.wish() : study::Wish::GoOn;
+  };
+  hooks.done = [console, done = std::move(done)](const study::UnitDone& unit) {
+    done(unit);
+    if (console.done) console.done(unit);
+  };
+  return hooks;
+}
+
+}  // namespace
+
 void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
               SessionSetup& setup, const PlayOptions& options) {
   std::size_t done = 0;
-  Progress progress("trials", trials_left(run));
-  study::SessionHooks hooks;
-  hooks.stop = StopSignals::stop_wished;
-  hooks.answered = [&](const study::TrialDone& trial) {
+  Progress progress("session steps", units_left(run));
+  const auto hooks = make_hooks(setup.console, [&](const study::UnitDone& unit) {
     progress.update(++done);
-    if (!options.events) return;
-    std::printf("answered %s %d attempt %d\n", trial.participant.c_str(), trial.position, trial.attempt);
-    std::fflush(stdout);
-  };
+    if (options.events) print_done(unit, protocol);
+  });
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) real_time.emplace();
-  study::SessionParts parts{*setup.clock,     *setup.display, *setup.stimulus,
-                            *setup.responder, store,          setup.virtual_clock};
+  std::optional<study::PersonalFile> personal;
+  if (asks_personal(protocol)) personal.emplace(options.database);
+  study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
+                            *setup.participant, store,          personal ? &*personal : nullptr,
+                            setup.virtual_clock};
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());

@@ -22,7 +22,7 @@ class StopSignals {
 struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
-  bool events = false;         ///< a line on stdout for each committed answer, without the answer
+  bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
 };
 
 /// Plays all sessions of an open run with a progress bar, then prints its timing certificate. base::Error
@@ -30,7 +30,8 @@ struct PlayOptions {
 void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
               SessionSetup& setup, const PlayOptions& options);
 
-/// One line a setting: nominal, realised mu and delta, late frames, verdicts, grade.
+/// One line a setting; nothing where no schedule was played: nominal, realised mu and delta, late frames,
+/// verdicts, grade.
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol);
 

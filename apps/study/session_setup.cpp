@@ -1,11 +1,11 @@
 #include "apps/study/session_setup.hpp"
 
-#include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headless_display.hpp"
+#include "apps/study/desk/viewing.hpp"
+#include "apps/study/window_parts.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/display/null.hpp"
-#include "libstudy/observer/ptpe_observer.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -21,64 +21,67 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
   unknown("--clock", word, "real or virtual");
 }
 
+void check_together(const RunOptions& options, const study::Protocol& protocol) {
+  if (options.observer.empty() && options.display != "window")
+    throw base::Error("--display " + options.display, "shows nothing to a person",
+                      "use --display window, or name an --observer");
+  if (options.observer.empty() && options.clock != "real")
+    throw base::Error("--clock virtual", "does not wait for a person", "use --clock real");
+  if (options.gaze == "mouse" && options.display != "window")
+    throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
+  if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
+    throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
+                      "use --clock real");
+  if (options.screen_width_mm.has_value() != options.viewing_distance_mm.has_value())
+    throw base::Error("--screen-width-mm and --viewing-distance-mm", "make an angle only together",
+                      "give both, or neither");
+}
+
 std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   if (options.display == "none") return std::make_unique<study::NullDisplay>();
-  if (options.display == "headless") {
-    StimulusChoice choice;
-    choice.bake = options.bake;
-    return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
-  }
-  unknown("--display", options.display, "none or headless");
-}
-
-std::unique_ptr<study::Stimulus> make_shown_stimulus(const RunOptions& options,
-                                                     const study::Protocol& protocol) {
-  if (options.bake.empty() && options.display == "none") {
-    return std::make_unique<study::NullStimulus>(protocol.content.content_step_s);
-  }
   StimulusChoice choice;
   choice.bake = options.bake;
-  choice.content_step_s = protocol.content.content_step_s;
-  choice.backend = options.backend;
-  if (options.bake.empty()) {
-    choice.scene = base::find_input(protocol.stimulus.scene);
-    choice.method = protocol.stimulus.method;
-    choice.n_star = protocol.stimulus.n_star;
-  }
-  return make_stimulus(choice);
+  return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
 }
 
-std::string instead(const std::string& what, const std::string& shown, const std::string& wanted) {
-  return shown == wanted ? "" : what + " " + shown + " instead of " + wanted;
+LiveViewing viewing_of(const RunOptions& options) {
+  LiveViewing viewing;
+  if (options.screen_width_mm) {
+    const double width_mm = *options.screen_width_mm, distance_mm = *options.viewing_distance_mm;
+    viewing.vertical_fov_deg = [=](int width_px, int height_px) {
+      return vertical_fov_deg(picture_height_mm(width_mm, width_px, height_px), distance_mm);
+    };
+    viewing.vertical_fov_deg(options.width_px, options.height_px);  // fails now if it ever does
+  }
+  return viewing;
 }
 
-std::string departure_of(const RunOptions& options, const study::Protocol& protocol) {
-  if (options.bake.empty()) return {};
-  const sim::BakeReader bake(options.bake);
-  const sim::BakeHeader& header = bake.header();
-  const sim::Scene scene = sim::read_scene(base::find_input(protocol.stimulus.scene));
-  std::string all;
-  for (const std::string& one :
-       {instead("scene", header.scene_name + " " + header.scene_sha256.substr(0, 12),
-                scene.name + " " + scene.sha256.substr(0, 12)),
-        instead("method", header.method, sim::method_name(sim::parse_method(protocol.stimulus.method))),
-        instead("n_*", std::to_string(header.n_star),
-                std::to_string(sim::parse_n_star(protocol.stimulus.n_star)))}) {
-    if (!one.empty()) all += (all.empty() ? "" : ", ") + one;
-  }
-  return all;
+stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place) {
+  return ptpe ? sim::parse_ptpe_file(*ptpe, place).model : stats::PtpeModel{};
 }
 
 }  // namespace
 
-SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol) {
+SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
+                                const std::optional<std::string>& ptpe, const std::string& ptpe_place) {
+  check_together(options, protocol);
   SessionSetup setup;
-  setup.responder = std::make_unique<study::PtpeObserver>(study::parse_ptpe_observer(options.observer));
   setup.virtual_clock = options.clock == "virtual";
   setup.clock = make_clock(options.clock);
-  setup.display = make_display(options);
-  setup.stimulus = make_shown_stimulus(options, protocol);
-  setup.departure = departure_of(options, protocol);
+  setup.features = std::make_unique<study::FeatureTable>();
+  if (!options.observer.empty()) setup.participant = study::make_observer(options.observer, *setup.features);
+  LiveViewing viewing = viewing_of(options);
+  if (options.display == "window") {
+    WindowParts window = make_window_parts(options, protocol);
+    setup.display = std::move(window.display);
+    if (!setup.participant) setup.participant = std::move(window.person);
+    if (options.gaze == "mouse") viewing.gaze = window.gaze;
+    setup.console = std::move(window.console);
+  } else {
+    setup.display = make_display(options);
+  }
+  setup.stimuli =
+      std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place), std::move(viewing));
   return setup;
 }
 

@@ -1,30 +1,31 @@
 #pragma once
-/// Turns options into the parts of a session: clock, display, stimulus, responder.
+/// Turns options into the parts of a session: clock, display, stimuli, participant.
 
 #include <memory>
 
+#include "apps/study/cell_stimuli.hpp"
 #include "apps/study/run_options.hpp"
-#include "libstudy/display/stimulus.hpp"
-#include "libstudy/observer/responder.hpp"
+#include "libstudy/observer/observer.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "libstudy/session/session.hpp"
 
 namespace apps {
 
-/// Owns the parts. The stimulus is destroyed before the display whose GL context it draws in.
+/// Owns the parts. Stimuli are destroyed before the display whose GL context they draw in.
 struct SessionSetup {
   bool virtual_clock = false;
-  /// In what the bake differs from the protocol's stimulus, such as "n_* 2048 instead of 32768"; empty: in
-  /// nothing. Such data are test data.
-  std::string departure;
   std::unique_ptr<study::Clock> clock;
   std::unique_ptr<study::Display> display;
-  std::unique_ptr<study::Stimulus> stimulus;
-  std::unique_ptr<study::Responder> responder;
+  std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
+  std::unique_ptr<study::Participant> participant;
+  std::unique_ptr<CellStimuli> stimuli;
+  study::SessionHooks console;  ///< the window's, or empty
 };
 
-/// The stimulus is the bake when one is named, else live fluid as the protocol says on a headless display,
-/// else nothing. base::Error naming what is missing or wrong.
-SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol);
+/// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives
+/// temporal acceleration. base::Error naming what is missing, wrong or does not go together.
+SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
+                                const std::optional<std::string>& ptpe, const std::string& ptpe_place);
 
 }  // namespace apps

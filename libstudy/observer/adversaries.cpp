@@ -14,7 +14,8 @@ std::optional<std::string> DropoutObserver::simulated() const {
 }
 
 void DropoutObserver::before_trial(const Occasion& occasion) {
-  const std::uint64_t key = random_key("leaves\n" + std::to_string(occasion.seed) + '\n' + occasion.participant);
+  const std::uint64_t key =
+      random_key("leaves\n" + std::to_string(occasion.seed) + '\n' + occasion.participant);
   if (uniform_of(key, static_cast<std::uint64_t>(occasion.position)) < probability_) throw Left();
 }
 

@@ -68,9 +68,8 @@ int FramesObserver::score(const Question& question, const Occasion& occasion, bo
   const bool symptoms = question.kind == AnswerKind::Scale && question.scale_min == 0;
   if (!occasion.shown.empty() && symptoms) return symptom(question, occasion);
   if (!judges) return bystander_score(question, occasion);
-  const double noise =
-      parameters_.noise *
-      normal_of(question_key(occasion, question), 1 + static_cast<std::uint64_t>(occasion.position));
+  const double noise = parameters_.noise * normal_of(question_key(occasion, question),
+                                                     1 + static_cast<std::uint64_t>(occasion.position));
   if (occasion.shown.size() == 2) {
     const auto scores = scores_of(question);
     const double better = quality(occasion.shown[1]) - quality(occasion.shown[0]);

@@ -12,10 +12,9 @@ const std::string kinds = "write ptpe:a=31,b=0.035, frames, random, constant:4 o
 
 std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSource& features) {
   const std::size_t end = std::min(specification.find(','), specification.size());
-  const double probability =
-      read_observer_number(specification, dropout.size(),
-                           specification.substr(dropout.size(), end - dropout.size()), 0, 1,
-                           "write dropout:0.2, a probability from 0 to 1");
+  const double probability = read_observer_number(specification, dropout.size(),
+                                                  specification.substr(dropout.size(), end - dropout.size()),
+                                                  0, 1, "write dropout:0.2, a probability from 0 to 1");
   const std::string_view rest = specification.substr(std::min(end + 1, specification.size()));
   return std::make_unique<DropoutObserver>(probability,
                                            make_observer(rest.empty() ? "random" : rest, features));
@@ -26,9 +25,9 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features) {
   if (specification == "random") return std::make_unique<RandomObserver>();
   if (specification.starts_with(constant)) {
-    return std::make_unique<ConstantObserver>(
-        read_observer_number(specification, constant.size(), specification.substr(constant.size()), -1e4, 1e4,
-                             "write constant:4"));
+    return std::make_unique<ConstantObserver>(read_observer_number(specification, constant.size(),
+                                                                   specification.substr(constant.size()),
+                                                                   -1e4, 1e4, "write constant:4"));
   }
   if (specification.starts_with(dropout)) return make_dropout(specification, features);
   if (specification.starts_with("frames"))

@@ -52,8 +52,8 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
                        const std::function<void(const FrameRecord&)>& each);
 
 /// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
-/// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays on
-/// until the one after it, which is no longer shown, is ready. base::Error when the clock stands still
+/// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays
+/// on until the one after it, which is no longer shown, is ready. base::Error when the clock stands still
 /// meanwhile (VirtualClock) or the content ends before start_frame.
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
                         Clock& clock, const std::function<void(const FrameRecord&)>& each);

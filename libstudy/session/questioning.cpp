@@ -87,8 +87,8 @@ void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Questi
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
     if (question.personal) {
-      personal.push_back({run_.session.plan.participant, question.id, question.text,
-                          in_words(question, answers[i].answer)});
+      personal.push_back(
+          {run_.session.plan.participant, question.id, question.text, in_words(question, answers[i].answer)});
     } else {
       kept.push_back({question.id, answers[i]});
     }

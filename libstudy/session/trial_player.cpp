@@ -18,11 +18,10 @@ int cell_index(const PlannedTrial& trial, int interval) {
 double play_speed(const PlayedTrial& played) {
   double simulated_s = 0;
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
-    simulated_s += std::max(0.0, played.frames[i].facts.simulation_time_s -
-                                     played.frames[i - 1].facts.simulation_time_s);
+    simulated_s += std::max(
+        0.0, played.frames[i].facts.simulation_time_s - played.frames[i - 1].facts.simulation_time_s);
   }
-  const auto shown_ns =
-      played.frames.back().times.submitted_ns - played.frames.front().times.submitted_ns;
+  const auto shown_ns = played.frames.back().times.submitted_ns - played.frames.front().times.submitted_ns;
   return shown_ns > 0 ? simulated_s / (1e-9 * static_cast<double>(shown_ns)) : 0;
 }
 
@@ -209,9 +208,9 @@ std::optional<SessionEnds> TrialPlayer::ask(Showing& showing, std::size_t step) 
   const bool last =
       std::none_of(block.steps.begin() + static_cast<std::ptrdiff_t>(step) + 1, block.steps.end(),
                    [](const TrialStep& later) { return later.kind == StepKind::Ask; });
-  auto ends = questioning_.ask(showing.unit, showing.attempt,
-                               questions_of(run_.protocol, block.steps[step].asks), showing.occasion, last,
-                               [this] { heed(run_, true); });
+  auto ends =
+      questioning_.ask(showing.unit, showing.attempt, questions_of(run_.protocol, block.steps[step].asks),
+                       showing.occasion, last, [this] { heed(run_, true); });
   if (last) {
     showing.done = true;
     run_.tell(showing.unit, showing.attempt, showing.verdicts);
