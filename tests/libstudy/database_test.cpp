@@ -106,13 +106,14 @@ TEST(Database, FullAtItsCreationLeavesNoFile) {
 
 TEST(Database, FullLaterKeepsWhatWasCommitted) {
   const test::TemporaryFolder folder;
-  Store store(folder / "study.db", Open::Create, 60);
+  Store store(folder / "study.db", Open::Create, 100);
   store.add_run(test::run_plan(test::pilot(), {"P01"}));
   const auto session = store.open_runs().at(0).sessions.at(0);
-  const auto id = store.begin_presentation(session.id, session.trials[0].id, 1, 0);
+  const OpenUnit& unit = session.units.at(2);
+  const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
   EXPECT_THAT([&] { store.add_frames(id, 0, test::frames(0, 20000)); },
               ThrowsMessage<base::Error>(HasSubstr("no room left")));
-  EXPECT_EQ(store.open_runs().at(0).sessions.at(0).trials.size(), 21u);
+  EXPECT_EQ(store.open_runs().at(0).sessions.at(0).units.size(), 24u);
   EXPECT_EQ(read_ratings(folder / "study.db").size(), 21u);
 }
 
@@ -121,14 +122,16 @@ TEST(Database, UpgradeKeepsACopyAndTheData) {
   const fs::path path = make_study(folder);
   SchemaSteps steps = read_schema_steps();
   const std::string version = std::to_string(steps.size());
-  steps.push_back("ALTER TABLE session ADD COLUMN station TEXT;");
+  steps.push_back("ALTER TABLE session ADD COLUMN weather TEXT;");
 
-  EXPECT_THAT([&] { open_database(path, Open::Read, steps); },
-              ThrowsMessage<base::Error>(HasSubstr("older program")));
+  const std::string before = test::bytes_of(path);
+  EXPECT_EQ(open_database(path, Open::Read, steps)->integer("SELECT count(weather) FROM session"), 0);
+  EXPECT_TRUE(test::bytes_of(path) == before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
   const auto upgraded = open_database(path, Open::Write, steps);
   EXPECT_EQ(upgraded->integer("PRAGMA user_version"), static_cast<std::int64_t>(steps.size()));
   EXPECT_EQ(upgraded->integer("SELECT count(*) FROM trial"), 21);
-  EXPECT_EQ(upgraded->integer("SELECT count(station) FROM session"), 0);
+  EXPECT_EQ(upgraded->integer("SELECT count(weather) FROM session"), 0);
 
   fs::path copy;
   for (const auto& entry : fs::directory_iterator(folder.path())) {
@@ -147,6 +150,17 @@ TEST(Database, FailedUpgradeChangesNothing) {
   EXPECT_THROW(open_database(path, Open::Write, steps), base::Error);
   EXPECT_TRUE(test::bytes_of(path) == before);
   EXPECT_EQ(read_ratings(path).size(), 21u);
+}
+
+TEST(Database, AStepThatLosesRowsChangesNothing) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder);
+  SchemaSteps steps = read_schema_steps();
+  const std::string before = test::bytes_of(path);
+  steps.push_back("DELETE FROM protocol;");
+  EXPECT_THAT([&] { open_database(path, Open::Write, steps); },
+              ThrowsMessage<base::Error>(HasSubstr("belongs to none of protocol")));
+  EXPECT_TRUE(test::bytes_of(path) == before);
 }
 
 TEST(Database, ReadingLeavesNothingBehind) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "libstudy/store/database.hpp"
@@ -21,20 +22,46 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   Store store(folder / "study.db", sqlite::Open::Create);
   store.add_run(test::run_plan(test::pilot(), {"P01"}));
   const auto session = store.open_runs().at(0).sessions.at(0);
-  const auto id = store.begin_presentation(session.id, session.trials[0].id, 1, 0);
-  store.end_presentation(id, 0, 1, test::frames(0, 5), {});
-  store.answer(session.id, session.trials[0].id, id, "satisfaction", 6, 0.5, 2);
+  const OpenUnit& unit = session.units.at(2);
+  test::show(store, session, unit, 5);
+  const KeptAnswer kept{"satisfaction", {test::score(6), 0.5}};
+  store.answer(session.id, unit, 1, {&kept, 1}, true, 2);
+  store.exclude_trial(session.id, session.units.at(3).trial_id, "sneezed");
+  store.note(session.id, {}, "a loud street");
   return folder / "study.db";
+}
+
+/// A table of text: header and lines, split at commas outside quotes.
+std::vector<std::map<std::string, std::string>> read_csv(const fs::path& path) {
+  std::vector<std::vector<std::string>> lines{{""}};
+  bool quoted = false;
+  for (const char c : test::bytes_of(path)) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      lines.back().emplace_back();
+    else if (c == '\n' && !quoted)
+      lines.push_back({""});
+    else if (c != '\r')
+      lines.back().back() += c;
+  }
+  lines.pop_back();
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    rows.emplace_back();
+    for (std::size_t j = 0; j < lines[0].size(); ++j) rows.back()[lines[0][j]] = lines[i].at(j);
+  }
+  return rows;
 }
 
 TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
   const auto files = export_csv(database, folder / "out");
-  EXPECT_EQ(files.size(), 11u);
+  EXPECT_EQ(files.size(), 15u);
   EXPECT_THAT(test::bytes_of(folder / "out" / "responses.csv"),
-              ::testing::StartsWith("response_id,trial_id,presentation_id,question_id,score,response_time_s,"
-                                    "answered_utc\r\n1,1,1,1,6,0.5,2"));
+              ::testing::StartsWith("response_id,unit_id,attempt,question_id,score,response_time_s,"
+                                    "answered_utc\r\n1,3,1,2,6,0.5,2"));
   EXPECT_THAT(test::bytes_of(folder / "out" / "frames.csv"),
               HasSubstr("\r\n1,3,8,0.30000000000000004,60000000,1003,2000,,,1,100 800,0.75,-2.5\r\n"));
   EXPECT_EQ(test::bytes_of(folder / "out" / ("protocol_" + test::pilot().sha256.substr(0, 12) + ".toml")),
@@ -65,18 +92,27 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
     }
     EXPECT_FALSE(info.step()) << table.text(0);
   }
-  EXPECT_EQ(tables, 9);
+  EXPECT_EQ(tables, 14);
 }
 
 TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {
   const test::TemporaryFolder folder;
   export_csv(make_study(folder), folder / "out");
+  auto rows = read_csv(folder / "out" / "ratings.csv");
+  ASSERT_EQ(rows.size(), 21u);
+  EXPECT_EQ(rows[0]["participant"], "P01");
+  EXPECT_EQ(rows[0]["block_kind"], "stimulus");
+  EXPECT_EQ(rows[0]["first_scene"], "data/scenes/single_dam.toml");
+  EXPECT_EQ(rows[0]["first_method"], "HiRes");
+  EXPECT_EQ(rows[0]["second_method"], "");
+  EXPECT_EQ(rows[0]["question"], "satisfaction");
+  EXPECT_EQ(rows[0]["score"], "6");
+  EXPECT_EQ(rows[0]["first_verdict"], "degraded");
+  EXPECT_EQ(rows[0]["first_mean_fps"], "49.5");
+  EXPECT_EQ(rows[0]["excluded"], "0");
+  EXPECT_EQ(rows[1]["score"], "");  // not answered yet
+  EXPECT_EQ(rows[1]["excluded"], "1");
   const std::string ratings = test::bytes_of(folder / "out" / "ratings.csv");
-  EXPECT_EQ(std::count(ratings.begin(), ratings.end(), '\n'), 1 + 21);
-  EXPECT_THAT(ratings, ::testing::StartsWith("trial_id,protocol,protocol_version,participant,visit,"));
-  EXPECT_THAT(ratings, HasSubstr("\r\n1,ptpe_pilot,1.0,P01,1,0,\"ptpe:a=31,b=0.035\",virtual,0,0,"));
-  EXPECT_THAT(ratings, HasSubstr(",satisfaction,6,0.5,1,fail,D,"));
-  EXPECT_THAT(ratings, HasSubstr(",satisfaction,,,,,,"));  // not answered yet
   const std::string dictionary = test::bytes_of(folder / "out" / "dictionary.csv");
   const std::string names = ratings.substr(0, ratings.find('\r'));
   std::istringstream header(names);
@@ -88,6 +124,53 @@ TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {
   }
 }
 
+TEST(ExportCsv, RatingsTellBothIntervalsOfAPairAndEachQuestion) {
+  const test::TemporaryFolder folder;
+  {
+    Store store(folder / "study.db", sqlite::Open::Create);
+    store.add_run(test::run_plan(test::pairs(), {"P01"}));
+    const auto session = store.open_runs().at(0).sessions.at(0);
+    const OpenUnit& practice = session.units.at(1);
+    const int attempt = test::show(store, session, practice);
+    const std::vector<KeptAnswer> kept{{"preference", {test::score(2), 1}}, {"ease", {test::score(5), 1}}};
+    store.answer(session.id, practice, attempt, kept, true, 1);
+  }
+  export_csv(folder / "study.db", folder / "out");
+  auto rows = read_csv(folder / "out" / "ratings.csv");
+  ASSERT_EQ(rows.size(), 4u * 2u);  // a practice trial and three pairs, two questions each
+  EXPECT_EQ(rows[0]["block_kind"], "practice");
+  EXPECT_EQ(rows[0]["question"], "preference");
+  EXPECT_EQ(rows[1]["question"], "ease");
+  EXPECT_EQ(rows[2]["block_kind"], "stimulus");
+  EXPECT_NE(rows[0]["first_method"], rows[0]["second_method"]);
+  EXPECT_EQ(rows[0]["second_mean_fps"], "49.5");
+  EXPECT_EQ(rows[0]["score"], "2");
+  EXPECT_EQ(rows[2]["second_mean_fps"], "");
+}
+
+TEST(ExportCsv, FreeWordsLeaveTheDatabaseOnDemandAlone) {
+  const test::TemporaryFolder folder;
+  const fs::path database = make_study(folder);
+  const auto has_note = [&](const char* name) {
+    for (const auto& entry : fs::directory_iterator(folder / name)) {
+      if (test::bytes_of(entry.path()).find("a loud street") != std::string::npos) return true;
+    }
+    return false;
+  };
+  export_csv(database, folder / "plain");
+  EXPECT_FALSE(has_note("plain"));
+  EXPECT_EQ(export_csv(database, folder / "words", true).size(), 17u);
+  EXPECT_TRUE(has_note("words"));
+}
+
+TEST(ExportCsv, TheDatabaseRemembersTheFolder) {
+  const test::TemporaryFolder folder;
+  const fs::path database = make_study(folder);
+  export_csv(database, folder / "out/");
+  sqlite::Connection look(database, sqlite::Open::Read);
+  EXPECT_EQ(look.text("SELECT detail FROM event WHERE kind = 'export'"), (folder / "out").string());
+}
+
 TEST(ExportCsv, QuotesWhatNeedsIt) {
   const test::TemporaryFolder folder;
   make_study(folder);
@@ -95,7 +178,7 @@ TEST(ExportCsv, QuotesWhatNeedsIt) {
   std::string text = protocol.text;
   const std::string wording = "How satisfied are you with the step speed and the smoothness of the fluid?";
   text.replace(text.find(wording), wording.size(), "Happy, \\\"or\\\" not?");
-  text.replace(text.find("\"1.0\""), 5, "\"1.1\"");
+  text.replace(text.find("\"2.0\""), 5, "\"2.1\"");
   Store(folder / "study.db", sqlite::Open::Write)
       .add_run(test::run_plan(parse_protocol(text, "changed"), {"P01"}));
   export_csv(folder / "study.db", folder / "out");
@@ -120,7 +203,7 @@ TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder.path()), {}), files);
   EXPECT_EQ(test::bytes_of(folder / "namesake" / "dictionary.csv"), "other words");
   fs::create_directory(folder / "empty");
-  EXPECT_EQ(export_csv(database, folder / "empty").size(), 11u);
+  EXPECT_EQ(export_csv(database, folder / "empty").size(), 15u);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/ratings.hpp"
+#include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -12,56 +13,89 @@ namespace study {
 namespace {
 
 using sqlite::Open;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-TimingVerdict verdict() {
-  TimingVerdict verdict;
-  verdict.verdict = Verdict::Degraded;
-  verdict.grade = TimingGrade::DisplayFeedback;
-  verdict.realised = {40, 49.5, 50.5, 3.25};
-  verdict.longest_ms = 41;
-  verdict.shortest_ms = 11;
-  verdict.p95_ms = 31;
-  verdict.lag1 = -0.125;
-  verdict.late = 1;
-  verdict.worst_late_ms = 2.5;
-  verdict.reason = "one frame late";
-  return verdict;
-}
+OpenSession only_session(Store& store) { return store.open_runs().at(0).sessions.at(0); }
 
-/// Shows the first open trial and answers it with `score`.
-void play_one(Store& store, const OpenSession& session, const OpenTrial& trial, int score) {
-  const std::int64_t start_ns = 1'000'000'000'000;
-  const auto id = store.begin_presentation(session.id, trial.id, trial.attempts + 1, start_ns);
-  const auto all = test::frames(start_ns, 40);
-  store.add_frames(id, start_ns, std::span(all).first(25));
-  store.end_presentation(id, start_ns, start_ns + 800'000'000, std::span(all).subspan(25), verdict());
-  store.answer(session.id, trial.id, id, "satisfaction", score, 1.5, start_ns + 900'000'000);
-}
-
-TEST(Store, WritesTheWholePlanBeforeTheFirstTrial) {
-  const test::TemporaryFolder folder;
-  const Protocol protocol = test::pilot();
-  {
-    Store store(folder / "study.db", Open::Create);
-    store.add_run(test::run_plan(protocol, {"P01", "P02"}));
+const OpenUnit& first_trial(const OpenSession& session) {
+  for (const OpenUnit& unit : session.units) {
+    if (unit.trial) return unit;
   }
-  Store store(folder / "study.db", Open::Write);
-  const auto runs = store.open_runs();
-  ASSERT_EQ(runs.size(), 1u);
-  EXPECT_EQ(runs[0].protocol_sha256, protocol.sha256);
-  EXPECT_EQ(runs[0].protocol_text, protocol.text);
-  ASSERT_EQ(runs[0].sessions.size(), 2u);
-  for (const OpenSession& session : runs[0].sessions) {
-    const auto plan = make_plan(protocol, session.plan.participant, 7);
-    ASSERT_EQ(session.trials.size(), plan.size());
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-      EXPECT_EQ(session.trials[i].plan.position, plan[i].position);
-      EXPECT_EQ(session.trials[i].plan.setting, plan[i].setting);
-      EXPECT_EQ(session.trials[i].plan.schedule_seed, plan[i].schedule_seed);
+  throw std::logic_error("no trial is open");
+}
+
+const OpenUnit& unit_of(const OpenSession& session, int position) {
+  for (const OpenUnit& unit : session.units) {
+    if (unit.plan.position == position) return unit;
+  }
+  throw std::logic_error("the unit is done");
+}
+
+void answer(Store& store, const OpenSession& session, const OpenUnit& unit, int attempt,
+            const std::vector<KeptAnswer>& answers, bool last) {
+  store.answer(session.id, unit, attempt, answers, last, 900);
+}
+
+TEST(Store, WritesTheWholePlanBeforeTheFirstUnit) {
+  const test::TemporaryFolder folder;
+  for (const Protocol& protocol : {test::pilot(), test::pairs()}) {
+    const auto path = folder / (protocol.name + ".db");
+    Store(path, Open::Create).add_run(test::run_plan(protocol, {"P01", "P02"}));
+    Store store(path, Open::Write);
+    const auto runs = store.open_runs();
+    ASSERT_EQ(runs.size(), 1u);
+    EXPECT_EQ(runs[0].protocol_sha256, protocol.sha256);
+    EXPECT_EQ(runs[0].protocol_text, protocol.text);
+    ASSERT_EQ(runs[0].sessions.size(), 2u);
+    for (const OpenSession& session : runs[0].sessions) {
+      const Plan plan = make_plan(protocol, session.plan.participant, 7, 0);
+      EXPECT_EQ(session.planned, plan.units.size());
+      ASSERT_EQ(session.units.size(), plan.units.size());
+      for (std::size_t i = 0; i < plan.units.size(); ++i) {
+        const OpenUnit& unit = session.units[i];
+        EXPECT_EQ(unit.plan.position, plan.units[i].position);
+        EXPECT_EQ(unit.plan.block, plan.units[i].block);
+        ASSERT_EQ(unit.plan.trial, plan.units[i].trial);
+        if (!unit.trial) continue;
+        const PlannedTrial& trial = plan.trials.at(static_cast<std::size_t>(*unit.plan.trial));
+        EXPECT_EQ(unit.trial->block, trial.block);
+        EXPECT_EQ(unit.trial->first, trial.first);
+        EXPECT_EQ(unit.trial->second, trial.second);
+        EXPECT_EQ(unit.trial->schedule_seed, trial.schedule_seed);
+      }
     }
   }
+}
+
+TEST(Store, GivesASessionBackAsItWasPlanned) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  RunPlan run = test::run_plan(test::pilot(), {"P01"});
+  SessionPlan& plan = run.sessions[0];
+  plan.visit = 3;
+  plan.plan.slot = 5;
+  plan.observer.reset();
+  plan.gaze_source = "mouse";
+  plan.station = "booth 2";
+  plan.screen_width_mm = 597.5;
+  plan.viewing_distance_mm = 700;
+  plan.ptpe = "a = 1";
+  store.add_run(run);
+  const SessionPlan found = only_session(store).plan;
+  EXPECT_EQ(found.visit, 3);
+  EXPECT_EQ(found.seed, 7u);
+  EXPECT_EQ(found.plan.slot, 5);
+  EXPECT_FALSE(found.observer);
+  EXPECT_TRUE(found.virtual_clock);
+  EXPECT_EQ(found.gaze_source, "mouse");
+  EXPECT_EQ(found.station, "booth 2");
+  EXPECT_EQ(found.screen_width_mm, 597.5);
+  EXPECT_EQ(found.viewing_distance_mm, 700);
+  EXPECT_EQ(found.ptpe, "a = 1");
+  EXPECT_EQ(found.time_zone, "UTC");
 }
 
 TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
@@ -70,8 +104,8 @@ TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
   {
     Store store(folder / "study.db", Open::Create);
     store.add_run(test::run_plan(protocol, {"P01"}));
-    const auto session = store.open_runs().at(0).sessions.at(0);
-    play_one(store, session, session.trials[0], 6);
+    const auto session = only_session(store);
+    test::answer_one(store, session, first_trial(session), "satisfaction", test::score(6));
   }
   const auto rows = read_ratings(folder / "study.db");
   ASSERT_EQ(rows.size(), 21u);
@@ -80,6 +114,7 @@ TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
   EXPECT_EQ(row.observer, "ptpe:a=31,b=0.035");
   EXPECT_EQ(row.protocol_sha256, protocol.sha256);
   EXPECT_FALSE(row.test_data);
+  EXPECT_EQ(row.question, "satisfaction");
   EXPECT_EQ(row.rating, 6);
   EXPECT_EQ(row.scale_max, 7);
   ASSERT_TRUE(row.timing);
@@ -102,8 +137,13 @@ TEST(Store, FramesComeBackAsTheyWereRecorded) {
   {
     Store store(folder / "study.db", Open::Create);
     store.add_run(test::run_plan(test::pilot(), {"P01"}));
-    const auto session = store.open_runs().at(0).sessions.at(0);
-    play_one(store, session, session.trials[0], 6);
+    const auto session = only_session(store);
+    const OpenUnit& unit = first_trial(session);
+    const std::int64_t start_ns = 1'000'000'000'000;
+    const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, start_ns);
+    const auto all = test::frames(start_ns, 40);
+    store.add_frames(id, start_ns, std::span(all).first(25));
+    store.end_presentation(id, start_ns, start_ns + 800'000'000, std::span(all).subspan(25), test::verdict());
   }
   const auto database = open_database(folder / "study.db", Open::Read, read_schema_steps());
   EXPECT_EQ(database->integer("SELECT count(*) FROM frame"), 40);
@@ -127,18 +167,185 @@ TEST(Store, FramesComeBackAsTheyWereRecorded) {
   }
 }
 
-TEST(Store, ATrialIsAnsweredOnce) {
+TEST(Store, WithoutAScheduleNoVerdictIsKept) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01"}));
+  const auto session = only_session(store);
+  const OpenUnit& unit = first_trial(session);
+  const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
+  TimingVerdict native = test::verdict();
+  native.nominal = {0, 0, 1};
+  store.end_presentation(id, 0, 1, test::frames(0, 5), native);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.integer("SELECT verdict IS NULL AND reason IS NULL FROM presentation"), 1);
+  EXPECT_EQ(look.text("SELECT mean_fps FROM presentation"), "49.5");
+}
+
+TEST(Store, AnswersOfOnePageStandTogetherOrNotAtAll) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01"}));
+  const auto session = only_session(store);
+  const OpenUnit& unit = first_trial(session);
+  const int attempt = test::show(store, session, unit);
+  EXPECT_THROW(answer(store, session, unit, attempt,
+                      {{"preference", {test::score(2), 1}}, {"unknown", {test::score(2), 1}}}, true),
+               base::Error);
+  EXPECT_THAT(unit_of(only_session(store), unit.plan.position).answered, IsEmpty());
+  answer(store, session, unit, attempt, {{"preference", {test::score(2), 1}}}, false);
+  EXPECT_THAT(unit_of(only_session(store), unit.plan.position).answered, ElementsAre("preference"));
+  answer(store, session, unit, attempt, {{"ease", {test::score(5), 1}}}, true);
+  EXPECT_EQ(only_session(store).done, 1u);
+}
+
+TEST(Store, NothingIsAnsweredTwice) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01"}));
+  const auto session = only_session(store);
+  OpenUnit unit = first_trial(session);
+  const int attempt = test::show(store, session, unit);
+  answer(store, session, unit, attempt, {{"preference", {test::score(2), 1}}}, false);
+  unit.attempts = attempt;  // shown again after an interruption: what was answered stands
+  const int again = test::show(store, session, unit);
+  EXPECT_THROW(answer(store, session, unit, again, {{"preference", {test::score(1), 1}}}, false),
+               base::Error);
+  answer(store, session, unit, again, {{"ease", {test::score(5), 1}}}, true);
+  EXPECT_THROW(answer(store, session, unit, again + 1, {{"ease", {test::score(1), 1}}}, true), base::Error);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 2);
+  EXPECT_EQ(look.integer("SELECT sum(score) FROM response"), 7);
+}
+
+TEST(Store, PersonalAnswersAreRefused) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01"}));
+  const auto session = only_session(store);
+  EXPECT_THAT(
+      [&] {
+        answer(store, session, session.units[0], 0, {{"age", {test::score(33), 1}}}, true);
+      },
+      ThrowsMessage<base::Error>(HasSubstr("personal")));
+  answer(store, session, session.units[0], 0, {{"games", {test::score(1), 1}}}, true);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 1);
+  EXPECT_EQ(look.text("SELECT state FROM unit WHERE position = 0"), "done");
+}
+
+TEST(Store, WordsAndWhatWasLeftEmptyAreAnswers) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01", "P02"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  answer(store, sessions[0], sessions[0].units.back(), 0, {{"remarks", {test::words("none at all"), 1}}},
+         true);
+  answer(store, sessions[1], sessions[1].units.back(), 0, {{"remarks", {{}, 1}}}, true);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.text("SELECT words FROM response WHERE response_id = 1"), "none at all");
+  EXPECT_EQ(look.integer("SELECT words IS NULL AND score IS NULL FROM response WHERE response_id = 2"), 1);
+}
+
+TEST(Store, ARepeatedTrialIsAskedAgainAndItsLastAnswerCounts) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "study.db";
+  Store store(path, Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  const auto session = only_session(store);
+  test::finish_pilot(store, session, 3);
+  EXPECT_TRUE(store.open_runs().empty());
+  const OpenUnit& unit = first_trial(session);
+  store.repeat_trial(session.id, unit.trial_id, "a door slammed");
+  const auto open = only_session(store);
+  ASSERT_EQ(open.units.size(), 1u);
+  EXPECT_EQ(open.units[0].id, unit.id);
+  EXPECT_EQ(open.units[0].attempts, 1);
+  EXPECT_THAT(open.units[0].answered, IsEmpty());
+  EXPECT_EQ(read_ratings(path)[0].rating, 3);  // until it is answered anew
+  test::answer_one(store, open, open.units[0], "satisfaction", test::score(7));
+  EXPECT_EQ(read_ratings(path)[0].rating, 7);
+  EXPECT_TRUE(store.open_runs().empty());
+  sqlite::Connection look(path, Open::Read);
+  EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 22);
+  EXPECT_EQ(look.text("SELECT words FROM note"), "a door slammed");
+  EXPECT_EQ(look.integer("SELECT count(*) FROM event WHERE detail LIKE '%door%'"), 0);
+  EXPECT_EQ(look.text("SELECT state FROM session"), "done");
+}
+
+TEST(Store, ExcludedTrialsAreMarkedWithTheReason) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
   store.add_run(test::run_plan(test::pilot(), {"P01"}));
-  const auto session = store.open_runs().at(0).sessions.at(0);
-  play_one(store, session, session.trials[0], 6);
-  OpenTrial again = session.trials[0];
-  again.attempts = 1;
-  EXPECT_THROW(play_one(store, session, again, 2), base::Error);
-  const auto left = store.open_runs().at(0).sessions.at(0);
-  EXPECT_EQ(left.trials.size(), 20u);
-  EXPECT_EQ(left.answered, 1u);
+  const auto session = only_session(store);
+  const auto trial = first_trial(session).trial_id;
+  EXPECT_THROW(store.exclude_trial(session.id, trial, ""), base::Error);
+  EXPECT_THROW(store.exclude_trial(session.id + 1, trial, "x"), base::Error);
+  store.exclude_trial(session.id, trial, "the phone rang");
+  const auto rows = read_ratings(folder / "study.db");
+  EXPECT_TRUE(rows[0].excluded);
+  EXPECT_FALSE(rows[1].excluded);
+  EXPECT_EQ(read_status(folder / "study.db").sessions.at(0).excluded, 1);
+}
+
+TEST(Store, ASessionThatEndedEarlyIsNotResumed) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03", "P04"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  store.end_session(sessions[0].id, EarlyEnd::NotEligible, "", 1);
+  store.end_session(sessions[1].id, EarlyEnd::Stopped, "felt unwell", 1);
+  store.end_session(sessions[2].id, EarlyEnd::DroppedOut, "", 1);
+  const auto left = store.open_runs().at(0).sessions;
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].plan.participant, "P04");
+  const auto status = read_status(folder / "study.db").sessions;
+  EXPECT_EQ(status[0].state, "not eligible");
+  EXPECT_EQ(status[1].state, "stopped");
+  EXPECT_EQ(status[2].state, "dropped out");
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.text("SELECT words FROM note"), "felt unwell");
+  EXPECT_EQ(look.integer("SELECT count(*) FROM event WHERE detail LIKE '%unwell%'"), 0);
+}
+
+TEST(Store, SlotsOfThoseWhoCountAreTaken) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  const Protocol protocol = test::pilot();
+  RunPlan run{protocol, "{}", {}};
+  for (int slot = 0; slot < 5; ++slot)
+    run.sessions.push_back(test::session_plan(protocol, "P" + std::to_string(slot), 7, slot));
+  run.sessions[4].test_data = true;
+  store.add_run(run);
+  const auto sessions = store.open_runs().at(0).sessions;
+  store.end_session(sessions[1].id, EarlyEnd::NotEligible, "", 1);
+  store.end_session(sessions[2].id, EarlyEnd::DroppedOut, "", 1);
+  store.end_session(sessions[3].id, EarlyEnd::Stopped, "", 1);
+  EXPECT_THAT(store.taken_slots(protocol.sha256), ElementsAre(0, 3));
+  EXPECT_THAT(store.taken_slots(test::pairs().sha256), IsEmpty());
+}
+
+TEST(Store, TestRunsAreBalancedAmongThemselves) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  Protocol protocol = test::pilot();
+  override_trial_seconds(protocol, 1);
+  RunPlan run{protocol, "{}", {test::session_plan(protocol, "P01", 7, 4)}};
+  store.add_run(run);
+  EXPECT_THAT(store.taken_slots(protocol.sha256), ElementsAre(4));
+}
+
+TEST(Store, NotesStandApartFromTheLog) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  const auto session = only_session(store);
+  store.note(session.id, session.units[2].id, "yawned twice");
+  store.note(session.id, {}, "left early");
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.integer("SELECT count(*) FROM note"), 2);
+  EXPECT_EQ(look.text("SELECT words FROM note WHERE unit_id IS NOT NULL"), "yawned twice");
+  EXPECT_EQ(look.integer("SELECT count(*) FROM event WHERE kind = 'note' AND detail = ''"), 2);
 }
 
 TEST(Store, ACutPresentationIsMarkedAndKeepsItsFrames) {
@@ -146,31 +353,31 @@ TEST(Store, ACutPresentationIsMarkedAndKeepsItsFrames) {
   {
     Store store(folder / "study.db", Open::Create);
     store.add_run(test::run_plan(test::pilot(), {"P01"}));
-    const auto session = store.open_runs().at(0).sessions.at(0);
-    const auto id = store.begin_presentation(session.id, session.trials[0].id, 1, 0);
+    const auto session = only_session(store);
+    const OpenUnit& unit = first_trial(session);
+    const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
     store.add_frames(id, 0, test::frames(0, 12));
   }
   Store store(folder / "study.db", Open::Write);
-  const auto session = store.open_runs().at(0).sessions.at(0);
-  EXPECT_EQ(session.trials.size(), 21u);
-  EXPECT_EQ(session.trials[0].attempts, 1);
+  EXPECT_EQ(first_trial(only_session(store)).attempts, 1);
   sqlite::Connection look(folder / "study.db", Open::Read);
   EXPECT_EQ(look.text("SELECT state FROM presentation"), "interrupted");
   EXPECT_EQ(look.integer("SELECT count(*) FROM frame"), 12);
   EXPECT_EQ(look.integer("SELECT count(*) FROM event WHERE kind = 'trial interrupted'"), 1);
 }
 
-TEST(Store, SessionEndsWithItsLastAnswer) {
+TEST(Store, SessionEndsWithItsLastUnit) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
   store.add_run(test::run_plan(test::pilot(), {"P01"}));
-  const auto session = store.open_runs().at(0).sessions.at(0);
+  OpenSession session = only_session(store);
+  const OpenUnit last = session.units.back();
+  session.units.pop_back();
+  test::finish_pilot(store, session, 4);
   sqlite::Connection look(folder / "study.db", Open::Read);
-  for (const OpenTrial& trial : session.trials) {
-    EXPECT_EQ(look.integer("SELECT ended_utc IS NULL FROM session"), 1);
-    play_one(store, session, trial, 4);
-  }
-  EXPECT_EQ(look.integer("SELECT ended_utc IS NULL FROM session"), 0);
+  EXPECT_EQ(look.text("SELECT state || (ended_utc IS NULL) FROM session"), "open1");
+  store.finish_unit(session.id, last.id, 5);
+  EXPECT_EQ(look.text("SELECT state || (ended_utc IS NULL) FROM session"), "done0");
   EXPECT_TRUE(store.open_runs().empty());
 }
 
@@ -190,6 +397,8 @@ TEST(Store, RefusesTheSameParticipantTwiceAndKeepsNothingOfTheRun) {
   second.sessions[0].visit = 2;
   store.add_run(second);
   EXPECT_EQ(look.integer("SELECT count(*) FROM session"), 2);
+  EXPECT_EQ(look.integer("SELECT count(DISTINCT person) FROM session"), 1);
+  EXPECT_EQ(look.integer("SELECT count(DISTINCT uid) FROM session"), 2);
 }
 
 TEST(Store, AChangedProtocolDoesNotContinueADatasetInSilence) {
@@ -218,10 +427,14 @@ TEST(Store, IsTheOnlyWriter) {
 TEST(Store, EventLogIsAppendOnly) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
   store.log({}, "note", "here");
   sqlite::Connection other(folder / "study.db", Open::Write);
-  EXPECT_THROW(other.execute("DELETE FROM event"), base::Error);
-  EXPECT_THROW(other.execute("UPDATE event SET detail = ''"), base::Error);
+  for (const char* of : {"session_id IS NULL", "session_id = 1"}) {
+    EXPECT_THROW(other.execute(std::string("DELETE FROM event WHERE ") + of), base::Error);
+    EXPECT_THROW(other.execute(std::string("UPDATE event SET detail = '' WHERE ") + of), base::Error);
+  }
+  EXPECT_EQ(other.integer("SELECT count(*) FROM event"), 2);
 }
 
 TEST(ParticipantCode, AreCodesNotNames) {

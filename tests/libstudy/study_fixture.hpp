@@ -20,7 +20,7 @@ inline std::string bytes_of(const std::filesystem::path& path) { return base::re
 inline Protocol pilot() { return read_protocol(base::resource("protocols/ptpe_pilot.toml")); }
 
 inline SessionPlan session_plan(const Protocol& protocol, const std::string& participant,
-                                std::uint64_t seed = 7) {
+                                std::uint64_t seed = 7, int slot = 0) {
   SessionPlan plan;
   plan.participant = participant;
   plan.seed = seed;
@@ -31,7 +31,8 @@ inline SessionPlan session_plan(const Protocol& protocol, const std::string& par
   plan.stimulus = "none";
   plan.machine = "test";
   plan.time_zone = "UTC";
-  plan.trials = make_plan(protocol, participant, seed);
+  plan.station = "north";
+  plan.plan = make_plan(protocol, participant, seed, slot);
   return plan;
 }
 
@@ -39,6 +40,105 @@ inline RunPlan run_plan(const Protocol& protocol, const std::vector<std::string>
   RunPlan run{protocol, "{}", {}};
   for (const auto& participant : participants) run.sessions.push_back(session_plan(protocol, participant));
   return run;
+}
+
+/// A task of pairs with a practice block, several questions, words and something personal.
+inline constexpr const char* pairs_toml = R"(
+format = 2
+name = "pairs"
+version = "1.0"
+language = "en"
+participants = 4
+
+[design]
+scene = ["data/scenes/single_dam.toml"]
+method = ["LoRes", "Ours", "HiRes"]
+n_star = ["16k"]
+timing = "native"
+duration_s = 1
+pairs = true
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+fps_max = "none"
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.02
+start_frame = 0
+at_end = "hold"
+
+[[block]]
+kind = "demographics"
+id = "about"
+
+[[block.question]]
+id = "age"
+kind = "number"
+text = "How old are you?"
+scale = [16, 120]
+personal = true
+
+[[block.question]]
+id = "games"
+kind = "choice"
+text = "Do you play?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block]]
+kind = "practice"
+id = "warm_up"
+like = "judge"
+count = 1
+
+[[block]]
+kind = "stimulus"
+id = "judge"
+steps = ["stimulus first", "black 1", "stimulus second", "ask preference ease"]
+
+[[block.question]]
+id = "preference"
+kind = "choice"
+text = "Which was better?"
+anchors = {1 = "first", 2 = "second"}
+
+[[block.question]]
+id = "ease"
+kind = "scale"
+text = "How easy was it?"
+scale = [1, 7]
+
+[[block]]
+kind = "question"
+id = "end"
+
+[[block.question]]
+id = "remarks"
+kind = "text"
+text = "Anything else?"
+required = false
+)";
+
+inline Protocol pairs() { return parse_protocol(pairs_toml, "pairs.toml"); }
+
+inline TimingVerdict verdict() {
+  TimingVerdict verdict;
+  verdict.verdict = Verdict::Degraded;
+  verdict.grade = TimingGrade::DisplayFeedback;
+  verdict.nominal = {50, 5, 1};
+  verdict.realised = {40, 49.5, 50.5, 3.25};
+  verdict.longest_ms = 41;
+  verdict.shortest_ms = 11;
+  verdict.p95_ms = 31;
+  verdict.lag1 = -0.125;
+  verdict.late = 1;
+  verdict.worst_late_ms = 2.5;
+  verdict.reason = "one frame late";
+  return verdict;
 }
 
 /// Frames of 20 ms from start_ns on, with everything known that a display can know.
@@ -59,6 +159,41 @@ inline std::vector<FrameRecord> frames(std::int64_t start_ns, std::int64_t count
     all.push_back(frame);
   }
   return all;
+}
+
+/// Shows what a trial shows, once more: attempt after the showings so far.
+inline int show(Store& store, const OpenSession& session, const OpenUnit& unit, std::int64_t count = 40) {
+  const std::int64_t start_ns = 1'000'000'000'000;
+  const int attempt = unit.attempts + 1;
+  std::vector<int> cells{unit.trial->first};
+  if (unit.trial->second) cells.push_back(*unit.trial->second);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto id =
+        store.begin_presentation(session.id, unit.trial_id, attempt, static_cast<int>(i), cells[i], start_ns);
+    store.end_presentation(id, start_ns, start_ns + 20'000'000 * count, frames(start_ns, count), verdict());
+  }
+  return attempt;
+}
+
+inline Answer words(const std::string& text) { return {{}, text}; }
+inline Answer score(int value) { return {value, {}}; }
+
+/// Shows the unit where it is a trial, and answers one question, which ends it.
+inline void answer_one(Store& store, const OpenSession& session, const OpenUnit& unit,
+                       const std::string& question, const Answer& answer) {
+  const int attempt = unit.trial ? show(store, session, unit) : 0;
+  const KeptAnswer kept{question, {answer, 1.5}};
+  store.answer(session.id, unit, attempt, {&kept, 1}, true, 900);
+}
+
+/// Goes through all that is open of a session of the pilot, every trial with the same score.
+inline void finish_pilot(Store& store, const OpenSession& session, int satisfaction) {
+  for (const OpenUnit& unit : session.units) {
+    if (unit.trial)
+      answer_one(store, session, unit, "satisfaction", score(satisfaction));
+    else
+      store.finish_unit(session.id, unit.id, 900);
+  }
 }
 
 }  // namespace study::test
