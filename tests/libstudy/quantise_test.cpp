@@ -21,7 +21,10 @@ using study::FpsSetting;
 using study::PacingRules;
 
 std::vector<FpsSetting> pilot_settings() {
-  return study::read_protocol(base::resource("protocols/ptpe_pilot.toml")).settings;
+  std::vector<FpsSetting> settings;
+  for (const auto& cell : study::read_protocol(base::resource("protocols/ptpe_pilot.toml")).design.cells)
+    settings.push_back(cell.setting);
+  return settings;
 }
 
 double sd_tolerance(const FpsSetting& setting) { return std::max(0.02 * setting.sd, 0.25); }

@@ -23,7 +23,10 @@ using study::FpsSetting;
 using study::PacingRules;
 
 std::vector<FpsSetting> pilot_settings() {
-  return study::read_protocol(base::resource("protocols/ptpe_pilot.toml")).settings;
+  std::vector<FpsSetting> settings;
+  for (const auto& cell : study::read_protocol(base::resource("protocols/ptpe_pilot.toml")).design.cells)
+    settings.push_back(cell.setting);
+  return settings;
 }
 
 PacingRules rules_with(FpsMean mean) {
