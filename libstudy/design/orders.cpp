@@ -20,7 +20,7 @@ std::vector<int> williams_row(int k, int row) {
     const int zigzag = i % 2 == 1 ? (i + 1) / 2 : (k - i / 2) % k;
     out.push_back((zigzag + row) % k);
   }
-  if (row >= k) out.assign(out.rbegin(), out.rend());
+  if (row >= k) std::reverse(out.begin(), out.end());
   return out;
 }
 
