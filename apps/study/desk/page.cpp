@@ -1,0 +1,219 @@
+#include "apps/study/desk/page.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace apps {
+
+namespace {
+
+using study::AnswerKind;
+
+bool is_listed(const study::Question& question) {
+  return question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
+}
+
+bool is_blank(const std::string& words) { return words.find_first_not_of(" \t\r\n") == std::string::npos; }
+
+}  // namespace
+
+std::vector<int> scores_of(const study::Question& question) {
+  std::vector<int> scores;
+  if (question.kind == AnswerKind::Choice) {
+    for (const auto& [score, words] : question.anchors) scores.push_back(score);
+  } else if (question.kind == AnswerKind::Scale) {
+    for (int score = question.scale_min; score <= question.scale_max; ++score) scores.push_back(score);
+  }
+  return scores;
+}
+
+bool one_digit_does(const study::Question& question) {
+  const auto scores = scores_of(question);
+  return !scores.empty() && scores.front() >= 0 && scores.back() <= 9;
+}
+
+PageState::PageState(std::span<const study::Question> questions, double least_s, std::int64_t shown_ns)
+    : questions_(questions.begin(), questions.end()),
+      items_(questions.size()),
+      least_ns_(std::llround(1e9 * least_s)),
+      shown_ns_(shown_ns),
+      guarded_from_ns_(shown_ns) {}
+
+void PageState::press(PageKey key, std::int64_t now_ns) {
+  if (guarded(now_ns)) return;
+  const bool list = focus_ < size() && questions_[focus_].kind == AnswerKind::Choice;
+  switch (key) {
+    case PageKey::Left:
+      return move_cursor(-1);
+    case PageKey::Right:
+      return move_cursor(+1);
+    case PageKey::Up:
+      return list ? move_cursor(-1) : step_focus(-1);
+    case PageKey::Down:
+      return list ? move_cursor(+1) : step_focus(+1);
+    case PageKey::Next:
+      return step_focus(+1);
+    case PageKey::Previous:
+      return step_focus(-1);
+    case PageKey::Enter:
+      return enter(now_ns);
+    case PageKey::Erase:
+      return erase(now_ns);
+  }
+}
+
+void PageState::step_focus(int by) {
+  if (by < 0 && focus_ > 0) --focus_;
+  if (by > 0 && focus_ < size()) ++focus_;
+}
+
+void PageState::move_cursor(int by) {
+  if (focus_ == size() || !is_listed(questions_[focus_])) return;
+  PageItem& item = items_[focus_];
+  const auto scores = scores_of(questions_[focus_]);
+  if (!item.cursor) item.cursor = item.chosen;
+  if (!item.cursor) {  // from the end that the arrow comes from
+    item.cursor = by > 0 ? scores.front() : scores.back();
+    return;
+  }
+  const auto at = std::find(scores.begin(), scores.end(), *item.cursor);
+  const auto next = (at - scores.begin()) + by;
+  if (next >= 0 && next < static_cast<std::ptrdiff_t>(scores.size())) {
+    item.cursor = scores[static_cast<std::size_t>(next)];
+  }
+}
+
+void PageState::enter(std::int64_t now_ns) {
+  if (focus_ == size()) return click_confirm(now_ns);
+  const PageItem& item = items_[focus_];
+  if (item.cursor && item.cursor != item.chosen) return choose(focus_, *item.cursor, now_ns);
+  if (!answered(focus_) && (questions_[focus_].required || out_of_range(focus_))) return;
+  step_focus(+1);
+  if (size() == 1) click_confirm(now_ns);
+}
+
+void PageState::choose(std::size_t question, int score, std::int64_t now_ns) {
+  PageItem& item = items_[question];
+  item.cursor = score;
+  if (item.chosen == score) return;
+  item.chosen = score;
+  item.changed_ns = now_ns - left_out_ns_;
+}
+
+void PageState::digit(int digit, std::int64_t now_ns) {
+  if (guarded(now_ns) || focus_ == size() || digit < 0 || digit > 9) return;
+  const study::Question& question = questions_[focus_];
+  if (question.kind == AnswerKind::Number) {
+    PageItem& item = items_[focus_];
+    if (item.typed.size() >= 9) return;
+    item.typed += static_cast<char>('0' + digit);
+    item.changed_ns = now_ns - left_out_ns_;
+  } else if (one_digit_does(question)) {
+    const auto scores = scores_of(question);
+    if (std::find(scores.begin(), scores.end(), digit) != scores.end()) choose(focus_, digit, now_ns);
+  }
+}
+
+void PageState::minus(std::int64_t now_ns) {
+  if (guarded(now_ns) || focus_ == size() || questions_[focus_].kind != AnswerKind::Number) return;
+  PageItem& item = items_[focus_];
+  if (!item.typed.empty() || questions_[focus_].scale_min >= 0) return;
+  item.typed = "-";
+  item.changed_ns = now_ns - left_out_ns_;
+}
+
+void PageState::erase(std::int64_t now_ns) {
+  if (focus_ == size() || questions_[focus_].kind != AnswerKind::Number) return;
+  PageItem& item = items_[focus_];
+  if (item.typed.empty()) return;
+  item.typed.pop_back();
+  item.changed_ns = now_ns - left_out_ns_;
+}
+
+void PageState::click(std::size_t question, int score, std::int64_t now_ns) {
+  if (guarded(now_ns) || question >= size()) return;
+  const auto scores = scores_of(questions_[question]);
+  if (std::find(scores.begin(), scores.end(), score) == scores.end()) return;
+  focus_ = question;
+  choose(question, score, now_ns);
+}
+
+void PageState::click_question(std::size_t question, std::int64_t now_ns) {
+  if (!guarded(now_ns) && question < size()) focus_ = question;
+}
+
+void PageState::click_confirm(std::int64_t now_ns) {
+  if (!guarded(now_ns) && can_confirm(now_ns)) confirmed_ns_ = now_ns - left_out_ns_;
+}
+
+void PageState::write(std::size_t question, const std::string& words, std::int64_t now_ns) {
+  if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return;
+  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return;
+  items_[question].typed = words;
+  items_[question].changed_ns = now_ns - left_out_ns_;
+}
+
+void PageState::leave_out(std::int64_t from_ns, std::int64_t to_ns) {
+  left_out_ns_ += to_ns - from_ns;
+  guarded_from_ns_ = to_ns;
+}
+
+std::optional<int> PageState::number(std::size_t question) const {
+  const std::string& typed = items_[question].typed;
+  int value = 0;
+  const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), value);
+  if (error != std::errc() || end != typed.data() + typed.size()) return {};
+  if (value < questions_[question].scale_min || value > questions_[question].scale_max) return {};
+  return value;
+}
+
+bool PageState::answered(std::size_t question) const {
+  switch (questions_[question].kind) {
+    case AnswerKind::Number:
+      return number(question).has_value();
+    case AnswerKind::Text:
+      return !is_blank(items_[question].typed);
+    default:
+      return items_[question].chosen.has_value();
+  }
+}
+
+bool PageState::out_of_range(std::size_t question) const {
+  return questions_[question].kind == AnswerKind::Number && !items_[question].typed.empty() &&
+         !number(question);
+}
+
+std::size_t PageState::missing() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (out_of_range(i) || (questions_[i].required && !answered(i))) ++count;
+  }
+  return count;
+}
+
+double PageState::wait_s(std::int64_t now_ns) const {
+  const std::int64_t left = least_ns_ - (now_ns - left_out_ns_ - shown_ns_);
+  return left > 0 ? 1e-9 * static_cast<double>(left) : 0;
+}
+
+bool PageState::can_confirm(std::int64_t now_ns) const { return missing() == 0 && wait_s(now_ns) == 0; }
+
+std::vector<study::TimedAnswer> PageState::answers() const {
+  if (!confirmed()) throw std::logic_error("PageState: answers before the confirmation");
+  std::vector<study::TimedAnswer> out;
+  for (std::size_t i = 0; i < size(); ++i) {
+    study::TimedAnswer timed;
+    const bool given = answered(i);
+    if (given && questions_[i].kind == AnswerKind::Text) timed.answer.words = items_[i].typed;
+    if (given && is_listed(questions_[i])) timed.answer.score = items_[i].chosen;
+    if (given && questions_[i].kind == AnswerKind::Number) timed.answer.score = number(i);
+    const std::int64_t end_ns = given ? items_[i].changed_ns : *confirmed_ns_;
+    timed.response_time_s = 1e-9 * static_cast<double>(end_ns - shown_ns_);
+    out.push_back(timed);
+  }
+  return out;
+}
+
+}  // namespace apps
