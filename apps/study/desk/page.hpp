@@ -52,6 +52,8 @@ class PageState {
   const PageItem& item(std::size_t i) const { return items_[i]; }
   /// The question that keys speak to; size(): the button to go on.
   std::size_t focus() const { return focus_; }
+  /// Whether input counts for nothing: at the beginning and once it is confirmed.
+  bool guarded(std::int64_t now_ns) const { return confirmed() || now_ns - guarded_from_ns_ < guard_ns; }
   /// Has a valid answer.
   bool answered(std::size_t question) const;
   /// Holds something that is no answer, such as an age of 900.
@@ -68,7 +70,6 @@ class PageState {
   std::vector<study::TimedAnswer> answers() const;
 
  private:
-  bool guarded(std::int64_t now_ns) const { return confirmed() || now_ns - guarded_from_ns_ < guard_ns; }
   void move_cursor(int by);
   void enter(std::int64_t now_ns);
   void choose(std::size_t question, int score, std::int64_t now_ns);

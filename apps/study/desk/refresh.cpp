@@ -1,0 +1,77 @@
+#include "apps/study/desk/refresh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace apps {
+
+namespace {
+
+constexpr std::size_t fewest_swaps = 20;
+constexpr double shortest_ns = 2e6, longest_ns = 50e6;
+
+/// Share of steps that are a whole number of periods, within a tenth of one.
+double share_in_time(const std::vector<double>& steps_ns, double period_ns) {
+  std::size_t good = 0;
+  for (const double step : steps_ns) {
+    const double periods = step / period_ns;
+    if (std::round(periods) >= 1 && std::abs(periods - std::round(periods)) < 0.1) ++good;
+  }
+  return static_cast<double>(good) / static_cast<double>(steps_ns.size());
+}
+
+std::string text(const char* pattern, double a, double b) {
+  char out[160];
+  std::snprintf(out, sizeof out, pattern, a, b);
+  return out;
+}
+
+}  // namespace
+
+MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz) {
+  MeasuredRefresh out;
+  if (returns_ns.size() < fewest_swaps) {
+    out.finding = "too few swaps to measure the refresh";
+    return out;
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < returns_ns.size(); ++i)
+    steps.push_back(static_cast<double>(returns_ns[i] - returns_ns[i - 1]));
+  std::vector<double> sorted = steps;
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[sorted.size() / 2];
+  if (median < shortest_ns || median > longest_ns || share_in_time(steps, median) < 0.9) {
+    out.finding =
+        text("swaps do not wait for the screen (median %.3g ms); told %.4g Hz", 1e-6 * median, told_hz);
+    return out;
+  }
+  double periods = 0, total = 0;
+  for (const double step : steps) {
+    periods += std::max(1.0, std::round(step / median));
+    total += step;
+  }
+  out.in_effect = true;
+  out.period_ns = total / periods;
+  const double measured_hz = 1e9 / out.period_ns;
+  const bool told_well = told_hz > 0 && std::abs(measured_hz / told_hz - 1) < 0.005;
+  out.nominal_hz = told_well ? told_hz : measured_hz;
+  out.beat_ns = returns_ns.back();
+  out.finding = text("swaps wait for the screen: measured %.4f Hz, told %.4g Hz", measured_hz, told_hz);
+  return out;
+}
+
+std::int64_t between_beats(const MeasuredRefresh& refresh, std::int64_t earliest_ns) {
+  if (!refresh.in_effect) return earliest_ns;
+  const double periods = (static_cast<double>(earliest_ns - refresh.beat_ns)) / refresh.period_ns;
+  return refresh.beat_ns + std::llround((std::ceil(periods - 0.5) + 0.5) * refresh.period_ns);
+}
+
+std::int64_t next_beat(const MeasuredRefresh& refresh, std::int64_t handed_over_ns) {
+  if (!refresh.in_effect) return -1;
+  const double periods = static_cast<double>(handed_over_ns - refresh.beat_ns) / refresh.period_ns;
+  return refresh.beat_ns + std::llround((std::floor(periods) + 1) * refresh.period_ns);
+}
+
+}  // namespace apps

@@ -1,0 +1,147 @@
+#include "apps/study/window/gui.hpp"
+
+// epoxy first: GLFW then leaves GL's headers alone.
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+namespace apps {
+
+namespace colour {
+const unsigned background = IM_COL32(38, 38, 40, 255), panel = IM_COL32(48, 48, 51, 255),
+               button = IM_COL32(70, 71, 75, 255), hovered = IM_COL32(90, 92, 97, 255),
+               chosen = IM_COL32(38, 112, 186, 255), text = IM_COL32(232, 232, 232, 255),
+               dim = IM_COL32(168, 168, 170, 255), faint = IM_COL32(112, 112, 115, 255),
+               warning = IM_COL32(236, 168, 92, 255);
+}  // namespace colour
+
+namespace {
+
+// 32 px on a screen of 1080: some 0.6 degrees at an arm's length.
+constexpr float body_share = 0.0296F, title_share = 0.045F, huge_share = 0.13F;
+
+/// Latin with its extensions, Greek, Cyrillic, punctuation, arrows and signs.
+const ImWchar glyphs[] = {0x20,   0x24F,  0x370,  0x52F,  0x1E00, 0x1EFF, 0x2010, 0x2044, 0x20AC,
+                          0x20AC, 0x2190, 0x2193, 0x2212, 0x2212, 0x2264, 0x2265, 0};
+const ImWchar digits[] = {0x20, 0x3A, 0};
+
+ImFont* add_font(const std::string& file, float size, const ImWchar* ranges) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  ImFontConfig config;
+  config.OversampleH = 1;
+  config.OversampleV = 1;
+  if (!file.empty()) {
+    if (ImFont* font = atlas.AddFontFromFileTTF(file.c_str(), size, &config, ranges)) return font;
+  }
+  config.SizePixels = size;
+  return atlas.AddFontDefault(&config);
+}
+
+}  // namespace
+
+std::string find_font() {
+  std::string found;
+  if (const char* wished = std::getenv("VIP_FONT")) found = wished;
+  const char* known[] = {"dejavu/DejaVuSans.ttf", "liberation/LiberationSans-Regular.ttf",
+                         "liberation2/LiberationSans-Regular.ttf", "noto/NotoSans-Regular.ttf",
+                         "freefont/FreeSans.ttf"};
+  for (const char* name : known) {
+    const std::string path = std::string("/usr/share/fonts/truetype/") + name;
+    if (found.empty() && std::filesystem::exists(path)) found = path;
+  }
+  return std::filesystem::exists(found) ? found : std::string();
+}
+
+Gui::Gui(GLFWwindow* window, int height_px) {
+  context_ = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context_);
+  ImGui::GetIO().IniFilename = nullptr;
+  const auto height = static_cast<float>(height_px);
+  const std::string file = find_font();
+  size_px_ = std::clamp(std::round(body_share * height), 14.0F, 72.0F);
+  body_ = add_font(file, size_px_, glyphs);
+  title_ = add_font(file, std::clamp(std::round(title_share * height), 20.0F, 110.0F), glyphs);
+  huge_ = add_font(file, std::clamp(std::round(huge_share * height), 40.0F, 300.0F), digits);
+  ImGui::StyleColorsDark();
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Gui::~Gui() {
+  ImGui::SetCurrentContext(context_);
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext(context_);
+}
+
+void Gui::begin(unsigned clear_colour) {
+  ImGui::SetCurrentContext(context_);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  const ImVec2 size = ImGui::GetIO().DisplaySize, scale = ImGui::GetIO().DisplayFramebufferScale;
+  glViewport(0, 0, static_cast<int>(size.x * scale.x), static_cast<int>(size.y * scale.y));
+  glDisable(GL_SCISSOR_TEST);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  const ImVec4 clear = ImGui::ColorConvertU32ToFloat4(clear_colour);
+  glClearColor(clear.x, clear.y, clear.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+}
+
+void Gui::end() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+float draw_centred(const std::string& words, ImVec2 at, float width, unsigned colour) {
+  std::istringstream all(words);
+  std::string line;
+  const auto put = [&] {
+    const float w = ImGui::CalcTextSize(line.c_str()).x;
+    ImGui::GetWindowDrawList()->AddText({std::floor(at.x - w / 2), at.y}, colour, line.c_str());
+    at.y += ImGui::GetTextLineHeight();
+  };
+  for (std::string word; all >> word;) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (!line.empty() && ImGui::CalcTextSize(longer.c_str()).x > width) {
+      put();
+      line = word;
+    } else {
+      line = longer;
+    }
+  }
+  if (!line.empty()) put();
+  return at.y;
+}
+
+void draw_countdown(const Gui& gui, const std::string& words, int left_s) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(screen);
+  ImGui::Begin("countdown", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoInputs);
+  char left[32];
+  std::snprintf(left, sizeof left, "%d:%02d", left_s / 60, left_s % 60);
+  ImGui::PushFont(gui.huge());
+  const float height = ImGui::GetTextLineHeight();
+  draw_centred(left, {screen.x / 2, (screen.y - height) / 2}, screen.x, colour::dim);
+  ImGui::PopFont();
+  ImGui::PushFont(gui.body());
+  draw_centred(words, {screen.x / 2, (screen.y + height) / 2 + 0.4F * gui.size_px()}, 0.8F * screen.x,
+               colour::faint);
+  ImGui::PopFont();
+  ImGui::End();
+}
+
+}  // namespace apps

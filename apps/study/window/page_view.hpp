@@ -1,0 +1,55 @@
+#pragma once
+/// Draws a page: title, text, questions and the button to go on, and hands clicks to its state.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "apps/study/desk/page.hpp"
+#include "apps/study/desk/words.hpp"
+#include "apps/study/window/gui.hpp"
+
+namespace apps {
+
+class PageView {
+ public:
+  PageView(Gui& gui, const DeskWords& words, std::string title, std::string text)
+      : gui_(gui), words_(words), title_(std::move(title)), text_(std::move(text)) {}
+
+  /// Draws into the current frame of the Gui.
+  void draw(PageState& state, std::int64_t now_ns);
+  /// Moves a long text by lines; down is positive.
+  void scroll(float lines) { scroll_lines_ += lines; }
+  /// Whether a field has the keyboard, so that letters and Enter are its own.
+  bool typing(const PageState& state) const;
+
+ private:
+  void draw_body(PageState& state, std::int64_t now_ns);
+  void draw_text();
+  void draw_questions(PageState& state, std::int64_t now_ns);
+  void draw_question(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_scale(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_anchors(const study::Question& question, float left, float cell);
+  void draw_list(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_number(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_words(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_matrix(PageState& state, std::size_t first, std::size_t end, std::int64_t now_ns);
+  void draw_footer(PageState& state, std::int64_t now_ns);
+  void follow_focus(const PageState& state, std::size_t i, float top);
+  /// A button with a score on it; true when it was clicked.
+  bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
+                    float height, bool left_aligned);
+
+  Gui& gui_;
+  const DeskWords& words_;
+  std::string title_, text_;
+  float column_ = 0;  ///< width of the text, px
+  float height_ = 0;  ///< of the content as last drawn, px
+  float scroll_lines_ = 0;
+  bool armed_ = false;                    ///< the mouse button was up since input counts
+  std::size_t seen_focus_ = 0;            ///< to which was scrolled
+  std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard
+  std::string edited_;                    ///< its content, with room to grow
+};
+
+}  // namespace apps

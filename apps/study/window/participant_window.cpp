@@ -1,0 +1,249 @@
+#include "apps/study/window/participant_window.hpp"
+
+// epoxy first: GLFW then leaves GL's headers alone.
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "libsim/render/gl_context.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+// The session's check is due every 50 ms.
+constexpr double poll_s = 0.03;
+constexpr unsigned black = IM_COL32(0, 0, 0, 255);
+
+WindowChoice as_window(const ParticipantWindowOptions& options) {
+  return {"vip-study", options.width_px, options.height_px, options.monitor,
+          "use --display headless or none on a machine without a screen"};
+}
+
+int digit_of(int key) {
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;
+  return -1;
+}
+
+std::optional<PageKey> page_key(int key, bool shift) {
+  switch (key) {
+    case GLFW_KEY_LEFT:
+      return PageKey::Left;
+    case GLFW_KEY_RIGHT:
+      return PageKey::Right;
+    case GLFW_KEY_UP:
+      return PageKey::Up;
+    case GLFW_KEY_DOWN:
+      return PageKey::Down;
+    case GLFW_KEY_TAB:
+      return shift ? PageKey::Previous : PageKey::Next;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+    case GLFW_KEY_SPACE:
+      return PageKey::Enter;
+    case GLFW_KEY_BACKSPACE:
+      return PageKey::Erase;
+    default:
+      return {};
+  }
+}
+
+float lines_of(int key) {
+  if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
+  if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;
+  return 0;
+}
+
+/// Thrown out of the question whether to stop when the session ends for another reason.
+struct Overruled {
+  study::Wish wish;
+};
+
+/// A flag that is true while it lives.
+class While {
+ public:
+  explicit While(bool& flag) : flag_(flag), before_(flag) { flag_ = true; }
+  ~While() { flag_ = before_; }
+  While(const While&) = delete;
+  While& operator=(const While&) = delete;
+
+ private:
+  bool& flag_;
+  bool before_;
+};
+
+}  // namespace
+
+ParticipantWindow::ParticipantWindow(const ParticipantWindowOptions& options)
+    : window_(as_window(options)),
+      size_(window_.size()),
+      gui_(window_.get(), size_.height),
+      words_(desk_words(options.language)) {
+  sim::require_gl45();
+  show_black();
+}
+
+void ParticipantWindow::poll(double wait_s) {
+  if (wait_s > 0)
+    glfwWaitEventsTimeout(wait_s);
+  else
+    glfwPollEvents();
+  window_.check_display();
+  if (window_.asked_to_close()) {
+    throw base::Error("the participant's window", "was closed; all answers given are kept",
+                      "continue with vip-study resume");
+  }
+}
+
+void ParticipantWindow::show_cursor(bool shown) {
+  glfwSetInputMode(window_.get(), GLFW_CURSOR, shown ? GLFW_CURSOR_NORMAL : GLFW_CURSOR_HIDDEN);
+}
+
+void ParticipantWindow::forget_input() {
+  glfwPollEvents();
+  window_.take_keys();
+  gamepad_.forget();
+}
+
+void ParticipantWindow::show_black() {
+  show_cursor(false);
+  gui_.begin(black);
+  gui_.end();
+  glfwSwapBuffers(window_.get());
+}
+
+void ParticipantWindow::draw(PageView& view, PageState& state, std::int64_t now_ns) {
+  gui_.begin(colour::background);
+  view.draw(state, now_ns);
+  gui_.end();
+}
+
+/// Returns whether Esc was among them.
+bool ParticipantWindow::handle_keys(PageState& state, PageView& view, std::int64_t now_ns) {
+  bool escape = false;
+  const bool shift = glfwGetKey(window_.get(), GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+                     glfwGetKey(window_.get(), GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+  for (const int key : window_.take_keys()) {
+    if (key == GLFW_KEY_ESCAPE) escape = true;
+    if (view.typing(state) && key != GLFW_KEY_TAB) continue;
+    if (state.size() == 0 || key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_PAGE_UP) view.scroll(lines_of(key));
+    if (digit_of(key) >= 0) state.digit(digit_of(key), now_ns);
+    if (key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT) state.minus(now_ns);
+    if (const auto meant = page_key(key, shift)) state.press(*meant, now_ns);
+  }
+  for (const PageKey key : gamepad_.take()) state.press(key, now_ns);
+  return escape;
+}
+
+std::vector<study::TimedAnswer> ParticipantWindow::run_page(const std::string& title, const std::string& text,
+                                                            std::span<const study::Question> questions,
+                                                            double least_s, const study::Clock& clock,
+                                                            const study::Check& check) {
+  const While here(in_page_);
+  show_cursor(true);
+  PageView view(gui_, words_, title, text);
+  // Drawn twice before it is shown: the first time measures.
+  PageState unseen(questions, least_s, clock.now_ns());
+  for (int i = 0; i < 2; ++i) draw(view, unseen, clock.now_ns());
+  glfwSwapBuffers(window_.get());
+  forget_input();
+  PageState state(questions, least_s, clock.now_ns());
+  while (!state.confirmed()) {
+    poll(poll_s);
+    check();
+    const std::int64_t now_ns = clock.now_ns();
+    if (handle_keys(state, view, now_ns)) {
+      stop_wished_ = ask_to_stop(clock, check);
+      check();
+      state.leave_out(now_ns, clock.now_ns());
+      continue;
+    }
+    draw(view, state, now_ns);
+    glfwSwapBuffers(window_.get());
+  }
+  show_black();
+  return state.answers();
+}
+
+bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Check& check) {
+  study::Question question;
+  question.id = "stop";
+  question.kind = study::AnswerKind::Choice;
+  question.text = words_.stop_question;
+  question.anchors = {{1, words_.stop_no}, {2, words_.stop_yes}};
+  const While here(in_page_);
+  show_cursor(true);
+  PageView view(gui_, words_, words_.stop_title, words_.stop_text);
+  PageState state({&question, 1}, 0, clock.now_ns());
+  while (!state.confirmed()) {
+    poll(poll_s);
+    check();
+    if (handle_keys(state, view, clock.now_ns()) && !state.guarded(clock.now_ns())) return false;
+    draw(view, state, clock.now_ns());
+    glfwSwapBuffers(window_.get());
+  }
+  return state.answers()[0].answer.score == 2;
+}
+
+void ParticipantWindow::wait(const std::string& words, std::int64_t until_ns, const study::Clock& clock,
+                             const study::Check& check) {
+  const While here(in_page_);
+  show_black();
+  int drawn_s = -1;
+  PageState none({}, 0, clock.now_ns());
+  PageView nothing(gui_, words_, "", "");
+  for (std::int64_t now_ns = clock.now_ns(); now_ns < until_ns; now_ns = clock.now_ns()) {
+    const double left_s = 1e-9 * static_cast<double>(until_ns - now_ns);
+    poll(std::min(poll_s, left_s));
+    check();
+    if (handle_keys(none, nothing, now_ns)) {
+      stop_wished_ = ask_to_stop(clock, check);
+      check();
+      show_black();
+      drawn_s = -1;
+    }
+    const int whole_s = static_cast<int>(std::ceil(left_s));
+    if (words.empty() || whole_s == drawn_s) continue;
+    drawn_s = whole_s;
+    gui_.begin(black);
+    draw_countdown(gui_, words, whole_s);
+    gui_.end();
+    glfwSwapBuffers(window_.get());
+  }
+  forget_input();
+  if (drawn_s >= 0) show_black();
+}
+
+study::Wish ParticipantWindow::wish(const study::Clock& clock, const std::function<study::Wish()>& others) {
+  const study::Wish wish = others ? others() : study::Wish::GoOn;
+  if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
+  if (in_page_ || wish != study::Wish::GoOn) return wish;
+  const auto keys = window_.take_keys();
+  if (std::find(keys.begin(), keys.end(), GLFW_KEY_ESCAPE) == keys.end()) return wish;
+  const auto check = [&others] {
+    const study::Wish other = others ? others() : study::Wish::GoOn;
+    if (other == study::Wish::Stop || other == study::Wish::EndSession) throw Overruled{other};
+  };
+  try {
+    stop_wished_ = ask_to_stop(clock, check);
+  } catch (const Overruled& overruled) {
+    return overruled.wish;
+  }
+  show_black();
+  return stop_wished_ ? study::Wish::EndSession : study::Wish::RepeatTrial;
+}
+
+std::optional<std::pair<double, double>> ParticipantWindow::mouse() const {
+  double x = 0, y = 0;
+  if (!window_.mouse(x, y)) return {};
+  return std::pair{x, y};
+}
+
+}  // namespace apps

@@ -1,0 +1,75 @@
+#include "apps/study/window/window_display.hpp"
+
+// epoxy first: GLFW then leaves GL's headers alone.
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "libsim/render/gl_context.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr int measured_swaps = 120;
+
+std::string describe(const Monitor& monitor) {
+  char text[160];
+  std::snprintf(text, sizeof text, "monitor '%s' %dx%d", monitor.name.c_str(), monitor.width_px,
+                monitor.height_px);
+  return text;
+}
+
+}  // namespace
+
+WindowDisplay::WindowDisplay(ParticipantWindow& window, const study::Clock& clock)
+    : window_(window),
+      clock_(clock),
+      picture_(window.size().width, window.size().height),
+      monitor_(window.window().monitor()),
+      device_(sim::gl_description()),
+      refresh_(measure(measured_swaps)) {}
+
+MeasuredRefresh WindowDisplay::measure(int swaps) {
+  std::vector<std::int64_t> returns;
+  for (int i = 0; i < swaps; ++i) {
+    window_.show_black();
+    glFinish();  // many drivers return from a swap before the screen has taken it
+    returns.push_back(clock_.now_ns());
+    window_.poll(0);
+  }
+  return judge_swaps(returns, monitor_.refresh_hz);
+}
+
+std::string WindowDisplay::description() const {
+  return "window " + std::to_string(picture_.width()) + "x" + std::to_string(picture_.height()) + ", " +
+         describe(monitor_) + ", " + refresh_.finding + ", " + device_;
+}
+
+void WindowDisplay::render(study::Stimulus& stimulus) {
+  stimulus.draw(picture_.framebuffer(), picture_.width(), picture_.height());
+  glDisable(GL_SCISSOR_TEST);
+  glBlitNamedFramebuffer(picture_.framebuffer(), 0, 0, 0, picture_.width(), picture_.height(), 0, 0,
+                         picture_.width(), picture_.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const GLsync done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  constexpr GLuint64 patience_ns = 100'000'000;
+  while (glClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, patience_ns) == GL_TIMEOUT_EXPIRED)
+    window_.poll(0);
+  glDeleteSync(done);
+  ready_ns_ = clock_.now_ns();
+}
+
+study::PresentTimes WindowDisplay::present(const study::Clock& clock) {
+  study::PresentTimes times;
+  times.gpu_done_ns = ready_ns_;
+  times.submitted_ns = clock.now_ns();
+  times.predicted_display_ns = next_beat(refresh_, times.submitted_ns);
+  glfwSwapBuffers(window_.window().get());
+  window_.poll(0);
+  return times;
+}
+
+}  // namespace apps

@@ -1,0 +1,25 @@
+#pragma once
+/// A person in front of the window.
+
+#include "apps/study/window/participant_window.hpp"
+#include "libstudy/session/participant.hpp"
+
+namespace apps {
+
+class WindowParticipant final : public study::Participant {
+ public:
+  explicit WindowParticipant(ParticipantWindow& window) : window_(window) {}
+
+  std::optional<std::string> simulated() const override { return {}; }
+  void read(const study::Block& block, double least_s, study::Clock& clock,
+            const study::Check& check) override;
+  std::vector<study::TimedAnswer> ask(const study::Block& block, std::span<const study::Question> questions,
+                                      const study::Occasion& occasion, study::Clock& clock,
+                                      const study::Check& check) override;
+  void pause(study::PauseKind kind, double seconds, study::Clock& clock, const study::Check& check) override;
+
+ private:
+  ParticipantWindow& window_;
+};
+
+}  // namespace apps
