@@ -27,7 +27,7 @@ struct RunCommand {
   int visit = 1;
   std::int64_t seed = 0;
   std::optional<double> trial_seconds;
-  std::string bake, size = "640x360", ptpe;
+  std::string bake, size, ptpe;
 };
 
 /// P01, P02, ... or the codes given.
@@ -45,13 +45,18 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
 /// What was not said: a person sits at a window in real time, an observer needs neither.
 void choose_defaults(RunOptions& run) {
   const bool person = run.observer.empty();
-  if (run.clock.empty()) run.clock = person ? "real" : "virtual";
   if (run.display.empty()) run.display = person ? "window" : "none";
+  if (run.clock.empty()) run.clock = person || run.display == "window" ? "real" : "virtual";
   if (run.gaze.empty()) run.gaze = run.display == "none" ? "none" : "fixed";
 }
 
+/// Without a size a window fills the monitor.
 void read_size(const std::string& text, RunOptions& run) {
   char rest = 0;
+  if (text.empty()) {
+    if (run.display == "window") run.width_px = run.height_px = 0;
+    return;
+  }
   if (std::sscanf(text.c_str(), "%dx%d%c", &run.width_px, &run.height_px, &rest) != 2) {
     throw base::Error("--size " + text, "is not a size", "write width x height in pixels, such as 640x360");
   }
@@ -105,8 +110,8 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
 
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
-  read_size(command.size, command.run);
   choose_defaults(command.run);
+  read_size(command.size, command.run);
   if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
   const auto codes = participant_codes(command, protocol);
   for (const std::string& code : codes) study::check_participant_code(code);
@@ -170,7 +175,11 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,
                  "Width of the picture on the screen; gives the camera's angle");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");
-  sub.add_option("--size", command->size, "Pixels of a headless display")->capture_default_str();
+  sub.add_option("--size", command->size,
+                 "Pixels of the display (default: 640x360 without a window; a window fills the monitor)");
+  sub.add_option("--monitor", command->run.monitor, "Monitor of a window that fills it; 0: the primary one")
+      ->check(CLI::Range(0, 15))
+      ->capture_default_str();
   sub.add_option("--seed", command->seed, "Seed of orders, schedules and observers")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -28,6 +28,7 @@ std::string format_run_options(const RunOptions& options) {
                                 {"display", options.display},
                                 {"width_px", options.width_px},
                                 {"height_px", options.height_px},
+                                {"monitor", options.monitor},
                                 {"bake", options.bake},
                                 {"backend", options.backend},
                                 {"gaze", options.gaze},
@@ -50,6 +51,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.display = json.at("display");
     options.width_px = json.at("width_px");
     options.height_px = json.at("height_px");
+    options.monitor = json.value("monitor", 0);
     options.bake = json.at("bake");
     options.backend = json.at("backend");
     options.gaze = json.at("gaze");

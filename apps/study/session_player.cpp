@@ -65,18 +65,11 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   std::fflush(stdout);
 }
 
-/// The console's hooks, and the program's own beside them.
-study::SessionHooks make_hooks(const study::SessionHooks& console,
-                               std::function<void(const study::UnitDone&)> done) {
-  study::SessionHooks hooks = console;
-  hooks.wish = [console] {
-    if (StopSignals::stop_wished()) return study::Wish::Stop;
-    return console.wish ? console.wish() : study::Wish::GoOn;
-  };
-  hooks.done = [console, done = std::move(done)](const study::UnitDone& unit) {
-    done(unit);
-    if (console.done) console.done(unit);
-  };
+study::SessionHooks make_hooks(const WindowWish& window, std::function<void(const study::UnitDone&)> done) {
+  study::SessionHooks hooks;
+  const auto others = [] { return StopSignals::stop_wished() ? study::Wish::Stop : study::Wish::GoOn; };
+  hooks.wish = [window, others] { return window ? window(others) : others(); };
+  hooks.done = std::move(done);
   return hooks;
 }
 
@@ -86,7 +79,7 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
               SessionSetup& setup, const PlayOptions& options) {
   std::size_t done = 0;
   Progress progress("session steps", units_left(run));
-  const auto hooks = make_hooks(setup.console, [&](const study::UnitDone& unit) {
+  const auto hooks = make_hooks(setup.wish, [&](const study::UnitDone& unit) {
     progress.update(++done);
     if (options.events) print_done(unit, protocol);
   });

@@ -2,7 +2,6 @@
 
 #include "apps/common/headless_display.hpp"
 #include "apps/study/desk/viewing.hpp"
-#include "apps/study/window_parts.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/display/null.hpp"
 #include "stats/base/error.hpp"
@@ -27,6 +26,8 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
                       "use --display window, or name an --observer");
   if (options.observer.empty() && options.clock != "real")
     throw base::Error("--clock virtual", "does not wait for a person", "use --clock real");
+  if (options.display == "window" && options.clock != "real")
+    throw base::Error("--clock virtual", "does not wait for a window", "use --clock real");
   if (options.gaze == "mouse" && options.display != "window")
     throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
   if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
@@ -51,7 +52,7 @@ LiveViewing viewing_of(const RunOptions& options) {
     viewing.vertical_fov_deg = [=](int width_px, int height_px) {
       return vertical_fov_deg(picture_height_mm(width_mm, width_px, height_px), distance_mm);
     };
-    viewing.vertical_fov_deg(options.width_px, options.height_px);  // fails now if it ever does
+    viewing.vertical_fov_deg(16, 9);  // fails now if it ever does
   }
   return viewing;
 }
@@ -76,7 +77,8 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.display = std::move(window.display);
     if (!setup.participant) setup.participant = std::move(window.person);
     if (options.gaze == "mouse") viewing.gaze = window.gaze;
-    setup.console = std::move(window.console);
+    setup.wish = std::move(window.wish);
+    setup.screen = window.screen;
   } else {
     setup.display = make_display(options);
   }

@@ -5,6 +5,7 @@
 
 #include "apps/study/cell_stimuli.hpp"
 #include "apps/study/run_options.hpp"
+#include "apps/study/window_parts.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "libstudy/protocol/protocol.hpp"
@@ -20,7 +21,8 @@ struct SessionSetup {
   std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  study::SessionHooks console;  ///< the window's, or empty
+  WindowWish wish;                    ///< the window's, or empty
+  std::optional<ScreenFacts> screen;  ///< likewise
 };
 
 /// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives

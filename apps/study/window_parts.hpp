@@ -1,11 +1,12 @@
 #pragma once
-/// What --display window brings: the participant's window with its pages, the mouse as gaze, the console.
+/// What --display window brings: the participant's window with its pages, and the mouse as gaze.
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "apps/study/desk/preflight.hpp"
 #include "apps/study/run_options.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/protocol/protocol.hpp"
@@ -13,12 +14,17 @@
 
 namespace apps {
 
+/// What is wished at the window, given what others wish; see SessionHooks::wish.
+using WindowWish = std::function<study::Wish(const std::function<study::Wish()>& others)>;
+
+/// Each part keeps the window alive.
 struct WindowParts {
   std::unique_ptr<study::Display> display;
   std::unique_ptr<study::Participant> person;  ///< answers where no observer was named
-  /// LiveViewing::gaze for --gaze mouse; empty: the middle of the picture.
+  /// LiveViewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  study::SessionHooks console;  ///< called beside the program's own
+  WindowWish wish;
+  ScreenFacts screen;
 };
 
 /// base::Error where there is no window.

@@ -39,13 +39,6 @@ std::size_t end_of_table(const PageState& state, std::size_t first) {
   return end - first >= fewest_rows ? end : first + 1;
 }
 
-const std::string* anchor_of(const Question& question, int score) {
-  for (const auto& [at, words] : question.anchors) {
-    if (at == score) return &words;
-  }
-  return nullptr;
-}
-
 void wrapped(const std::string& words, unsigned colour) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
   ImGui::TextUnformatted(words.c_str(), words.c_str() + words.size());

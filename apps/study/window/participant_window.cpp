@@ -221,7 +221,7 @@ void ParticipantWindow::wait(const std::string& words, std::int64_t until_ns, co
   if (drawn_s >= 0) show_black();
 }
 
-study::Wish ParticipantWindow::wish(const study::Clock& clock, const std::function<study::Wish()>& others) {
+study::Wish ParticipantWindow::wish(const std::function<study::Wish()>& others) {
   const study::Wish wish = others ? others() : study::Wish::GoOn;
   if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
   if (in_page_ || wish != study::Wish::GoOn) return wish;
@@ -232,7 +232,7 @@ study::Wish ParticipantWindow::wish(const study::Clock& clock, const std::functi
     if (other == study::Wish::Stop || other == study::Wish::EndSession) throw Overruled{other};
   };
   try {
-    stop_wished_ = ask_to_stop(clock, check);
+    stop_wished_ = ask_to_stop(study::RealClock(), check);
   } catch (const Overruled& overruled) {
     return overruled.wish;
   }

@@ -44,7 +44,7 @@ class ParticipantWindow {
   void poll(double wait_s);
   /// To be asked by the session: what `others` wish, else the end of the session if the participant said so.
   /// Esc during a stimulus asks here; the trial is then over or shown again.
-  study::Wish wish(const study::Clock& clock, const std::function<study::Wish()>& others);
+  study::Wish wish(const std::function<study::Wish()>& others);
 
   GlfwWindow& window() { return window_; }
   const DeskWords& words() const { return words_; }

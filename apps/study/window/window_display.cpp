@@ -25,23 +25,32 @@ std::string describe(const Monitor& monitor) {
 
 }  // namespace
 
-WindowDisplay::WindowDisplay(ParticipantWindow& window, const study::Clock& clock)
-    : window_(window),
-      clock_(clock),
-      picture_(window.size().width, window.size().height),
-      monitor_(window.window().monitor()),
+WindowDisplay::WindowDisplay(std::shared_ptr<ParticipantWindow> window)
+    : window_(std::move(window)),
+      picture_(window_->size().width, window_->size().height),
+      monitor_(window_->window().monitor()),
       device_(sim::gl_description()),
       refresh_(measure(measured_swaps)) {}
 
 MeasuredRefresh WindowDisplay::measure(int swaps) {
   std::vector<std::int64_t> returns;
   for (int i = 0; i < swaps; ++i) {
-    window_.show_black();
+    window_->show_black();
     glFinish();  // many drivers return from a swap before the screen has taken it
     returns.push_back(clock_.now_ns());
-    window_.poll(0);
+    window_->poll(0);
   }
   return judge_swaps(returns, monitor_.refresh_hz);
+}
+
+ScreenFacts WindowDisplay::facts() const {
+  ScreenFacts facts;
+  facts.told_hz = monitor_.refresh_hz;
+  facts.measured_hz = refresh_.in_effect ? 1e9 / refresh_.period_ns : 0;
+  const Compositor compositor = find_compositor();
+  if (compositor != Compositor::Unknown) facts.compositor = compositor == Compositor::Running;
+  facts.software_gl = sim::gl_is_software();
+  return facts;
 }
 
 std::string WindowDisplay::description() const {
@@ -57,7 +66,7 @@ void WindowDisplay::render(study::Stimulus& stimulus) {
   const GLsync done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   constexpr GLuint64 patience_ns = 100'000'000;
   while (glClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, patience_ns) == GL_TIMEOUT_EXPIRED)
-    window_.poll(0);
+    window_->poll(0);
   glDeleteSync(done);
   ready_ns_ = clock_.now_ns();
 }
@@ -67,8 +76,8 @@ study::PresentTimes WindowDisplay::present(const study::Clock& clock) {
   times.gpu_done_ns = ready_ns_;
   times.submitted_ns = clock.now_ns();
   times.predicted_display_ns = next_beat(refresh_, times.submitted_ns);
-  glfwSwapBuffers(window_.window().get());
-  window_.poll(0);
+  glfwSwapBuffers(window_->window().get());
+  window_->poll(0);
   return times;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/study/desk/preflight.hpp"
 #include "apps/study/desk/refresh.hpp"
 #include "apps/study/window/participant_window.hpp"
 #include "libsim/render/offscreen.hpp"
@@ -18,8 +19,8 @@ namespace apps {
 /// first.
 class WindowDisplay final : public study::Display {
  public:
-  /// Measures the refresh for some two seconds on a black window. `clock` is the session's and real.
-  WindowDisplay(ParticipantWindow& window, const study::Clock& clock);
+  /// Measures the refresh for some two seconds on a black window. The session's clock must be real.
+  explicit WindowDisplay(std::shared_ptr<ParticipantWindow> window);
 
   std::string description() const override;
   study::TimingGrade grade() const override { return study::TimingGrade::CpuSubmit; }
@@ -31,13 +32,13 @@ class WindowDisplay final : public study::Display {
   /// gpu_done is when the picture lay ready, which is before it was submitted.
   study::PresentTimes present(const study::Clock& clock) override;
 
-  const MeasuredRefresh& refresh() const { return refresh_; }
+  ScreenFacts facts() const;
 
  private:
   MeasuredRefresh measure(int swaps);
 
-  ParticipantWindow& window_;
-  const study::Clock& clock_;
+  std::shared_ptr<ParticipantWindow> window_;
+  study::RealClock clock_;
   sim::Offscreen picture_;
   Monitor monitor_;
   std::string device_;  ///< of OpenGL

@@ -6,28 +6,28 @@ namespace apps {
 
 void WindowParticipant::read(const study::Block& block, double least_s, study::Clock& clock,
                              const study::Check& check) {
-  window_.run_page(block.title, block.text, {}, least_s, clock, check);
+  window_->run_page(block.title, block.text, {}, least_s, clock, check);
 }
 
 std::vector<study::TimedAnswer> WindowParticipant::ask(const study::Block& block,
                                                        std::span<const study::Question> questions,
                                                        const study::Occasion&, study::Clock& clock,
                                                        const study::Check& check) {
-  return window_.run_page(block.title, block.text, questions, 0, clock, check);
+  return window_->run_page(block.title, block.text, questions, 0, clock, check);
 }
 
 void WindowParticipant::pause(study::PauseKind kind, double seconds, study::Clock& clock,
                               const study::Check& check) {
-  const DeskWords& words = window_.words();
+  const DeskWords& words = window_->words();
   const std::int64_t until_ns = clock.now_ns() + std::llround(1e9 * seconds);
   switch (kind) {
     case study::PauseKind::Black:
-      return window_.wait("", until_ns, clock, check);
+      return window_->wait("", until_ns, clock, check);
     case study::PauseKind::Rest:
-      return window_.wait(words.rest, until_ns, clock, check);
+      return window_->wait(words.rest, until_ns, clock, check);
     case study::PauseKind::Break:
-      window_.wait(words.pause, until_ns, clock, check);
-      window_.run_page(words.ready, "", {}, 0, clock, check);
+      window_->wait(words.pause, until_ns, clock, check);
+      window_->run_page(words.ready, "", {}, 0, clock, check);
       return;
   }
 }

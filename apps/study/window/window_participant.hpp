@@ -1,6 +1,8 @@
 #pragma once
 /// A person in front of the window.
 
+#include <memory>
+
 #include "apps/study/window/participant_window.hpp"
 #include "libstudy/session/participant.hpp"
 
@@ -8,7 +10,7 @@ namespace apps {
 
 class WindowParticipant final : public study::Participant {
  public:
-  explicit WindowParticipant(ParticipantWindow& window) : window_(window) {}
+  explicit WindowParticipant(std::shared_ptr<ParticipantWindow> window) : window_(std::move(window)) {}
 
   std::optional<std::string> simulated() const override { return {}; }
   void read(const study::Block& block, double least_s, study::Clock& clock,
@@ -19,7 +21,7 @@ class WindowParticipant final : public study::Participant {
   void pause(study::PauseKind kind, double seconds, study::Clock& clock, const study::Check& check) override;
 
  private:
-  ParticipantWindow& window_;
+  std::shared_ptr<ParticipantWindow> window_;
 };
 
 }  // namespace apps
