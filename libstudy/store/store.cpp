@@ -1,9 +1,5 @@
 #include "libstudy/store/store.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <regex>
 
 #include "libstudy/store/database.hpp"
@@ -52,26 +48,6 @@ void check_participant_code(const std::string& code) {
   }
 }
 
-/// Held on the file itself, so that it ends with the process however that ends.
-class Store::Lock {
- public:
-  explicit Lock(const fs::path& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(fd_);
-      throw base::Error(path.string(), "another vip-study is running on this database",
-                        "wait until it has ended");
-    }
-  }
-  ~Lock() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-
- private:
-  int fd_;
-};
-
 struct Store::Statements {
   explicit Statements(sqlite::Connection& database)
       : frame(database, "INSERT INTO frame VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)"),
@@ -100,10 +76,10 @@ struct Store::Statements {
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
   std::error_code ignored;
   const bool existed = fs::exists(path, ignored);
-  if (existed) lock_ = std::make_unique<Lock>(path);
+  if (existed) lock_ = std::make_unique<WriterLock>(path);
   const SchemaSteps steps = read_schema_steps();
   database_ = open_database(path, how, steps, max_pages);
-  if (!existed) lock_ = std::make_unique<Lock>(path);
+  if (!existed) lock_ = std::make_unique<WriterLock>(path);
   blank_ = !existed;
   statements_ = std::make_unique<Statements>(*database_);
 }

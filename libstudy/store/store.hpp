@@ -14,6 +14,7 @@
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/writer_lock.hpp"
 
 namespace study {
 
@@ -139,7 +140,6 @@ class Store {
 
  private:
   struct Statements;
-  class Lock;
 
   std::int64_t find_or_add_protocol(const RunPlan& run);
   void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
@@ -156,7 +156,7 @@ class Store {
 
   std::filesystem::path path_;
   bool blank_ = false;  // made here and without a run so far
-  std::unique_ptr<Lock> lock_;
+  std::unique_ptr<WriterLock> lock_;
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
 };

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/ratings.hpp"
+#include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/version_1.hpp"
 
 namespace study {
 namespace {
@@ -170,6 +173,69 @@ TEST(Database, ReadingLeavesNothingBehind) {
   EXPECT_EQ(read_ratings(path).size(), 21u);
   EXPECT_TRUE(test::bytes_of(path) == before);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(Database, Version1KeepsEveryAnswerAndEveryFrame) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  test::write_version_1(path);
+  const auto database = open_database(path, Open::Write, read_schema_steps());
+  EXPECT_EQ(database->integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
+  EXPECT_EQ(database->text("PRAGMA integrity_check"), "ok");
+  EXPECT_EQ(database->integer("PRAGMA foreign_keys"), 1);
+  const auto counts = database->text(
+      "SELECT (SELECT count(*) FROM protocol) || ' ' || (SELECT count(*) FROM question) || ' ' || "
+      "(SELECT count(*) FROM run) || ' ' || (SELECT count(*) FROM session) || ' ' || "
+      "(SELECT count(*) FROM trial) || ' ' || (SELECT count(*) FROM presentation) || ' ' || "
+      "(SELECT count(*) FROM frame) || ' ' || (SELECT count(*) FROM response) || ' ' || "
+      "(SELECT count(*) FROM event) || ' ' || (SELECT count(*) FROM cell) || ' ' || (SELECT count(*) FROM "
+      "unit)");
+  EXPECT_EQ(counts, "1 1 1 2 4 5 10 3 3 2 4");
+  sqlite::Statement row(
+      *database,
+      "SELECT s.participant, t.position, u.kind, u.state, r.score, r.response_time_s, "
+      "r.attempt, p.start_ns, c.mean_fps, s.state FROM trial t JOIN unit u USING (trial_id) "
+      "JOIN session s ON s.session_id = t.session_id "
+      "JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = t.first_cell "
+      "LEFT JOIN response r USING (unit_id) "
+      "LEFT JOIN presentation p ON p.trial_id = t.trial_id AND p.attempt = r.attempt "
+      "ORDER BY t.trial_id");
+  std::vector<std::string> lines;
+  while (row.step()) {
+    lines.emplace_back();
+    for (int i = 0; i < row.columns(); ++i) lines.back() += (i ? " " : "") + row.text(i);
+  }
+  EXPECT_THAT(lines, ::testing::ElementsAre("P01 0 stimulus done 5 1.5 2 50 20.0 done",
+                                            "P01 1 stimulus done 2 2.5 1 70 10.0 done",
+                                            "P02 0 practice done 7 3.5 1 1234605616436508552 10.0 open",
+                                            "P02 1 stimulus planned     20.0 open"));
+}
+
+TEST(Database, Version1IsReadWithoutBeingChanged) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  test::write_version_1(path);
+  const std::string before = test::bytes_of(path);
+  const auto rows = read_ratings(path);
+  EXPECT_EQ(read_status(path).sessions.size(), 2u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 15u);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0].rating, 5);
+  EXPECT_TRUE(rows[2].practice);
+  EXPECT_FALSE(rows[3].rating);
+  EXPECT_TRUE(test::bytes_of(path) == before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
+}
+
+TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> uids;
+  for (const char* name : {"one.db", "two.db"}) {
+    test::write_version_1(folder / name);
+    const auto database = open_database(folder / name, Open::Write, read_schema_steps());
+    uids.push_back(database->text("SELECT group_concat(uid || ' ' || person) FROM session"));
+  }
+  EXPECT_EQ(uids[0], uids[1]);
 }
 
 TEST(Database, EveryReleasedSchemaIsStillOpened) {

@@ -165,11 +165,12 @@ INSERT INTO question_2 SELECT question_id, protocol_id, code, wording, language,
   FROM question;
 INSERT INTO ask SELECT protocol_id, 'trials', row_number() OVER (PARTITION BY protocol_id ORDER BY question_id) - 1, question_id
   FROM question;
-INSERT INTO run_2 SELECT run_id, format('1/%d/%s/%s', run_id, started_utc, (SELECT s.participant || '/' || s.seed
-  FROM session s WHERE s.run_id = run.run_id ORDER BY session_id LIMIT 1)), started_utc, program_version, options FROM run;
-INSERT INTO session_2 SELECT s.session_id, format('%s/%d', r.uid, s.session_id), s.run_id, s.protocol_id, s.participant,
-  (SELECT format('%s/%d', q.uid, f.session_id) FROM session f JOIN run_2 q USING (run_id) WHERE f.participant = s.participant
-    ORDER BY f.session_id LIMIT 1),
+INSERT INTO run_2 SELECT run_id, format('1/%d/%s/%s', run_id, started_utc, (SELECT substr(p.sha256, 1, 12) || '/' || s.seed
+  FROM session s JOIN protocol p USING (protocol_id) WHERE s.run_id = run.run_id ORDER BY session_id LIMIT 1)), started_utc,
+  program_version, options FROM run;
+INSERT INTO session_2 SELECT s.session_id, format('%s/%d/%s', r.uid, s.session_id, s.participant), s.run_id, s.protocol_id,
+  s.participant, (SELECT format('%s/%d/%s', q.uid, f.session_id, f.participant) FROM session f JOIN run_2 q USING (run_id)
+    WHERE f.participant = s.participant ORDER BY f.session_id LIMIT 1),
   s.participant, s.visit, s.seed, 0, iif(s.ended_utc IS NULL, 'open', 'done'), s.test_data, s.observer, s.clock, s.display,
   s.stimulus, s.machine, '', s.time_zone, 'none', NULL, NULL, s.ptpe, s.started_utc, s.ended_utc
   FROM session s JOIN run_2 r USING (run_id);
