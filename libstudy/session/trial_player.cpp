@@ -87,17 +87,12 @@ std::optional<SessionEnds> TrialPlayer::play(OpenUnit unit) {
 }
 
 void TrialPlayer::again(Showing& showing) {
-  const std::string reason = "wish of the experimenter";
-  if (showing.done)
-    run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, reason);
-  else
-    run_.parts.store.log(run_.session.id, "trial repeated", reason, run_.now_ns());
+  run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, "wish of the experimenter");
   showing.unit.answered.clear();
   ++showing.attempt;
   showing.verdicts.clear();
   showing.ready = nullptr;
   showing.next_interval = 0;
-  showing.done = false;
 }
 
 std::optional<SessionEnds> TrialPlayer::play_steps(Showing& showing) {
@@ -211,10 +206,7 @@ std::optional<SessionEnds> TrialPlayer::ask(Showing& showing, std::size_t step) 
   auto ends =
       questioning_.ask(showing.unit, showing.attempt, questions_of(run_.protocol, block.steps[step].asks),
                        showing.occasion, last, [this] { heed(run_, true); });
-  if (last) {
-    showing.done = true;
-    run_.tell(showing.unit, showing.attempt, showing.verdicts);
-  }
+  if (last) run_.tell(showing.unit, showing.attempt, showing.verdicts);
   return ends;
 }
 

@@ -26,7 +26,6 @@ class TrialPlayer {
     std::vector<TimingVerdict> verdicts;
     Stimulus* ready = nullptr;  ///< rewound for the next stimulus step
     int next_interval = 0;
-    bool done = false;  ///< every question is answered
   };
 
   std::optional<SessionEnds> play_steps(Showing& showing);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "libstudy/observer/ptpe_observer.hpp"
-#include "libstudy/pacing/clock.hpp"
 #include "libstudy/store/ratings.hpp"
 
 namespace testing_pilot {
@@ -15,9 +14,8 @@ namespace testing_pilot {
 /// The paper's 21 settings rated once by each participant.
 inline std::vector<study::RatingRow> simulated_pilot(const std::string& observer, int participants,
                                                      std::uint64_t seed) {
-  study::PtpeObserver responder(study::parse_ptpe_observer(observer));
-  study::VirtualClock clock;
-  study::Question question;
+  const study::PtpeObserver responder(study::parse_ptpe_observer(observer));
+  const study::Question question;
   std::vector<study::RatingRow> rows;
   for (int p = 0; p < participants; ++p) {
     int position = 0;
@@ -35,11 +33,9 @@ inline std::vector<study::RatingRow> simulated_pilot(const std::string& observer
         row.timing->verdict = study::Verdict::Pass;
         row.timing->nominal = row.nominal;
         row.timing->realised = {static_cast<std::size_t>(10 * mu), mu, mu, delta};
-        row.rating =
-            responder
-                .answer(question, {row.participant, seed, row.position, row.nominal, row.timing->realised},
-                        clock)
-                .score;
+        study::Occasion occasion{row.participant, seed, row.position, study::BlockKind::Stimulus, {}};
+        occasion.shown.push_back({0, {{}, row.nominal}, row.timing->realised, 0, 0});
+        row.rating = responder.score(question, occasion, true);
         rows.push_back(row);
       }
     }

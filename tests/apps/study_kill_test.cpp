@@ -6,12 +6,139 @@
 #include <random>
 #include <thread>
 
+#include "libstudy/store/personal.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
 namespace {
 
-/// Runs until `lines` answers were acknowledged and `delay` more, then kills. Returns all that was
+/// Every kind of page, practice, pairs in two groups, catch pages and repeats: 18 units with 39 answers, of
+/// which one is personal.
+constexpr const char* blocks_toml = R"(
+format = 2
+name = "blocks"
+version = "1"
+language = "en"
+participants = 4
+
+[design]
+scene = ["data/scenes/single_dam.toml", "data/scenes/faucet.toml"]
+method = ["LoRes", "Ours", "HiRes"]
+n_star = ["16k"]
+timing = "equal"
+mean_fps = [30]
+sd_fps = [5]
+duration_s = 2
+pairs = true
+groups = 2
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+fps_max = "none"
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.02
+start_frame = 0
+at_end = "hold"
+
+[[block]]
+kind = "instructions"
+id = "welcome"
+text = "Welcome."
+seconds = 5
+
+[[block]]
+kind = "screening"
+id = "screening"
+
+[[block.question]]
+id = "epilepsy"
+kind = "choice"
+text = "Do flickering lights harm you?"
+anchors = {0 = "no", 1 = "yes"}
+accept = [0, 0]
+
+[[block.question]]
+id = "glasses"
+kind = "choice"
+text = "Do you wear glasses?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block]]
+kind = "demographics"
+id = "about"
+
+[[block.question]]
+id = "age"
+kind = "number"
+text = "How old are you?"
+scale = [18, 99]
+personal = true
+
+[[block]]
+kind = "ssq"
+id = "before"
+
+[[block]]
+kind = "practice"
+id = "warm_up"
+like = "pairs"
+count = 1
+
+[[block]]
+kind = "stimulus"
+id = "pairs"
+between_groups_s = 60
+steps = ["stimulus first", "black 5", "stimulus second", "ask preference", "rest 10", "ask sure"]
+
+[[block.question]]
+id = "preference"
+kind = "choice"
+text = "Which was better?"
+anchors = {1 = "first", 2 = "second"}
+
+[[block.question]]
+id = "sure"
+kind = "scale"
+text = "How sure are you?"
+scale = [1, 7]
+
+[[block]]
+kind = "catch"
+id = "attention"
+like = "pairs"
+count = 2
+
+[[block.question]]
+id = "attend"
+kind = "scale"
+text = "Answer 2."
+scale = [1, 7]
+expect = 2
+
+[[block]]
+kind = "rest"
+id = "rest"
+seconds = 30
+
+[[block]]
+kind = "repeat"
+id = "again"
+like = "pairs"
+count = 2
+
+[[block]]
+kind = "debrief"
+id = "thanks"
+text = "Thank you."
+)";
+
+/// Runs until `lines` units were acknowledged and `delay` more, then kills. Returns all that was
 /// acknowledged.
 std::string run_and_kill(const std::vector<std::string>& arguments, int lines,
                          std::chrono::microseconds delay) {
@@ -22,48 +149,90 @@ std::string run_and_kill(const std::vector<std::string>& arguments, int lines,
   return program.wait().out;
 }
 
+/// Nothing is there that was not asked once, and nothing is half done.
+void check_whole(const std::string& database, std::size_t answers, std::size_t units) {
+  EXPECT_EQ(answers_in(database).size(), answers);
+  EXPECT_EQ(done_in(database).size(), units);
+  EXPECT_EQ(count_in(database, "SELECT count(*) FROM response"), static_cast<std::int64_t>(answers));
+  EXPECT_EQ(count_in(database, "SELECT count(*) FROM event WHERE kind = 'done'"),
+            static_cast<std::int64_t>(units));
+  EXPECT_EQ(count_in(database, "SELECT count(*) FROM presentation WHERE state = 'running'"), 0);
+  // A trial is shown again only while it has a question left: its last answer is of its last showing.
+  EXPECT_EQ(count_in(database,
+                     "SELECT count(*) FROM trial t WHERE (SELECT max(attempt) FROM presentation p "
+                     "WHERE p.trial_id = t.trial_id) <> (SELECT max(r.attempt) FROM response r "
+                     "JOIN unit u USING (unit_id) WHERE u.trial_id = t.trial_id)"),
+            0);
+}
+
 /// Kills a run, resumes it, and checks every promise; returns the answers.
 Answers check_one_kill(const std::string& database, const std::vector<std::string>& arguments, int lines,
-                       std::chrono::microseconds delay, std::size_t planned) {
+                       std::chrono::microseconds delay, std::size_t answers, std::size_t units) {
   const std::string told = run_and_kill(arguments, lines, delay);
-  if (!fs::exists(database)) {
-    EXPECT_TRUE(acknowledged(told).empty());
-    EXPECT_EQ(run_program(arguments).exit_code, 0);
-    return answers_in(database);
-  }
-  const Answers before = answers_in(database);
-  // What was acknowledged is there; at most one more answer was safe but not yet told.
   const auto said = acknowledged(told);
-  for (const auto& key : said) EXPECT_TRUE(before.count(key)) << key.first << " " << key.second;
-  EXPECT_LE(before.size(), said.size() + 1);
-
-  if (count_in(database, "SELECT count(*) FROM sqlite_schema") == 0 ||
+  // Killed before the plan: nothing to resume, so the run is given again.
+  if (!fs::exists(database) || count_in(database, "SELECT count(*) FROM sqlite_schema") == 0 ||
       count_in(database, "SELECT count(*) FROM trial") == 0) {
-    // Killed before the plan: nothing to resume, so the run is given again.
     EXPECT_TRUE(said.empty());
     EXPECT_EQ(run_program(arguments).exit_code, 0);
     return answers_in(database);
   }
+  const Answers before = answers_in(database);
+  // What was acknowledged is there; at most one more unit was safe but not yet told.
+  const Units done = done_in(database);
+  for (const auto& key : said) EXPECT_TRUE(done.count(key)) << key.first << " " << key.second;
+  EXPECT_LE(done.size(), said.size() + 1);
+
   const Ended resumed = run_program({vip_study, "resume", "--db", database, "--events"});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
   const Answers after = answers_in(database);
-  EXPECT_EQ(after.size(), planned);
   for (const auto& [key, answer] : before) EXPECT_EQ(after.at(key), answer);
-  for (const auto& key : acknowledged(resumed.out)) EXPECT_FALSE(before.count(key)) << "asked twice";
-  EXPECT_EQ(count_in(database, "SELECT count(*) FROM event WHERE kind = 'answered'"),
-            static_cast<std::int64_t>(planned));
-  EXPECT_EQ(count_in(database,
-                     "SELECT count(*) FROM presentation p JOIN response r USING (trial_id) "
-                     "WHERE p.presentation_id > r.presentation_id"),
-            0);
-  EXPECT_EQ(count_in(database, "SELECT count(*) FROM presentation WHERE state = 'running'"), 0);
+  for (const auto& key : acknowledged(resumed.out)) EXPECT_FALSE(done.count(key)) << "asked twice";
+  check_whole(database, answers, units);
   return after;
 }
 
-std::map<std::pair<std::string, int>, int> scores(const Answers& answers) {
-  std::map<std::pair<std::string, int>, int> scores;
+std::map<AnswerKey, int> scores(const Answers& answers) {
+  std::map<AnswerKey, int> scores;
   for (const auto& [key, answer] : answers) scores[key] = std::get<1>(answer);
   return scores;
+}
+
+std::vector<std::string> personal_in(const std::string& database) {
+  study::sqlite::Connection file(study::PersonalFile::beside(database), study::sqlite::Open::Read);
+  study::sqlite::Statement row(file, "SELECT participant || question || answer FROM personal ORDER BY 1");
+  std::vector<std::string> all;
+  while (row.step()) all.push_back(row.text(0));
+  return all;
+}
+
+TEST(StudyKillE2e, TwentyInstantsOfASessionWithEveryBlock) {
+  const TemporaryFolder folder;
+  const std::string protocol = folder / "blocks.toml";
+  base::write_file_atomically(protocol, blocks_toml);
+  const auto arguments = [&](const std::string& database) {
+    return std::vector<std::string>{vip_study, "run",        protocol, "--db",   database, "--participants",
+                                    "4",       "--observer", "random", "--seed", "5",      "--events"};
+  };
+  const std::string whole_db = folder / "whole.db";
+  const Ended run = run_program(arguments(whole_db));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto whole = scores(answers_in(whole_db));
+  const std::size_t units = done_in(whole_db).size();
+  ASSERT_EQ(units, 4u * (4 + 1 + 6 + 1 + 2 + 1 + 2 + 1));
+  ASSERT_EQ(whole.size(), 4u * (2 + 16 + 2 * 9 + 2));
+  ASSERT_EQ(personal_in(whole_db).size(), 4u);
+
+  std::mt19937 random(3);
+  for (int kill = 0; kill < 20; ++kill) {
+    SCOPED_TRACE(kill);
+    const std::string database = folder / ("kill" + std::to_string(kill) + ".db");
+    const int lines = static_cast<int>(random() % units);
+    const std::chrono::microseconds delay(random() % 10000);
+    EXPECT_EQ(scores(check_one_kill(database, arguments(database), lines, delay, whole.size(), units)),
+              whole);
+    EXPECT_EQ(personal_in(database), personal_in(whole_db));
+  }
 }
 
 TEST(StudyKillE2e, FourteenInstantsOnTheVirtualClock) {
@@ -75,15 +244,15 @@ TEST(StudyKillE2e, FourteenInstantsOnTheVirtualClock) {
   };
   ASSERT_EQ(run_program(arguments(folder / "whole.db")).exit_code, 0);
   const auto whole = scores(answers_in(folder / "whole.db"));
-  ASSERT_EQ(whole.size(), 24u);
+  ASSERT_EQ(whole.size(), 28u);  // six ratings each, and consent
 
   std::mt19937 random(1);
   for (int kill = 0; kill < 14; ++kill) {
     SCOPED_TRACE(kill);
     const std::string database = folder / ("kill" + std::to_string(kill) + ".db");
-    const int lines = static_cast<int>(random() % 24);
+    const int lines = static_cast<int>(random() % 36);
     const std::chrono::microseconds delay(random() % 20000);
-    EXPECT_EQ(scores(check_one_kill(database, arguments(database), lines, delay, 24)), whole);
+    EXPECT_EQ(scores(check_one_kill(database, arguments(database), lines, delay, 28, 36)), whole);
   }
 }
 
@@ -96,8 +265,8 @@ TEST(StudyKillE2e, SixInstantsOnTheRealClockKeepTheFramesOfTheCutTrial) {
     SCOPED_TRACE(kill);
     const std::string database = folder / ("kill" + std::to_string(kill) + ".db");
     const auto arguments = run_arguments(protocol, database, {"--participants", "1", "--clock", "real"});
-    check_one_kill(database, arguments, static_cast<int>(random() % 6),
-                   std::chrono::microseconds(random() % 200000), 6);
+    check_one_kill(database, arguments, static_cast<int>(random() % 9),
+                   std::chrono::microseconds(random() % 200000), 7, 9);
   }
 }
 
@@ -105,18 +274,18 @@ TEST(StudyKillE2e, OneRunMayBeKilledAgainAndAgain) {
   const TemporaryFolder folder;
   const std::string protocol = folder / "short.toml", database = folder / "study.db";
   base::write_file_atomically(protocol, short_protocol("10"));
-  run_and_kill(run_arguments(protocol, database, {"--participants", "4"}), 2, {});
+  run_and_kill(run_arguments(protocol, database, {"--participants", "4"}), 4, {});
   Answers before;
   for (int kill = 0; kill < 6; ++kill) {
     const Answers now = answers_in(database);
-    EXPECT_GE(now.size(), before.size() + 2);
+    EXPECT_GT(now.size(), before.size());
     for (const auto& [key, answer] : before) EXPECT_EQ(now.at(key), answer);
     before = now;
-    run_and_kill({vip_study, "resume", "--db", database, "--events"}, 2,
+    run_and_kill({vip_study, "resume", "--db", database, "--events"}, 4,
                  std::chrono::microseconds(700 * kill));
   }
   EXPECT_EQ(run_program({vip_study, "resume", "--db", database}).exit_code, 0);
-  EXPECT_EQ(answers_in(database).size(), 24u);
+  EXPECT_EQ(answers_in(database).size(), 28u);
 }
 
 TEST(StudyKillE2e, InterruptStopsAtAFrameAndIsResumable) {
@@ -124,7 +293,7 @@ TEST(StudyKillE2e, InterruptStopsAtAFrameAndIsResumable) {
   const std::string protocol = folder / "short.toml", database = folder / "study.db";
   base::write_file_atomically(protocol, short_protocol("1"));
   Process program(run_arguments(protocol, database, {"--participants", "1", "--clock", "real"}));
-  program.read_line();
+  for (int unit = 0; unit < 3; ++unit) program.read_line();  // two pages and a trial
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   program.send(SIGINT);
   const Ended ended = program.wait();
@@ -136,7 +305,7 @@ TEST(StudyKillE2e, InterruptStopsAtAFrameAndIsResumable) {
       "SELECT count(*) FROM frame JOIN presentation p USING (presentation_id) WHERE p.state = 'interrupted'";
   EXPECT_GT(count_in(database, cut), 0);
   EXPECT_EQ(run_program({vip_study, "resume", "--db", database}).exit_code, 0);
-  EXPECT_EQ(answers_in(database).size(), 6u);
+  EXPECT_EQ(answers_in(database).size(), 7u);
 }
 
 }  // namespace

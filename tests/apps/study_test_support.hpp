@@ -24,14 +24,14 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// The pilot with six settings, no gap and trials of `duration_s`.
+/// The pilot with six settings, no pause before them and trials of `duration_s`.
 inline std::string short_protocol(const std::string& duration_s) {
   std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
   text = replaced(text, "name = \"ptpe_pilot\"", "name = \"short\"");
   text = replaced(text, "mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [20, 50]");
   text = replaced(text, "sd_fps = [0, 5, 10, 15, 20]", "sd_fps = [0, 5, 10]");
   text = replaced(text, "duration_s = 10 ", "duration_s = " + duration_s + " ");
-  return replaced(text, "gap_s = 3 ", "gap_s = 0 ");
+  return replaced(text, "\"black 3\", ", "");
 }
 
 inline std::vector<std::string> run_arguments(const std::string& protocol, const std::string& database,
@@ -43,19 +43,20 @@ inline std::vector<std::string> run_arguments(const std::string& protocol, const
   return arguments;
 }
 
-/// (participant, position) -> (response row, score, time of the answer).
-using Answers = std::map<std::pair<std::string, int>, std::tuple<std::int64_t, int, std::string>>;
+/// (participant, position of the unit, question) -> (response row, score, time of the answer).
+using AnswerKey = std::tuple<std::string, int, std::string>;
+using Answers = std::map<AnswerKey, std::tuple<std::int64_t, int, std::string>>;
 
 inline Answers answers_in(const std::string& database) {
   study::sqlite::Connection connection(database, study::sqlite::Open::Read);
   study::sqlite::Statement row(
       connection,
-      "SELECT s.participant, t.position, r.response_id, r.score, r.answered_utc "
-      "FROM response r JOIN trial t USING (trial_id) JOIN session s USING (session_id)");
+      "SELECT s.participant, u.position, q.code, r.response_id, r.score, r.answered_utc FROM response r "
+      "JOIN unit u USING (unit_id) JOIN session s USING (session_id) JOIN question q USING (question_id)");
   Answers answers;
   while (row.step()) {
-    answers[{row.text(0), static_cast<int>(row.integer(1))}] = {
-        row.integer(2), static_cast<int>(row.integer(3)), row.text(4)};
+    answers[{row.text(0), static_cast<int>(row.integer(1)), row.text(2)}] = {
+        row.integer(3), static_cast<int>(row.integer(4)), row.text(5)};
   }
   return answers;
 }
@@ -64,7 +65,21 @@ inline std::int64_t count_in(const std::string& database, const std::string& sql
   return study::sqlite::Connection(database, study::sqlite::Open::Read).integer(sql);
 }
 
-/// What the program said it had committed: the lines "answered P01 3 attempt 1".
+/// (participant, position) of every unit that the database says is done.
+using Units = std::set<std::pair<std::string, int>>;
+
+inline Units done_in(const std::string& database) {
+  study::sqlite::Connection connection(database, study::sqlite::Open::Read);
+  study::sqlite::Statement row(
+      connection,
+      "SELECT s.participant, u.position FROM unit u JOIN session s USING (session_id) "
+      "WHERE u.state = 'done'");
+  Units units;
+  while (row.step()) units.emplace(row.text(0), static_cast<int>(row.integer(1)));
+  return units;
+}
+
+/// What the program said it had committed: the lines "done P01 3 stimulus attempt 1".
 inline std::vector<std::pair<std::string, int>> acknowledged(const std::string& out) {
   std::vector<std::pair<std::string, int>> all;
   std::size_t at = 0;
@@ -72,7 +87,7 @@ inline std::vector<std::pair<std::string, int>> acknowledged(const std::string& 
     const std::size_t end = std::min(out.find('\n', at), out.size());
     char participant[40];
     int position = 0;
-    if (std::sscanf(out.substr(at, end - at).c_str(), "answered %39s %d", participant, &position) == 2) {
+    if (std::sscanf(out.substr(at, end - at).c_str(), "done %39s %d", participant, &position) == 2) {
       all.emplace_back(participant, position);
     }
     at = end + 1;

@@ -1,4 +1,4 @@
-#include "libstudy/observer/ptpe_observer.hpp"
+#include "libstudy/observer/observer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "libstudy/observer/ptpe_observer.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -17,18 +18,17 @@ Question seven_points() {
   return question;
 }
 
-ShownTrial shown(double mean, double sd, int person, int position) {
-  ShownTrial trial;
-  trial.participant = "P" + std::to_string(person);
-  trial.seed = 7;
-  trial.position = position;
-  trial.realised = {300, mean, mean, sd};
-  return trial;
+Occasion shown(double mean, double sd, int person, int position) {
+  Occasion occasion;
+  occasion.participant = "P" + std::to_string(person);
+  occasion.seed = 7;
+  occasion.position = position;
+  occasion.shown.push_back({0, {{"dam", "Ours", "32k"}, {10, 0, 10}}, {300, mean, mean, sd}, 0, 0});
+  return occasion;
 }
 
-int score(PtpeObserver& observer, const ShownTrial& trial) {
-  VirtualClock clock;
-  return observer.answer(seven_points(), trial, clock).score;
+int score(const Observer& observer, const Occasion& occasion) {
+  return observer.score(seven_points(), occasion, true);
 }
 
 double mean_score(const std::string& specification, double mean, double sd, int people) {
@@ -65,9 +65,7 @@ TEST(PtpeObserver, WithoutNoiseIsTheNearestCategory) {
 
 TEST(PtpeObserver, JudgesTheFramesShownNotTheNominalSetting) {
   PtpeObserver observer(parse_ptpe_observer("ptpe:a=30,b=0.02,noise=0,participant_sd=0"));
-  ShownTrial trial = shown(50, 0, 1, 0);
-  trial.nominal = {10, 0, 10};
-  EXPECT_GT(score(observer, trial), 5);
+  EXPECT_GT(score(observer, shown(50, 0, 1, 0)), 5);  // of a cell of 10 frames/s
 }
 
 TEST(PtpeObserver, IsAFunctionOfSeedPersonAndPosition) {
@@ -79,7 +77,7 @@ TEST(PtpeObserver, IsAFunctionOfSeedPersonAndPosition) {
     EXPECT_EQ(here, score(again, shown(30, 5, i, 0)));
     differ_by_person += here != score(observer, shown(30, 5, i + 1000, 0));
     differ_by_position += here != score(observer, shown(30, 5, i, 1));
-    ShownTrial other = shown(30, 5, i, 0);
+    Occasion other = shown(30, 5, i, 0);
     other.seed = 8;
     differ_by_seed += here != score(observer, other);
   }
@@ -133,6 +131,169 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ptpe:a=31,b=2", "b = 2 is out of range"},
         Bad{"ptpe:a=31,b=0,noise=-1", "character 21: noise = -1 is out of range"},
         Bad{"ptpe:a=31,b=0,", "character 15: expected key=number"}));
+
+/// Features by method: coarse, steady LoRes; fine HiRes; everything else between.
+class TwoFeatures final : public FeatureSource {
+ public:
+  PictureFeatures of(const StimulusSpec& stimulus) override {
+    if (stimulus.method == "LoRes") return {16, 0.02};
+    return {stimulus.method == "HiRes" ? 8.0 : 11.0, 0.02};
+  }
+};
+
+Question choice_of_two() {
+  Question question;
+  question.id = "preference";
+  question.kind = AnswerKind::Choice;
+  question.anchors = {{1, "first"}, {2, "second"}};
+  question.scale_min = 1;
+  question.scale_max = 2;
+  return question;
+}
+
+ShownStimulus stimulus(const std::string& method, double mean, double sd) {
+  return {0, {{"dam", method, "32k"}, {}}, {300, mean, mean, sd}, 0, 0};
+}
+
+Occasion pair_of(const ShownStimulus& first, const ShownStimulus& second, int person) {
+  Occasion occasion = shown(30, 5, person, 3);
+  occasion.shown = {first, second};
+  return occasion;
+}
+
+/// Share of 4,000 people who prefer the second.
+double second_preferred(const Observer& observer, const ShownStimulus& first, const ShownStimulus& second) {
+  int count = 0;
+  for (int person = 0; person < 4000; ++person)
+    count += observer.score(choice_of_two(), pair_of(first, second, person), true) == 2;
+  return count / 4000.0;
+}
+
+std::unique_ptr<Observer> observer_of(const std::string& specification) {
+  static TwoFeatures features;
+  return make_observer(specification, features);
+}
+
+TEST(MakeObserver, SpecificationsAreWrittenBackInFull) {
+  for (const std::string text :
+       {"random", "constant:4", "constant:2.5", "dropout:0.2,random", "dropout:0.1,constant:7",
+        "frames:grain=1.2,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0,sickness=0.25,"
+        "fatigue=0.02"}) {
+    EXPECT_EQ(observer_of(text)->simulated(), text);
+  }
+  EXPECT_EQ(observer_of("dropout:0.2")->simulated(), "dropout:0.2,random");
+  EXPECT_EQ(observer_of("frames:bias=0.5")->simulated(),
+            "frames:grain=1.2,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0.5,sickness=0.25,"
+            "fatigue=0.02");
+  for (const char* bad : {"", "people", "constant:", "constant:x", "dropout:2", "dropout:0.1,people",
+                          "frames:", "frames:bias=x", "frames:colour=1", "framesx", "random:1"})
+    EXPECT_THROW(observer_of(bad), base::Error) << bad;
+}
+
+TEST(Observers, TakePartAndAnswerWithinTheRules) {
+  Question consent = choice_of_two(), screening = seven_points(), words, age = seven_points();
+  consent.accept = {2, 2};
+  screening.accept = {3, 4};
+  words.kind = AnswerKind::Text;
+  age.kind = AnswerKind::Number;
+  age.scale_min = 18;
+  age.scale_max = 99;
+  const std::vector<Question> page{consent, screening, words, age};
+  VirtualClock clock;
+  for (const char* kind : {"random", "constant:7", "frames", "ptpe:a=31,b=0.035", "dropout:0.5"}) {
+    const auto observer = observer_of(kind);
+    for (int person = 0; person < 50; ++person) {
+      Occasion occasion = shown(30, 0, person, 1);
+      occasion.shown.clear();
+      const auto answers = observer->ask({}, page, occasion, clock, {});
+      ASSERT_EQ(answers.size(), 4u);
+      EXPECT_EQ(answers[0].answer.score, 2);
+      EXPECT_EQ(answers[1].answer.score, 3);
+      EXPECT_FALSE(answers[2].answer.score);
+      EXPECT_GE(answers[3].answer.score.value(), 18);
+      EXPECT_LE(answers[3].answer.score.value(), 99);
+      EXPECT_EQ(answers[0].response_time_s, 0);
+    }
+  }
+  EXPECT_EQ(clock.now_ns(), 0);
+}
+
+TEST(RandomObserver, GivesEveryScoreEquallyOften) {
+  const auto observer = observer_of("random");
+  std::vector<int> count(8);
+  for (int person = 0; person < 7000; ++person)
+    ++count.at(static_cast<std::size_t>(score(*observer, shown(30, 5, person, 2))));
+  // SD of a count is 29.
+  for (int k = 1; k <= 7; ++k) EXPECT_NEAR(count[static_cast<std::size_t>(k)], 1000, 120) << k;
+}
+
+TEST(ConstantObserver, SaysTheSameAndStaysOnTheScale) {
+  EXPECT_EQ(score(*observer_of("constant:4"), shown(10, 5, 1, 2)), 4);
+  EXPECT_EQ(score(*observer_of("constant:9"), shown(10, 5, 1, 2)), 7);
+  EXPECT_EQ(observer_of("constant:4")->score(choice_of_two(), shown(10, 5, 1, 2), true), 2);
+}
+
+TEST(DropoutObserver, LeavesWithItsProbabilityBeforeEachTrial) {
+  const auto observer = observer_of("dropout:0.2,constant:3");
+  int left = 0;
+  for (int person = 0; person < 200; ++person) {
+    for (int position = 0; position < 50; ++position) {
+      try {
+        observer->before_trial(shown(30, 5, person, position));
+      } catch (const Left&) {
+        ++left;
+      }
+    }
+  }
+  EXPECT_NEAR(left / 10000.0, 0.2, 0.016);  // four standard deviations
+  EXPECT_EQ(score(*observer, shown(30, 5, 1, 1)), 3);
+}
+
+TEST(FramesObserver, PrefersFinePicturesAndSteadyTiming) {
+  const auto observer = observer_of("frames");
+  const ShownStimulus coarse = stimulus("LoRes", 30, 5), fine = stimulus("HiRes", 30, 5);
+  // q_2 - q_1 = 1.2 octaves: Phi(1.2 / 0.9) = 0.909.
+  EXPECT_NEAR(second_preferred(*observer, coarse, fine), 0.909, 0.02);
+  EXPECT_NEAR(second_preferred(*observer, fine, coarse), 0.091, 0.02);
+  EXPECT_NEAR(second_preferred(*observer, fine, fine), 0.5, 0.032);
+  EXPECT_GT(second_preferred(*observer, stimulus("HiRes", 15, 10), stimulus("HiRes", 50, 2)), 0.9);
+}
+
+TEST(FramesObserver, TheIntervalBiasShiftsChoicesOfEqualStimuli) {
+  const ShownStimulus same = stimulus("Ours", 30, 5);
+  // Phi(0.5 / 0.9) = 0.711.
+  EXPECT_NEAR(second_preferred(*observer_of("frames:bias=0.5"), same, same), 0.711, 0.03);
+  EXPECT_NEAR(second_preferred(*observer_of("frames:bias=-0.5"), same, same), 0.289, 0.03);
+}
+
+TEST(FramesObserver, CoarsePicturesLookLessRealAndMakeSicker) {
+  const auto observer = observer_of("frames");
+  Question dizziness = seven_points();
+  dizziness.id = "dizziness";
+  dizziness.scale_min = 0;
+  dizziness.scale_max = 3;
+  double realism[2] = {}, symptoms[2] = {};
+  for (int person = 0; person < 2000; ++person) {
+    for (const int fine : {0, 1}) {
+      Occasion occasion = shown(30, 5, person, 4);
+      occasion.shown = {stimulus(fine ? "HiRes" : "LoRes", 30, 5)};
+      realism[fine] += score(*observer, occasion);
+      symptoms[fine] += observer->score(dizziness, occasion, false);
+    }
+  }
+  EXPECT_NEAR((realism[1] - realism[0]) / 2000, 1.2, 0.1);
+  EXPECT_GT((symptoms[0] - symptoms[1]) / 2000, 0.1);
+}
+
+TEST(FeatureTable, KnowsTheFiveMethodsAndNoOther) {
+  FeatureTable table;
+  for (const char* method : {"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"}) {
+    const PictureFeatures features = table.of({"data/scenes/faucet.toml", method, "16k"});
+    EXPECT_GT(features.granularity_px, 0);
+    EXPECT_GT(features.flicker, 0);
+  }
+  EXPECT_THROW(table.of({"data/scenes/faucet.toml", "Theirs", "16k"}), base::Error);
+}
 
 }  // namespace
 }  // namespace study

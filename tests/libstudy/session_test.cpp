@@ -3,10 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <tuple>
 
 #include "libstudy/display/null.hpp"
-#include "libstudy/observer/ptpe_observer.hpp"
+#include "libstudy/observer/observer.hpp"
 #include "libstudy/session/frame_journal.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
@@ -17,19 +18,48 @@ namespace study {
 namespace {
 
 using sqlite::Open;
+using ::testing::ElementsAre;
+
+/// One stimulus without pictures for all cells; tells which were asked for.
+class NullStimuli final : public StimulusSource {
+ public:
+  explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
+  Stimulus& stimulus(const Cell& cell) override {
+    asked.push_back(cell.stimulus.method);
+    return stimulus_;
+  }
+  std::vector<std::string> asked;
+
+ private:
+  NullStimulus stimulus_;
+};
+
+/// What a session needs on the virtual clock.
+struct Desk {
+  explicit Desk(const Protocol& protocol) : stimuli(protocol.content.content_step_s) {}
+  SessionParts parts(Participant& participant, Store& store) {
+    return {clock, display, stimuli, participant, store, nullptr, true};
+  }
+  VirtualClock clock;
+  NullDisplay display;
+  NullStimuli stimuli;
+};
+
+std::unique_ptr<Observer> ptpe_observer() {
+  static FeatureTable features;
+  return make_observer("ptpe:a=31,b=0.035", features);
+}
 
 /// One process's share of a study: plays what is open until `frames` more frames were shown.
 void play(Store& store, const Protocol& protocol, std::int64_t frames) {
-  VirtualClock clock;
-  NullDisplay display;
-  NullStimulus stimulus(protocol.content.content_step_s);
-  PtpeObserver observer(parse_ptpe_observer("ptpe:a=31,b=0.035"));
+  Desk desk(protocol);
+  const auto observer = ptpe_observer();
   SessionHooks hooks;
-  hooks.stop = [&] { return frames-- <= 0; };
+  hooks.shown = [&](const FrameRecord&) { --frames; };
+  hooks.wish = [&] { return frames <= 0 ? Wish::Stop : Wish::GoOn; };
   for (const OpenRun& run : store.open_runs()) {
-    for (const OpenSession& session : run.sessions) {
-      run_session(protocol, session, {clock, display, stimulus, observer, store, true}, hooks);
-    }
+    for (const OpenSession& session : run.sessions)
+      run_session(protocol, session, desk.parts(*observer, store), hooks);
   }
 }
 
@@ -90,17 +120,17 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   EXPECT_GT(stops, 5);
   EXPECT_EQ(answers(folder / "cut.db"), answers(folder / "whole.db"));
   sqlite::Connection look(folder / "cut.db", Open::Read);
-  EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 42);
+  EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 44);  // consent is an answer too
   EXPECT_EQ(look.integer("SELECT count(*) FROM presentation WHERE state = 'played'"), 42);
   // Frames of what was cut stay, and a trial is shown again only while it has no answer.
   const auto cut = look.integer("SELECT count(*) FROM presentation WHERE state = 'interrupted'");
   EXPECT_GT(cut, 5);
-  EXPECT_LE(cut, stops);  // a stop in the gap cuts nothing
+  EXPECT_LE(cut, stops);  // a stop in a pause cuts nothing
   EXPECT_EQ(look.integer("SELECT count(*) FROM presentation p WHERE state = 'interrupted' AND NOT EXISTS "
                          "(SELECT 1 FROM frame f WHERE f.presentation_id = p.presentation_id)"),
             0);
-  EXPECT_EQ(look.integer("SELECT count(*) FROM presentation p JOIN response r USING (trial_id) "
-                         "WHERE p.presentation_id > r.presentation_id"),
+  EXPECT_EQ(look.integer("SELECT count(*) FROM response r JOIN unit u USING (unit_id) JOIN presentation p "
+                         "USING (trial_id) WHERE p.attempt > r.attempt"),
             0);
 }
 
@@ -110,47 +140,364 @@ TEST(Session, EachFrameHoldsTauWhenAModelIsInForce) {
   Store store(folder / "study.db", Open::Create);
   store.add_run(test::run_plan(protocol, {"P01", "P02"}));
   const auto sessions = store.open_runs().at(0).sessions;
-  VirtualClock clock;
-  NullDisplay display;
-  NullStimulus stimulus(protocol.content.content_step_s);
-  PtpeObserver observer(parse_ptpe_observer("ptpe:a=31,b=0.035"));
-  SessionParts parts{clock, display, stimulus, observer, store, true};
+  Desk desk(protocol);
+  const auto observer = ptpe_observer();
+  SessionParts parts = desk.parts(*observer, store);
   run_session(protocol, sessions.at(0), parts, {});
   parts.ptpe = stats::PtpeModel{24, 0.02};
   run_session(protocol, sessions.at(1), parts, {});
   sqlite::Connection look(folder / "study.db", Open::Read);
   const std::string frames =
       "SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
-      "JOIN session s USING (session_id) WHERE ";
+      "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = "
+      "t.first_cell WHERE ";
   EXPECT_EQ(look.integer(frames + "participant = 'P01' AND tolerance_fps <> 0"), 0);
   EXPECT_EQ(look.integer(frames + "participant = 'P02' AND (tolerance_fps = 0) <> (frame_index < 2)"), 0);
   // Without fluctuation tau is mu - a from the first interval on.
-  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND nominal_sd_fps = 0 AND frame_index >= 2 "
-                                  "AND abs(tolerance_fps - (nominal_mean_fps - 24)) > 1e-5"),
+  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND c.sd_fps = 0 AND frame_index >= 2 "
+                                  "AND abs(tolerance_fps - (c.mean_fps - 24)) > 1e-5"),
             0);
 }
 
-/// Answers off the scale.
-class Broken final : public Responder {
+/// A participant of pages told beforehand: question -> answer, everything else 1.
+class Scripted final : public Participant {
  public:
-  std::optional<std::string> simulated() const override { return "broken"; }
-  Answer answer(const Question&, const ShownTrial&, Clock&) override { return {8}; }
+  std::optional<std::string> simulated() const override { return "scripted"; }
+  void read(const Block& block, double least_s, Clock& clock, const Check& check) override {
+    seen.push_back("read " + block.id);
+    wait(least_s, clock, check);
+  }
+  std::vector<TimedAnswer> ask(const Block&, std::span<const Question> questions, const Occasion& occasion,
+                               Clock&, const Check& check) override {
+    check();
+    std::vector<TimedAnswer> out;
+    std::string line = "ask";
+    for (const Question& question : questions) {
+      line += " " + question.id;
+      const auto found = says.find(question.id);
+      out.push_back({found == says.end() ? test::score(1) : found->second, 0.5});
+    }
+    seen.push_back(line);
+    occasions.push_back(occasion);
+    return out;
+  }
+  void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) override {
+    const char* names[] = {"black", "rest", "break"};
+    if (seconds > 0)
+      seen.push_back(names[static_cast<int>(kind)] + (" " + std::to_string(std::lround(seconds))));
+    wait(seconds, clock, check);
+  }
+
+  std::map<std::string, Answer> says;
+  std::vector<std::string> seen;
+  std::vector<Occasion> occasions;
+
+ private:
+  static void wait(double seconds, Clock& clock, const Check& check) {
+    check();
+    clock.wait_until(clock.now_ns() + std::llround(1e9 * seconds));
+    check();
+  }
 };
 
-TEST(Session, AnAnswerOffTheScaleIsAnErrorAndIsNotStored) {
-  const test::TemporaryFolder folder;
-  const Protocol protocol = test::pilot();
-  Store store(folder / "study.db", Open::Create);
-  store.add_run(test::run_plan(protocol, {"P01"}));
-  VirtualClock clock;
-  NullDisplay display;
-  NullStimulus stimulus(0.01);
-  Broken broken;
-  const auto runs = store.open_runs();
+/// test::pairs() at one frame rate for all, shown by its own clock, with a rest within each trial.
+Protocol paced_pairs() {
+  std::string text = test::pairs_toml;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("timing = \"native\"", "timing = \"equal\"\nmean_fps = [20]\nsd_fps = [0]");
+  replace("\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\"");
+  return parse_protocol(text, "pairs.toml");
+}
+
+/// One session of a protocol in a database of its own.
+struct OneSession {
+  explicit OneSession(const Protocol& asked) : protocol(asked), desk(asked) {
+    store.add_run(test::run_plan(protocol, {"P01"}));
+    person.says["age"] = test::score(40);
+    person.says["remarks"] = test::words("");
+  }
+  std::vector<OpenRun> open() { return store.open_runs(); }
+  void run(const SessionHooks& hooks = {}) {
+    SessionParts parts = desk.parts(person, store);
+    parts.personal = &personal;
+    const auto runs = open();
+    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
+  }
+  std::int64_t count(const std::string& sql) {
+    return sqlite::Connection(folder / "study.db", Open::Read).integer("SELECT count(*) FROM " + sql);
+  }
+  SessionRow row() { return read_status(folder / "study.db").sessions.at(0); }
+
+  test::TemporaryFolder folder;
+  Protocol protocol;
+  Desk desk;
+  Store store{folder / "study.db", Open::Create};
+  PersonalFile personal{folder / "study.db"};
+  Scripted person;
+};
+
+TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
+  OneSession one(paced_pairs());
+  one.run();
+  std::vector<std::string> trial{"black 1", "ask preference", "rest 9", "ask ease"};
+  std::vector<std::string> expected{"ask age games"};
+  for (int i = 0; i < 4; ++i) expected.insert(expected.end(), trial.begin(), trial.end());
+  expected.emplace_back("ask remarks");
+  EXPECT_EQ(one.person.seen, expected);
+  EXPECT_EQ(one.row().state, "done");
+  EXPECT_EQ(one.desk.stimuli.asked.size(), 8u);
+  // Each judgement is about both stimuli as they were shown.
+  const Occasion& judged = one.person.occasions.at(1);
+  ASSERT_EQ(judged.shown.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(judged.shown[i].what.stimulus.method, one.desk.stimuli.asked[i]);
+    EXPECT_NEAR(judged.shown[i].realised.mean, 20, 1e-6);
+    EXPECT_NEAR(judged.shown[i].longest_ms, 50, 1e-6);
+    EXPECT_NEAR(judged.shown[i].play_speed, 20 * 0.02, 1e-6);
+  }
+  EXPECT_EQ(one.count("presentation WHERE interval = 1 AND state = 'played'"), 4);
+}
+
+TEST(Session, PersonalAnswersStandInTheirFileAlone) {
+  OneSession one(paced_pairs());
+  one.run();
+  const auto entries = one.personal.read("P01");
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0].question, "age");
+  EXPECT_EQ(entries[0].answer, "40");
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'age'"), 0);
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'games'"), 1);
+  one.store.add_run([&] {
+    RunPlan again = test::run_plan(one.protocol, {"P01"});
+    again.sessions[0].visit = 2;
+    return again;
+  }());
+  one.person.seen.clear();
+  one.run();
+  EXPECT_EQ(one.person.seen.at(0), "ask games") << "a person whose age is known is not asked again";
+}
+
+TEST(Session, WithoutAPersonalFileNothingPersonalIsAsked) {
+  OneSession one(paced_pairs());
+  const auto runs = one.open();
   EXPECT_THROW(
-      run_session(protocol, runs[0].sessions[0], {clock, display, stimulus, broken, store, true}, {}),
+      run_session(one.protocol, runs.at(0).sessions.at(0), one.desk.parts(one.person, one.store), {}),
       base::Error);
-  EXPECT_EQ(read_status(folder / "study.db").protocols.at(0).answered, 0);
+  EXPECT_TRUE(one.person.seen.empty());
+}
+
+/// The pilot of one setting, with consent, a symptom scale that stops at 12 and a refusable screening.
+Protocol guarded() {
+  Protocol protocol = test::pilot();
+  std::string text = protocol.text;
+  const std::string before = "[[block]]\nkind = \"stimulus\"";
+  text.insert(text.find(before), R"([[block]]
+kind = "screening"
+id = "screening"
+
+[[block.question]]
+id = "epilepsy"
+kind = "choice"
+text = "Do flickering lights harm you?"
+anchors = {0 = "no", 1 = "yes"}
+accept = [0, 0]
+
+[[block]]
+kind = "fms"
+id = "sickness"
+stop_at = 12
+
+)");
+  return parse_protocol(text, "guarded.toml");
+}
+
+TEST(Session, RefusedConsentEndsItAndKeepsNoAnswer) {
+  OneSession one(guarded());
+  one.person.says["take_part"] = test::score(0);
+  one.run();
+  EXPECT_THAT(one.person.seen, ElementsAre("read welcome", "ask take_part"));
+  EXPECT_EQ(one.row().state, "not eligible");
+  EXPECT_EQ(one.count("response"), 0);
+  EXPECT_TRUE(one.open().empty());
+  EXPECT_TRUE(one.store.taken_slots(one.protocol.sha256).empty());
+}
+
+TEST(Session, WhoIsRuledOutByScreeningSeesNothing) {
+  OneSession one(guarded());
+  one.person.says["epilepsy"] = test::score(1);
+  one.run();
+  EXPECT_THAT(one.person.seen, ElementsAre("read welcome", "ask take_part", "ask epilepsy"));
+  EXPECT_EQ(one.row().state, "not eligible");
+  EXPECT_EQ(one.count("presentation"), 0);
+  EXPECT_EQ(one.count("event WHERE detail LIKE '%epilepsy%' OR detail LIKE '%screening%'"), 0);
+}
+
+TEST(Session, AStopRuleOffersARestAndShowsNothingMore) {
+  OneSession one(guarded());
+  one.person.says["epilepsy"] = test::score(0);
+  one.person.says["fms"] = test::score(12);
+  one.run();
+  EXPECT_EQ(one.person.seen.back(), "break 60");
+  EXPECT_EQ(one.row().state, "stopped");
+  EXPECT_EQ(one.count("presentation"), 0);
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'fms' AND score = 12"), 1);
+  EXPECT_TRUE(one.open().empty());
+}
+
+/// Wishes for the first showings of trials: the wish at frame 5 of each.
+SessionHooks wish_at_frame_5(Wish wish, int showings) {
+  auto frame = std::make_shared<std::int64_t>(-1);
+  auto left = std::make_shared<int>(showings);
+  SessionHooks hooks;
+  hooks.shown = [frame](const FrameRecord& record) { *frame = record.index; };
+  hooks.wish = [=] {
+    if (*frame != 5 || *left == 0) return Wish::GoOn;
+    *frame = -1;
+    --*left;
+    return wish;
+  };
+  return hooks;
+}
+
+TEST(Session, ATrialIsRepeatedOnWishAndBothShowingsStay) {
+  OneSession one(paced_pairs());
+  std::vector<int> attempts;
+  SessionHooks hooks = wish_at_frame_5(Wish::RepeatTrial, 2);
+  hooks.done = [&](const UnitDone& unit) {
+    if (unit.unit.trial) attempts.push_back(unit.attempt);
+  };
+  one.run(hooks);
+  EXPECT_THAT(attempts, ElementsAre(3, 1, 1, 1));
+  EXPECT_EQ(one.count("presentation WHERE state = 'interrupted'"), 2);
+  EXPECT_EQ(one.count("presentation WHERE state = 'played'"), 8);
+  EXPECT_EQ(one.count("response WHERE attempt = 3"), 2);
+  EXPECT_EQ(one.row().state, "done");
+}
+
+TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
+  OneSession one(paced_pairs());
+  bool wished = false;
+  SessionHooks hooks;
+  hooks.wish = [&] {
+    // In the rest between the two questions of the first trial.
+    const bool now = !wished && one.person.seen.size() > 1 && one.person.seen.back() == "rest 9";
+    wished = wished || now;
+    return now ? Wish::RepeatTrial : Wish::GoOn;
+  };
+  one.run(hooks);
+  const auto asked = std::count(one.person.seen.begin(), one.person.seen.end(), "ask preference");
+  EXPECT_EQ(asked, 5);
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'preference'"), 5);
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'ease'"), 4);
+}
+
+TEST(Session, AfterAStopBetweenTwoQuestionsOnlyTheSecondIsAsked) {
+  OneSession one(paced_pairs());
+  SessionHooks hooks;
+  hooks.wish = [&] { return one.person.seen.back() == "rest 9" ? Wish::Stop : Wish::GoOn; };
+  one.person.seen = {"begin"};
+  EXPECT_THROW(one.run(hooks), Stopped);
+  one.person.seen.clear();
+  one.run();
+  EXPECT_THAT(std::vector<std::string>(one.person.seen.begin(), one.person.seen.begin() + 3),
+              ElementsAre("black 1", "rest 9", "ask ease"));
+  EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'preference'"), 4);
+}
+
+TEST(Session, TheExperimenterEndsIt) {
+  OneSession one(paced_pairs());
+  one.run(wish_at_frame_5(Wish::EndSession, 1));
+  EXPECT_EQ(one.person.seen.back(), "break 60");
+  EXPECT_EQ(one.row().state, "stopped");
+  EXPECT_EQ(one.count("presentation WHERE state = 'interrupted'"), 1);
+  EXPECT_TRUE(one.open().empty());
+}
+
+TEST(Session, APauseWaitsBeforeTheNextUnit) {
+  OneSession one(paced_pairs());
+  int left = 50;
+  SessionHooks hooks;
+  hooks.wish = [&] { return left-- > 0 ? Wish::Pause : Wish::GoOn; };
+  one.run(hooks);
+  EXPECT_EQ(one.row().state, "done");
+  EXPECT_LE(left, 0);
+}
+
+TEST(Session, NativeFramesAreTakenAsTheyComeAndHaveNoVerdict) {
+  OneSession one(test::pairs());
+  /// Every picture takes 10, then 20 ms.
+  class Slow final : public Display {
+   public:
+    explicit Slow(VirtualClock& clock) : clock_(clock) {}
+    std::string description() const override { return "slow"; }
+    TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
+    double refresh_hz() const override { return 0; }
+    void render(Stimulus&) override {
+      clock_.wait_until(clock_.now_ns() + (odd_ ? 20'000'000 : 10'000'000));
+      odd_ = !odd_;
+    }
+    PresentTimes present(const Clock& clock) override {
+      PresentTimes times;
+      times.submitted_ns = clock.now_ns();
+      return times;
+    }
+
+   private:
+    VirtualClock& clock_;
+    bool odd_ = false;
+  };
+  Slow display(one.desk.clock);
+  SessionParts parts{one.desk.clock, display, one.desk.stimuli, one.person, one.store, &one.personal, true};
+  const auto runs = one.open();
+  run_session(one.protocol, runs.at(0).sessions.at(0), parts, {});
+  EXPECT_EQ(one.count("presentation WHERE state = 'played' AND verdict IS NULL"), 8);
+  const stats::FpsMoments& seen = one.person.occasions.at(1).shown.at(0).realised;
+  EXPECT_NEAR(seen.mean, 1 / 0.015, 0.5);
+  EXPECT_NEAR(seen.sd, 25, 0.1);
+  EXPECT_NEAR(static_cast<double>(seen.frames), 67, 1);
+}
+
+TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
+  OneSession one(test::pairs());
+  EXPECT_THROW(one.run(), base::Error);
+}
+
+TEST(Session, UnderPublishedTimingTauIsThatOfTheSchedule) {
+  const Protocol protocol = read_protocol(base::resource("protocols/task2.toml"));
+  OneSession one(protocol);
+  SessionParts parts = one.desk.parts(one.person, one.store);
+  parts.ptpe = stats::PtpeModel{24, 0.02};
+  const auto runs = one.open();
+  run_session(protocol, runs.at(0).sessions.at(0), parts, {});
+  EXPECT_EQ(one.count("frame JOIN presentation p USING (presentation_id) JOIN cell c ON c.cell = p.cell "
+                      "WHERE abs(tolerance_fps - (c.mean_fps - 24 * exp(0.02 * c.sd_fps))) > 1e-9"),
+            0);
+  EXPECT_GT(one.count("frame"), 10 * 2 * 30 * 15);
+}
+
+TEST(Session, WhoLeavesDropsOutAndFreesTheSlot) {
+  OneSession one(guarded());
+  FeatureTable features;
+  const auto observer = make_observer("dropout:0.3", features);
+  const auto runs = one.open();
+  run_session(one.protocol, runs.at(0).sessions.at(0), one.desk.parts(*observer, one.store), {});
+  EXPECT_EQ(one.row().state, "dropped out");
+  EXPECT_TRUE(one.open().empty());
+  EXPECT_TRUE(one.store.taken_slots(one.protocol.sha256).empty());
+}
+
+TEST(Session, AnAnswerOffTheScaleIsAnErrorAndIsNotStored) {
+  OneSession one(test::pilot());
+  for (const Answer& bad : {test::score(8), test::score(0), test::words("much"), Answer{}}) {
+    one.person.says["satisfaction"] = bad;
+    EXPECT_THROW(one.run(), base::Error);
+    EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'satisfaction'"), 0);
+  }
+  one.person.says["satisfaction"] = test::score(7);
+  one.run();
+  EXPECT_EQ(one.row().state, "done");
 }
 
 TEST(FrameJournal, EveryFrameIsInTheStoreOrHandedBackOnce) {
@@ -159,7 +506,8 @@ TEST(FrameJournal, EveryFrameIsInTheStoreOrHandedBackOnce) {
   store.add_run(test::run_plan(test::pilot(), {"P01"}));
   const auto session = store.open_runs().at(0).sessions.at(0);
   for (const bool in_background : {false, true}) {
-    const auto id = store.begin_presentation(session.id, session.trials[in_background].id, 1, 0);
+    const OpenUnit& unit = session.units.at(in_background ? 3 : 2);
+    const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
     FrameJournal journal(store, id, 0, in_background);
     for (const FrameRecord& frame : test::frames(0, 1000)) journal.add(frame);
     const auto rest = journal.finish();
