@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t most_cells = 1000;
 constexpr int most_trials = 1000;         // of one participant
 constexpr double most_sequences = 50000;  // of groups; the assignment lists them all
+constexpr double most_places = 1e7;
 
 template <class Value>
 void check_distinct(const base::TomlTable& table, std::string_view key, std::vector<Value> values) {
@@ -172,17 +173,24 @@ std::size_t distinct_levels(const Design& design, Level level) {
   return levels.size();
 }
 
+/// Orders in which a participant can meet groups of different scenes, before n_* is spread evenly.
+double sequences_at_most(const Design& design) {
+  const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
+  const auto sizes = distinct_levels(design, [](const StimulusSpec& what) { return what.n_star; });
+  double out = 1;
+  for (int i = 0; i < design.groups; ++i)
+    out *= (static_cast<double>(scenes) - i) * static_cast<double>(sizes);
+  return out;
+}
+
 /// Different scenes come first: a participant never meets one twice.
 void check_groups(const base::TomlTable& table, const Design& design) {
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
-  const auto sizes = distinct_levels(design, [](const StimulusSpec& what) { return what.n_star; });
   if (static_cast<std::size_t>(design.groups) > scenes) {
     table.fail("groups", "are more than the " + std::to_string(scenes) + " scenes",
                "use at most one group for each scene");
   }
-  double sequences = 1;
-  for (int i = 0; i < design.groups; ++i)
-    sequences *= (static_cast<double>(scenes) - i) * static_cast<double>(sizes);
+  const double sequences = sequences_at_most(design);
   if (sequences > most_sequences) {
     table.fail(table.has("groups") ? "groups" : "scene",
                "can be met in " + shown(sequences) + " orders of scenes and n_*",
@@ -199,6 +207,17 @@ void check_trials(const base::TomlTable& table, const Design& design) {
     table.fail(design.pairs ? "pairs" : "method",
                "and the other factors make " + std::to_string(trials) + " trials",
                "name fewer values, for at most " + std::to_string(most_trials));
+  }
+}
+
+/// The assignment counts how often each of its places is taken.
+void check_places(const base::TomlTable& table, const Design& design) {
+  const bool rows = design.order == TrialOrder::Latin || design.order == TrialOrder::Williams;
+  const double places =
+      sequences_at_most(design) * (rows ? 2 * trials_of_group(design) : 1) * (design.pairs ? 64 : 1);
+  if (places > most_places) {
+    table.fail("order", "and the sequences of groups make up to " + shown(places) + " places to balance",
+               "use order = \"shuffle\", or name fewer scenes, n_* or cells");
   }
 }
 
@@ -277,6 +296,7 @@ Design read_design(const base::TomlTable& table) {
   check_groups(table, design);
   check_trials(table, design);
   design.order = read_trial_order(table);
+  check_places(table, design);
   read_never_adjacent(table, design);
   if (table.choice_or("assignment", "balanced", {"balanced", "paper_random"}) == "paper_random")
     design.assignment = Assignment::PaperRandom;
