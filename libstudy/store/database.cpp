@@ -94,10 +94,11 @@ void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t versio
   database.execute("PRAGMA foreign_keys = ON");
 }
 
-/// An older database as this program reads it, in memory: the file stays as it is.
+/// An older database as this program reads it: the file stays as it is.
 std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps,
                                           std::int64_t version) {
-  auto copy = std::make_unique<Connection>(database, sqlite::InMemory{});
+  auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
+  copy->copy_from(database);
   upgrade(*copy, steps, version);
   copy->execute("PRAGMA query_only = ON");
   return copy;
@@ -136,6 +137,12 @@ SchemaSteps read_schema_steps() {
         base::read_file(base::resource(std::string("libstudy/store/sql/") + file), max_sql_bytes));
   }
   return steps;
+}
+
+std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
+  auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
+  upgrade(*database, read_schema_steps(), 0);
+  return database;
 }
 
 std::unique_ptr<Connection> open_database(const fs::path& path, Open how, const SchemaSteps& steps,

@@ -23,10 +23,13 @@ SchemaSteps read_schema_steps();
 ///
 /// Open::Create makes a missing or empty file into a database, and removes it again when that fails;
 /// Open::Write upgrades an older one, each step in one transaction, after a copy "<path>.v<version>-<UTC
-/// time>.bak"; Open::Read gives an upgraded copy in memory of an older one. base::Error, with the file left
+/// time>.bak"; Open::Read gives an upgraded, temporary copy of an older one. base::Error, with the file left
 /// byte for byte as it was: not a database of this program, newer than `steps`, damaged or cut short
 /// (integrity check). max_pages > 0 limits the file to that many pages of 4 KiB.
 std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,
                                                   const SchemaSteps& steps, std::int64_t max_pages = 0);
+
+/// Empty, of the newest schema, without a file; messages name `shown`.
+std::unique_ptr<sqlite::Connection> make_temporary_database(const std::filesystem::path& shown);
 
 }  // namespace study

@@ -64,6 +64,15 @@ std::vector<PersonalEntry> PersonalFile::read(const std::string& participant) {
   return entries;
 }
 
+void PersonalFile::rename(const std::map<std::string, std::string>& codes) {
+  Transaction transaction(*file_);
+  // In two steps, since one may take the code that another gives up.
+  Statement aside(*file_, "UPDATE personal SET participant = ' ' || ? WHERE participant = ?");
+  for (const auto& [before, now] : codes) aside.bind(0, now).bind(1, before).run();
+  file_->execute("UPDATE personal SET participant = substr(participant, 2) WHERE participant LIKE ' %'");
+  transaction.commit();
+}
+
 void PersonalFile::forget(const std::string& participant) {
   Statement(*file_, "DELETE FROM personal WHERE participant = ?").bind(0, participant).run();
   file_->execute("VACUUM");

@@ -2,6 +2,7 @@
 /// Personal data apart from the study's database, joined to it by the participant code alone.
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ class PersonalFile {
   /// Commits; an answer to the same question replaces the former one.
   void keep(const std::vector<PersonalEntry>& entries);
   std::vector<PersonalEntry> read(const std::string& participant);
+  /// Gives participants other codes, all at once.
+  void rename(const std::map<std::string, std::string>& codes);
   /// Deletes what stands of a participant and overwrites where it stood.
   void forget(const std::string& participant);
 

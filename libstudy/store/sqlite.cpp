@@ -103,21 +103,23 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
   protect();
 }
 
-Connection::Connection(Connection& original, InMemory) : path_(original.path_) {
+Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_EXRESCODE;
-  if (sqlite3_open_v2(":memory:", &handle_, flags, nullptr) != SQLITE_OK) {
+  if (sqlite3_open_v2("", &handle_, flags, nullptr) != SQLITE_OK) {
     sqlite3_close_v2(std::exchange(handle_, nullptr));
     throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
   }
-  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", original.handle_, "main");
-  const int code = copy ? sqlite3_backup_step(copy, -1) : SQLITE_OK;
-  sqlite3_backup_finish(copy);
-  if (!copy || code != SQLITE_DONE) {
-    const Advice told = advice(code, sqlite3_errmsg(handle_), 0);
-    sqlite3_close_v2(std::exchange(handle_, nullptr));
-    throw base::Error(path_.string(), "cannot be copied: " + told.problem, told.mend);
-  }
   protect();
+}
+
+void Connection::copy_from(Connection& other) {
+  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", other.handle_, "main");
+  const int code = copy ? sqlite3_backup_step(copy, -1) : sqlite3_errcode(handle_);
+  sqlite3_backup_finish(copy);
+  if (code != SQLITE_DONE) {
+    const Advice told = advice(code, sqlite3_errmsg(handle_), 0);
+    throw base::Error(path_.string(), told.problem, told.mend);
+  }
 }
 
 void Connection::protect() {
@@ -182,6 +184,11 @@ Statement& Statement::bind(int index, std::string_view value) {
 
 Statement& Statement::bind_null(int index) {
   connection_->check(sqlite3_bind_null(handle_, index + 1));
+  return *this;
+}
+
+Statement& Statement::bind_from(int index, const Statement& row, int column) {
+  connection_->check(sqlite3_bind_value(handle_, index + 1, sqlite3_column_value(row.handle_, column)));
   return *this;
 }
 

@@ -21,15 +21,15 @@ enum class Open {
   Untouched  ///< a look at the file alone: no lock, no log is read or replayed, nothing beside it is made
 };
 
-/// Chooses a database that lives in memory.
-struct InMemory {};
+/// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
+struct Temporary {};
 
 /// One connection. Not for two threads at a time.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
-  /// A copy of another database as it is now; messages name the file it came from.
-  Connection(Connection& original, InMemory);
+  /// Empty; messages name `shown`.
+  Connection(const std::filesystem::path& shown, Temporary);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -37,6 +37,8 @@ class Connection {
   const std::filesystem::path& path() const { return path_; }
   /// Runs statements that give no rows.
   void execute(const std::string& sql);
+  /// Takes over all that stands in another database, in one transaction; what stood here is gone.
+  void copy_from(Connection& other);
   /// First column of the first row; 0 when there is no row.
   std::int64_t integer(const std::string& sql);
   std::string text(const std::string& sql);
@@ -71,6 +73,8 @@ class Statement {
   Statement& bind(int index, const std::string& value) { return bind(index, std::string_view(value)); }
   Statement& bind(int index, const char* value) { return bind(index, std::string_view(value)); }
   Statement& bind_null(int index);
+  /// The value of a column of another statement's row.
+  Statement& bind_from(int index, const Statement& row, int column);
   template <class Value>
   Statement& bind(int index, const std::optional<Value>& value) {
     return value ? bind(index, *value) : bind_null(index);

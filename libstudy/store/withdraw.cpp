@@ -68,8 +68,10 @@ std::int64_t count(Connection& database, const char* sql, const std::string& per
   return row.bind(0, person).step() ? row.integer(0) : 0;
 }
 
-/// What is told of the rows before they go.
-void take_stock(Connection& database, const std::string& person, Withdrawal& done) {
+}  // namespace
+
+Withdrawal take_stock(Connection& database, const std::string& person) {
+  Withdrawal done;
   done.sessions = count(database, "SELECT count(*) FROM session WHERE person = ?", person);
   done.answers =
       count(database,
@@ -88,7 +90,10 @@ void take_stock(Connection& database, const std::string& person, Withdrawal& don
                        "(SELECT min(r.started_utc) FROM run r JOIN session s USING (run_id) "
                        "WHERE s.person = ?), '') ORDER BY 1",
                        person);
+  return done;
 }
+
+namespace {
 
 bool is_backup(const fs::path& file, const fs::path& database) {
   const std::string name = file.filename().string();
@@ -190,8 +195,7 @@ Withdrawal withdraw(const fs::path& path, const std::string& participant) {
     throw base::Error(path.string(), "knows no participant " + participant,
                       "vip-study status lists the codes");
   }
-  Withdrawal done;
-  take_stock(*database, found.front().person, done);
+  Withdrawal done = take_stock(*database, found.front().person);
   Transaction transaction(*database);
   bury(*database, found.front().person);
   transaction.commit();

@@ -27,6 +27,8 @@ struct Withdrawal {
 /// participant, or the database is in use.
 Withdrawal withdraw(const std::filesystem::path& database, const std::string& participant);
 
+/// What a withdrawal of `person` would delete and cannot reach.
+Withdrawal take_stock(sqlite::Connection& database, const std::string& person);
 /// Deletes every session of `person` and leaves the tombstone, within a transaction of the caller.
 void bury(sqlite::Connection& database, const std::string& person);
 /// Deletes a participant from the backups of `database` and from the personal file beside it; the results are

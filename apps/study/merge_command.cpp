@@ -1,0 +1,50 @@
+/// vip-study merge: the databases of several stations as one.
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/study/commands.hpp"
+#include "libstudy/store/merge.hpp"
+
+namespace apps {
+
+namespace {
+
+struct MergeCommand {
+  std::vector<std::string> sources;
+  std::string into;
+};
+
+void print_list(const char* title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  std::printf("%s\n", title);
+  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
+}
+
+void merge(const MergeCommand& command) {
+  const study::Merge done = study::merge({command.sources.begin(), command.sources.end()}, command.into);
+  std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
+              static_cast<long long>(done.sessions), static_cast<long long>(done.test_sessions),
+              static_cast<long long>(done.recognised));
+  print_list("Codes that stood for several people:", done.renamed);
+  print_list("Withdrew, and is in no merge:", done.withdrawn);
+  print_list("Protocols of one name and version with different texts, kept apart:", done.namesakes);
+  for (const auto& [code, gone] : done.buried) {
+    std::printf("%lld answers of %s deleted here\n", static_cast<long long>(gone.answers), code.c_str());
+    print_list("Exports are out of reach. Delete these and what was copied from them:", gone.exports);
+    print_list("Backups that could not be cleaned; delete them:", gone.failed);
+  }
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app) {
+  auto command = std::make_shared<MergeCommand>();
+  CLI::App& sub = *app.add_subcommand("merge", "Join the databases of several stations");
+  sub.add_option("databases", command->sources, "Databases to join; they stay as they are")->required();
+  sub.add_option("--into", command->into, "Database to make, or one that takes them in")->required();
+  sub.callback([command] { merge(*command); });
+}
+
+}  // namespace apps

@@ -1,0 +1,149 @@
+#include "libstudy/store/merge.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/merge_parts.hpp"
+#include "libstudy/store/personal.hpp"
+#include "libstudy/store/writer_lock.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using merging::Content;
+using merging::SessionCopy;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+/// Somebody who stands in `into` before the merge.
+struct Resident {
+  std::string person, participant, code;
+  Withdrawal stock;
+};
+
+std::vector<Resident> residents_of(Connection& database) {
+  std::vector<Resident> residents;
+  Statement row(database, "SELECT DISTINCT person, participant, code FROM session ORDER BY participant");
+  while (row.step()) residents.push_back({row.text(0), row.text(1), row.text(2), {}});
+  for (Resident& resident : residents) resident.stock = take_stock(database, resident.person);
+  return residents;
+}
+
+/// Each file once, and not `into` itself.
+std::vector<fs::path> distinct(const std::vector<fs::path>& sources, const fs::path& into) {
+  std::set<fs::path> known{fs::weakly_canonical(into)};
+  std::vector<fs::path> out;
+  for (const fs::path& source : sources) {
+    if (known.insert(fs::weakly_canonical(source)).second) out.push_back(source);
+  }
+  return out;
+}
+
+Content read_all(const std::vector<fs::path>& sources, const fs::path& into) {
+  Content content;
+  std::error_code ignored;
+  std::vector<fs::path> paths = distinct(sources, into);
+  if (fs::exists(into, ignored) && fs::file_size(into, ignored) > 0) paths.push_back(into);
+  for (const fs::path& path : paths) {
+    auto source = open_database(path, Open::Read, read_schema_steps());
+    source->execute("BEGIN");  // one moment of it, though a session may be running
+    merging::add_source(content, std::move(source));
+  }
+  return content;
+}
+
+Merge sum_up(Connection& result, const Content& content, const std::vector<SessionCopy>& chosen,
+             const std::map<std::string, std::string>& names) {
+  Merge merge;
+  merge.sessions = static_cast<std::int64_t>(chosen.size());
+  const auto stand =
+      std::count_if(content.copies.begin(), content.copies.end(),
+                    [&](const SessionCopy& copy) { return !content.tombstones.contains(copy.person); });
+  merge.recognised = stand - merge.sessions;
+  std::set<std::string> renamed;
+  for (const SessionCopy& copy : chosen) {
+    if (copy.test_data) ++merge.test_sessions;
+    const std::string& name = names.at(copy.person);
+    if (name != copy.code) renamed.insert(copy.code + " of station '" + copy.station + "' is " + name);
+  }
+  merge.renamed.assign(renamed.begin(), renamed.end());
+  for (const auto& [person, stone] : content.tombstones) merge.withdrawn.push_back(names.at(person));
+  std::sort(merge.withdrawn.begin(), merge.withdrawn.end());
+  Statement row(result,
+                "SELECT name || ' ' || version FROM protocol WHERE test_data = 0 GROUP BY name, version "
+                "HAVING count(*) > 1 ORDER BY 1");
+  while (row.step()) merge.namesakes.push_back(row.text(0));
+  return merge;
+}
+
+/// What stands beside `into`: who withdrew is deleted there too, and a changed code is changed there too.
+void follow_beside(const fs::path& into, const std::vector<Resident>& residents,
+                   const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
+  std::map<std::string, std::string> changed;
+  for (const Resident& resident : residents) {
+    if (!content.tombstones.contains(resident.person)) {
+      if (const auto& name = names.at(resident.person); name != resident.participant)
+        changed[resident.participant] = name;
+      continue;
+    }
+    Withdrawal done = resident.stock;
+    scrub_beside(into, resident.participant, resident.code, done);
+    merge.buried.emplace_back(resident.participant, std::move(done));
+  }
+  std::error_code ignored;
+  if (!changed.empty() && fs::exists(PersonalFile::beside(into), ignored)) PersonalFile(into).rename(changed);
+}
+
+/// Opens `into`, which is gone again unless it is finished when it was made here.
+class Target {
+ public:
+  explicit Target(const fs::path& path) : path_(path) {
+    std::error_code ignored;
+    made_here_ = !fs::exists(path, ignored) || fs::file_size(path, ignored) == 0;
+    database_ = open_database(path, Open::Create, read_schema_steps());
+  }
+  ~Target() {
+    database_.reset();
+    std::error_code ignored;
+    if (made_here_) fs::remove(path_, ignored);
+  }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+
+  Connection& database() { return *database_; }
+  void finish() { made_here_ = false; }
+
+ private:
+  fs::path path_;
+  bool made_here_ = false;
+  std::unique_ptr<Connection> database_;
+};
+
+}  // namespace
+
+Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
+  const WriterLock lock(into);
+  Content content = read_all(sources, into);
+  const auto chosen = merging::choose_sessions(content);
+  const auto names = merging::name_people(content);
+  const auto result = make_temporary_database(into);
+  merging::write_union(content, chosen, names, *result);
+  Merge merge = sum_up(*result, content, chosen, names);
+  content.sources.clear();  // into itself may be among them
+
+  Target target(into);
+  const auto residents = residents_of(target.database());
+  target.database().execute("PRAGMA secure_delete = ON");
+  target.database().copy_from(*result);
+  target.finish();
+  rewrite(target.database());
+  follow_beside(into, residents, names, content, merge);
+  return merge;
+}
+
+}  // namespace study

@@ -1,0 +1,49 @@
+#pragma once
+/// Parts of merge(): what stands in the sources, who is who, and how rows move.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libstudy/store/sqlite.hpp"
+
+namespace study::merging {
+
+/// One session as it stands in one source.
+struct SessionCopy {
+  std::size_t source = 0;
+  std::int64_t id = 0;  ///< row there
+  std::string uid, person, code, station, run_uid, planned_utc, protocol_sha256;
+  int visit = 1;
+  bool test_data = false;
+  std::int64_t events = 0, frames = 0, played = 0;  ///< how far it went
+};
+
+struct Tombstone {
+  std::string person, code, station, withdrawn_utc;
+};
+
+/// Everything that is joined, read from all sources.
+struct Content {
+  std::vector<std::unique_ptr<sqlite::Connection>> sources;
+  std::vector<SessionCopy> copies;
+  std::map<std::string, Tombstone> tombstones;  ///< by person; the earliest of each
+};
+
+/// Reads sessions and tombstones of a source and adds them.
+void add_source(Content& content, std::unique_ptr<sqlite::Connection> source);
+
+/// The furthest copy of each session that nobody withdrew from, in the order of planning. base::Error when
+/// two copies of a session went on differently.
+std::vector<SessionCopy> choose_sessions(Content& content);
+
+/// Code by person, distinct for all people of `content`: a function of them alone.
+std::map<std::string, std::string> name_people(const Content& content);
+
+/// Writes the union into an empty database of the newest schema.
+void write_union(Content& content, const std::vector<SessionCopy>& chosen,
+                 const std::map<std::string, std::string>& names, sqlite::Connection& target);
+
+}  // namespace study::merging

@@ -1,0 +1,115 @@
+/// What stands in the sources of a merge, and which copy of each session counts.
+#include <algorithm>
+#include <tuple>
+
+#include "libstudy/store/merge_parts.hpp"
+#include "stats/base/error.hpp"
+
+namespace study::merging {
+
+using sqlite::Connection;
+using sqlite::Statement;
+
+namespace {
+
+constexpr const char* sessions_sql =
+    "SELECT s.session_id, s.uid, s.person, s.code, s.station, r.uid, r.started_utc, p.sha256, s.visit, "
+    "s.test_data, (SELECT count(*) FROM event e WHERE e.session_id = s.session_id), "
+    "(SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id), "
+    "(SELECT count(*) FROM presentation q JOIN trial t USING (trial_id) WHERE t.session_id = s.session_id "
+    "AND q.state = 'played') "
+    "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
+
+std::vector<std::string> log_of(Connection& source, std::int64_t session) {
+  Statement row(source,
+                "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
+                "WHERE session_id = ? ORDER BY event_id");
+  row.bind(0, session);
+  std::vector<std::string> log;
+  while (row.step()) log.push_back(row.text(0));
+  return log;
+}
+
+bool less_far(const SessionCopy& a, const SessionCopy& b) {
+  return std::tie(a.events, a.frames, a.played) < std::tie(b.events, b.frames, b.played);
+}
+
+/// Each entry of the log is one commit, so that a copy is as old as its log is short.
+void check_earlier(Content& content, const SessionCopy& earlier, const SessionCopy& later) {
+  const auto before = log_of(*content.sources[earlier.source], earlier.id);
+  const auto after = log_of(*content.sources[later.source], later.id);
+  if (before.size() <= after.size() && std::equal(before.begin(), before.end(), after.begin())) return;
+  throw base::Error(content.sources[later.source]->path().string(),
+                    "participant " + later.code + ", visit " + std::to_string(later.visit) +
+                        ", went on differently in a copy, " +
+                        content.sources[earlier.source]->path().string(),
+                    "decide which of the two counts, and leave the other database out");
+}
+
+void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
+  std::map<std::tuple<std::string, std::string, int>, const SessionCopy*> visits;
+  for (const SessionCopy& copy : chosen) {
+    const auto [other, fresh] = visits.try_emplace({copy.person, copy.protocol_sha256, copy.visit}, &copy);
+    if (fresh) continue;
+    throw base::Error(content.sources[copy.source]->path().string(),
+                      "participant " + copy.code + " has visit " + std::to_string(copy.visit) +
+                          " of the same protocol a second time in " +
+                          content.sources[other->second->source]->path().string(),
+                      "decide which of the two counts, and leave the other database out");
+  }
+}
+
+}  // namespace
+
+void add_source(Content& content, std::unique_ptr<Connection> source) {
+  const std::size_t index = content.sources.size();
+  for (Statement row(*source, sessions_sql); row.step();) {
+    SessionCopy copy;
+    copy.source = index;
+    copy.id = row.integer(0);
+    copy.uid = row.text(1);
+    copy.person = row.text(2);
+    copy.code = row.text(3);
+    copy.station = row.text(4);
+    copy.run_uid = row.text(5);
+    copy.planned_utc = row.text(6);
+    copy.protocol_sha256 = row.text(7);
+    copy.visit = static_cast<int>(row.integer(8));
+    copy.test_data = row.integer(9) != 0;
+    copy.events = row.integer(10);
+    copy.frames = row.integer(11);
+    copy.played = row.integer(12);
+    content.copies.push_back(std::move(copy));
+  }
+  for (Statement row(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone"); row.step();) {
+    const Tombstone found{row.text(0), row.text(1), row.text(2), row.text(3)};
+    const auto key = [](const Tombstone& t) { return std::tie(t.withdrawn_utc, t.station); };
+    const auto [known, fresh] = content.tombstones.try_emplace(found.person, found);
+    if (!fresh && key(found) < key(known->second)) known->second = found;
+  }
+  content.sources.push_back(std::move(source));
+}
+
+std::vector<SessionCopy> choose_sessions(Content& content) {
+  std::map<std::string, SessionCopy> furthest;
+  for (const SessionCopy& copy : content.copies) {
+    if (content.tombstones.contains(copy.person)) continue;
+    const auto [known, fresh] = furthest.try_emplace(copy.uid, copy);
+    if (fresh) continue;
+    const bool later = less_far(known->second, copy);
+    check_earlier(content, later ? known->second : copy, later ? copy : known->second);
+    if (later) known->second = copy;
+  }
+  std::vector<SessionCopy> chosen;
+  for (auto& [uid, copy] : furthest) chosen.push_back(std::move(copy));
+  const auto key = [](const SessionCopy& c) {
+    return std::tie(c.planned_utc, c.run_uid, c.code, c.visit, c.uid);
+  };
+  std::sort(chosen.begin(), chosen.end(),
+            [&](const SessionCopy& a, const SessionCopy& b) { return key(a) < key(b); });
+  check_visits(content, chosen);
+  return chosen;
+}
+
+}  // namespace study::merging
