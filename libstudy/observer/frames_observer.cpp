@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kind = "frames";
 const std::string mend = "write frames, or frames:grain=1.2,bias=0.3 and the like";
 constexpr double neutral_granularity_px = 10, neutral_flicker = 0.02, tau_scale = 15;
-constexpr double symptom_level = 0.6;
+constexpr double symptom_level = 0.6, symptom_scale = 3;
 
 std::array<ObserverKey, 8> keys_of(FramesObserverParameters& p) {
   constexpr double most = 100;
@@ -53,15 +53,15 @@ double FramesObserver::quality(const ShownStimulus& shown) const {
 
 int FramesObserver::symptom(const Question& question, const Occasion& occasion) const {
   const std::uint64_t key = question_key(occasion, question);
-  double worst = 0;
+  double worst = -quality(occasion.shown.front());
   for (const ShownStimulus& shown : occasion.shown) worst = std::max(worst, -quality(shown));
-  if (occasion.shown.size() == 1) worst = -quality(occasion.shown[0]);
   // A person's draw is the same for every symptom.
   const double person = parameters_.participant_sd * normal_of(person_key(occasion), 1);
   const double noise =
       0.5 * parameters_.noise * normal_of(key, 1 + static_cast<std::uint64_t>(occasion.position));
-  return nearest_score(question, symptom_level + parameters_.sickness * worst +
-                                     parameters_.fatigue * occasion.position + person + noise);
+  const double latent =
+      symptom_level + parameters_.sickness * worst + parameters_.fatigue * occasion.position + person + noise;
+  return nearest_score(question, latent * question.scale_max / symptom_scale);
 }
 
 int FramesObserver::score(const Question& question, const Occasion& occasion, bool judges) const {

@@ -14,7 +14,8 @@ namespace study {
 ///
 /// with tau = mu - 23.68 exp(0.02 delta) (the paper's PTPE@4.0) of the frames as they were shown and features
 /// as in PictureFeatures. Realism and its like: nearest score to the scale's midpoint + q + participant +
-/// noise. Symptoms (scales from 0): 0.6 - sickness q + fatigue position + participant' + noise'. Of two the
+/// noise. Symptoms (scales from 0, here of 3 points; longer ones in proportion): 0.6 - sickness q + fatigue
+/// position + participant' + noise'. Of two the
 /// second is preferred when q_2 - q_1 + bias + noise > 0. The weights are our choice: they order the methods
 /// plausibly, and nothing in them was fitted to the paper's results.
 struct FramesObserverParameters {
@@ -37,6 +38,7 @@ class FramesObserver final : public Observer {
       : parameters_(parameters), features_(features) {}
   std::optional<std::string> simulated() const override;
   int score(const Question& question, const Occasion& occasion, bool judges) const override;
+  bool feels() const override { return true; }
 
   double quality(const ShownStimulus& shown) const;
 

@@ -19,7 +19,9 @@ bool is_judged(const Question& question) {
 Answer answer_of(const Observer& observer, const Question& question, const Occasion& occasion, bool judges) {
   if (question.kind == AnswerKind::Text) return {{}, question.required ? "simulated" : ""};
   if (question.accept) return {question.accept->first, ""};
-  return {observer.score(question, occasion, judges), ""};
+  const int score = observer.score(question, occasion, judges);
+  const bool feigned = question.stop_at && score >= *question.stop_at && !observer.feels();
+  return {feigned ? *question.stop_at - 1 : score, ""};
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ int bystander_score(const Question& question, const Occasion& occasion) {
   if (!symptom) return random_score(question, occasion);
   const double u =
       uniform_of(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position));
-  return nearest_score(question, -0.15 * (question.scale_max - question.scale_min) * std::log(u));
+  return nearest_score(question, -0.08 * (question.scale_max - question.scale_min) * std::log(u));
 }
 
 }  // namespace study

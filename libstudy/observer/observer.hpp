@@ -22,6 +22,9 @@ class Observer : public Participant {
   /// Answers a question that leaves a choice: never of kind Text, never one with `accept`. `judges`: it is
   /// the first question on this page about what was shown. A score of the question's.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
+  /// Whether its symptoms mean something: otherwise a score at which a session stops is lowered to the one
+  /// below.
+  virtual bool feels() const { return false; }
 };
 
 /// Uniform in (0, 1) and standard normal (Box and Muller 1958): number `counter` of a key.

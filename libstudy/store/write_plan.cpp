@@ -1,5 +1,7 @@
 /// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
 #include "libstudy/store/store.hpp"
+#include <set>
+
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -38,7 +40,9 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   Statement insert(database,
                    "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
                    "anchors, personal) VALUES (?,?,?,?,?,?,?,?,?)");
+  std::set<std::string> written;  // a questionnaire asked before and after is one set of questions
   for (const auto& [block, question] : all_questions(protocol)) {
+    if (!written.insert(question->id).second) continue;
     insert.bind(0, protocol_id).bind(1, question->id).bind(2, question->text).bind(3, question->language);
     insert.bind(4, kind_name(question->kind)).bind(5, question->scale_min).bind(6, question->scale_max);
     insert.bind(7, anchors_text(*question)).bind(8, question->personal ? 1 : 0).run();

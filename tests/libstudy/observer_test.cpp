@@ -218,6 +218,22 @@ TEST(Observers, TakePartAndAnswerWithinTheRules) {
   EXPECT_EQ(clock.now_ns(), 0);
 }
 
+TEST(Observers, OnlyWhoFeelsTriggersAStopRule) {
+  Question sickness = fms_question("en", 2);
+  VirtualClock clock;
+  const auto most = [&](const char* kind) {
+    int score = 0;
+    for (int person = 0; person < 500; ++person) {
+      const auto answers = observer_of(kind)->ask({}, {&sickness, 1}, shown(20, 10, person, 9), clock, {});
+      score = std::max(score, answers.at(0).answer.score.value());
+    }
+    return score;
+  };
+  EXPECT_EQ(most("random"), 1);
+  EXPECT_EQ(most("constant:20"), 1);
+  EXPECT_GE(most("frames"), 10);
+}
+
 TEST(RandomObserver, GivesEveryScoreEquallyOften) {
   const auto observer = observer_of("random");
   std::vector<int> count(8);
