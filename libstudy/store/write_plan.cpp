@@ -1,7 +1,7 @@
 /// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
-#include "libstudy/store/store.hpp"
 #include <set>
 
+#include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
