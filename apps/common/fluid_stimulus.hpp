@@ -88,6 +88,8 @@ class LiveFluid final : public study::Stimulus {
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
+  /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
+  std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
 
  private:
   study::FrameFacts facts() const;
@@ -126,6 +128,9 @@ struct StimulusChoice {
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
 /// time apart than content_step_s.
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
+
+/// The same without a bake.
+std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice);
 
 /// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
 bool shows_pictures(const StimulusChoice& choice);

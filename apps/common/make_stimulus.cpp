@@ -23,7 +23,9 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
   return std::make_unique<BakedParticles>(std::move(bake));
 }
 
-std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
+}  // namespace
+
+std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice) {
   const sim::Scene scene = sim::read_scene(choice.scene);
   sim::SimulationOptions options;
   options.cache = sim::default_cache_folder();
@@ -46,10 +48,9 @@ std::unique_ptr<study::Stimulus> live(const StimulusChoice& choice) {
   return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing);
 }
 
-}  // namespace
-
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {
-  return choice.bake.empty() ? live(choice) : from_bake(choice);
+  if (choice.bake.empty()) return make_live_fluid(choice);
+  return from_bake(choice);
 }
 
 bool shows_pictures(const StimulusChoice& choice) {

@@ -23,10 +23,10 @@ class CellStimuli final : public study::StimulusSource {
   /// In what the bake differs from what the protocol names, such as "n_* 2048 instead of 32768"; empty: in
   /// nothing. Such data are test data.
   std::string departure() const { return departure_; }
-
- private:
+  /// What live fluid of a cell is made of.
   StimulusChoice choice_of(const study::Cell& cell) const;
 
+ private:
   RunOptions options_;
   StimulusChoice choice_;
   bool live_ = false;

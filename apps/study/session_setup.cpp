@@ -1,8 +1,10 @@
 #include "apps/study/session_setup.hpp"
 
 #include "apps/common/headless_display.hpp"
+#include "apps/study/cell_features.hpp"
 #include "apps/study/desk/viewing.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/scene/settled_state.hpp"
 #include "libstudy/display/null.hpp"
 #include "stats/base/error.hpp"
 
@@ -57,6 +59,19 @@ LiveViewing viewing_of(const RunOptions& options) {
   return viewing;
 }
 
+/// Live pictures are measured before the session; without any, the table stands in.
+std::unique_ptr<study::FeatureSource> make_features(const RunOptions& options,
+                                                    const study::Protocol& protocol,
+                                                    const CellStimuli& stimuli) {
+  const bool looks = options.observer.find("frames") != std::string::npos;
+  if (!looks || options.display == "none" || !options.bake.empty())
+    return std::make_unique<study::FeatureTable>();
+  auto features = std::make_unique<CellFeatures>(
+      sim::default_cache_folder(), [&stimuli](const study::Cell& cell) { return stimuli.choice_of(cell); });
+  features->measure(protocol);
+  return features;
+}
+
 stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place) {
   return ptpe ? sim::parse_ptpe_file(*ptpe, place).model : stats::PtpeModel{};
 }
@@ -69,13 +84,11 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   SessionSetup setup;
   setup.virtual_clock = options.clock == "virtual";
   setup.clock = make_clock(options.clock);
-  setup.features = std::make_unique<study::FeatureTable>();
-  if (!options.observer.empty()) setup.participant = study::make_observer(options.observer, *setup.features);
   LiveViewing viewing = viewing_of(options);
   if (options.display == "window") {
     WindowParts window = make_window_parts(options, protocol);
     setup.display = std::move(window.display);
-    if (!setup.participant) setup.participant = std::move(window.person);
+    setup.participant = std::move(window.person);
     if (options.gaze == "mouse") viewing.gaze = window.gaze;
     setup.wish = std::move(window.wish);
     setup.screen = window.screen;
@@ -84,6 +97,10 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   }
   setup.stimuli =
       std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place), std::move(viewing));
+  if (!options.observer.empty()) {
+    setup.features = make_features(options, protocol, *setup.stimuli);
+    setup.participant = study::make_observer(options.observer, *setup.features);
+  }
   return setup;
 }
 

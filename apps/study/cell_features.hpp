@@ -1,0 +1,40 @@
+#pragma once
+/// Features of the cells of a protocol, measured on their pictures and kept.
+
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "apps/common/fluid_stimulus.hpp"
+#include "libstudy/observer/picture_features.hpp"
+#include "libstudy/protocol/protocol.hpp"
+
+namespace apps {
+
+/// Each cell is run live for 240 content steps from start_frame, its pictures drawn at 640 x 360 and measured
+/// three in a row at every 30th; features are the means. What was measured stands in `folder`, one file for
+/// each cell, keyed by cell, stimulus and program version, and is not measured again. The gaze rests on the
+/// middle of the fluid that is seen. Needs a GL context where something is left to measure.
+class CellFeatures final : public study::FeatureSource {
+ public:
+  /// choice_of: the live stimulus of a cell.
+  CellFeatures(std::filesystem::path folder, std::function<StimulusChoice(const study::Cell&)> choice_of)
+      : folder_(std::move(folder)), choice_of_(std::move(choice_of)) {}
+
+  /// Measures all cells of a protocol, with a progress bar, so that nothing is left to do in the session.
+  void measure(const study::Protocol& protocol);
+  /// base::Error for a cell that measure() was not asked for.
+  study::PictureFeatures of(const study::StimulusSpec& stimulus) override;
+
+ private:
+  study::PictureFeatures read_or_measure(const study::Cell& cell, std::int64_t start_frame) const;
+
+  std::filesystem::path folder_;
+  std::function<StimulusChoice(const study::Cell&)> choice_of_;
+  std::map<std::string, study::PictureFeatures> known_;
+};
+
+/// "scene, method, n_*": names a cell's stimulus.
+std::string stimulus_words(const study::StimulusSpec& stimulus);
+
+}  // namespace apps
