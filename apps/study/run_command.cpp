@@ -143,6 +143,8 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
   command.add_option("--db", options.database, "Database of the study")->required();
   command.add_option("--max-pages", options.max_pages, "Let the database grow to this many pages of 4 KiB")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--console", options.console,
+                   "Experimenter's console in this terminal: plan, timing and keys to steer the session");
   command.add_flag("--events", options.events,
                    "Print a line for each step of a session once it is safe, without answers");
 }

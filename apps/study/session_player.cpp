@@ -8,6 +8,9 @@
 #include <optional>
 
 #include "apps/common/program.hpp"
+#include "apps/study/desk/console.hpp"
+#include "apps/study/desk/progress.hpp"
+#include "apps/study/desk/terminal.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
@@ -58,6 +61,14 @@ bool StopSignals::stop_wished() { return stop_flag; }
 
 namespace {
 
+void print_begins(const study::OpenSession& session, const study::OpenUnit& unit,
+                  const study::Protocol& protocol) {
+  const auto& block = protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
+  std::printf("begins %s %d %s %s\n", session.plan.participant.c_str(), unit.plan.position,
+              study::block_kind_name(block.kind).c_str(), block.id.c_str());
+  std::fflush(stdout);
+}
+
 void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   const auto& block = protocol.blocks.at(static_cast<std::size_t>(unit.unit.block));
   std::printf("done %s %d %s attempt %d\n", unit.participant.c_str(), unit.unit.position,
@@ -65,24 +76,80 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   std::fflush(stdout);
 }
 
-study::SessionHooks make_hooks(const WindowWish& window, std::function<void(const study::UnitDone&)> done) {
-  study::SessionHooks hooks;
-  const auto others = [] { return StopSignals::stop_wished() ? study::Wish::Stop : study::Wish::GoOn; };
-  hooks.wish = [window, others] { return window ? window(others) : others(); };
-  hooks.done = std::move(done);
-  return hooks;
+/// Everything that hears of a run's progress and steers it.
+class Steering {
+ public:
+  Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+           const WindowWish& window, const PlayOptions& options)
+      : protocol_(protocol), window_(window), events_(options.events) {
+    if (options.console) {
+      console_.emplace(protocol, store, options.database);
+      terminal_.emplace(*console_);
+    } else {
+      progress_.emplace("session steps", units_left(run));
+    }
+  }
+
+  study::SessionHooks hooks(const study::OpenSession& session) {
+    if (console_) console_->begin(session);
+    study::SessionHooks hooks;
+    hooks.begins = [this, &session](const study::OpenUnit& unit) {
+      if (console_) console_->begins(unit);
+      if (events_) print_begins(session, unit, protocol_);
+    };
+    if (console_) hooks.shown = [this](const study::FrameRecord& frame) { console_->shown(frame); };
+    hooks.done = [this](const study::UnitDone& unit) {
+      if (progress_) progress_->update(++done_);
+      if (console_) console_->done(unit);
+      if (events_) print_done(unit, protocol_);
+    };
+    hooks.wish = [this] { return window_ ? window_([this] { return others(); }) : others(); };
+    return hooks;
+  }
+
+  /// Whether trials were opened again that are still to be shown.
+  bool take_reopened() { return console_ && console_->take_reopened(); }
+
+ private:
+  study::Wish others() {
+    if (StopSignals::stop_wished()) return study::Wish::Stop;
+    return console_ ? console_->wish() : study::Wish::GoOn;
+  }
+
+  const study::Protocol& protocol_;
+  const WindowWish& window_;
+  bool events_;
+  std::size_t done_ = 0;
+  std::optional<Progress> progress_;
+  std::optional<Console> console_;
+  std::optional<ConsoleTerminal> terminal_;
+};
+
+/// Before the first step at a window: what the screen and the computer are like, told and kept.
+void check_station(study::Store& store, const study::OpenSession& session, const study::Protocol& protocol,
+                   const SessionSetup& setup, const PlayOptions& options) {
+  if (!setup.screen) return;
+  const auto bytes = expected_bytes(protocol, session.units);
+  const std::string lines =
+      format_preflight(judge_preflight(setup.screen, read_station(options.database), bytes));
+  std::fprintf(stderr, "%s", lines.c_str());
+  store.log(session.id, "preflight", lines, setup.clock->now_ns());
+}
+
+/// The session as it stands in the store now; none when nothing is left of it.
+std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t id) {
+  for (study::OpenRun& run : store.open_runs()) {
+    for (study::OpenSession& session : run.sessions) {
+      if (session.id == id) return std::move(session);
+    }
+  }
+  return {};
 }
 
 }  // namespace
 
 void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
               SessionSetup& setup, const PlayOptions& options) {
-  std::size_t done = 0;
-  Progress progress("session steps", units_left(run));
-  const auto hooks = make_hooks(setup.wish, [&](const study::UnitDone& unit) {
-    progress.update(++done);
-    if (options.events) print_done(unit, protocol);
-  });
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) real_time.emplace();
   std::optional<study::PersonalFile> personal;
@@ -90,11 +157,17 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
+  for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
+  Steering steering(store, run, protocol, setup.wish, options);
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
       parts.ptpe = ptpe_of(session, options.database);
-      study::run_session(protocol, session, parts, hooks);
+      study::run_session(protocol, session, parts, steering.hooks(session));
+      while (steering.take_reopened()) {
+        const auto again = read_again(store, session.id);
+        if (again) study::run_session(protocol, *again, parts, steering.hooks(*again));
+      }
     }
   } catch (const study::Stopped&) {
     throw base::Error(options.database.string(), "stopped on request; all answers given are kept",

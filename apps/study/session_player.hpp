@@ -22,6 +22,7 @@ class StopSignals {
 struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
+  bool console = false;        ///< the experimenter's, in the terminal
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
 };
 

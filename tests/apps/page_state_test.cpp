@@ -176,6 +176,19 @@ TEST(PageState, TheButtonNeedsAllRequiredAnswers) {
   EXPECT_DOUBLE_EQ(answers[2].response_time_s, 4.0);
 }
 
+TEST(PageState, TheButtonLeadsToWhatIsStillOpen) {
+  PageState state = page({scale(0, 3), scale(0, 3), scale(0, 3)});
+  state.click(0, 1, at(1000));
+  state.press(PageKey::Next, at(1100));
+  state.press(PageKey::Next, at(1200));
+  state.digit(2, at(1300));
+  state.press(PageKey::Next, at(1400));
+  ASSERT_EQ(state.focus(), state.size());
+  state.press(PageKey::Enter, at(1500));
+  EXPECT_EQ(state.focus(), 1u);
+  EXPECT_FALSE(state.confirmed());
+}
+
 TEST(PageState, ANumberIsCheckedAgainstItsRange) {
   PageState state = page({number(16, 99)});
   state.digit(9, at(1000));

@@ -145,7 +145,13 @@ void PageState::click_question(std::size_t question, std::int64_t now_ns) {
 }
 
 void PageState::click_confirm(std::int64_t now_ns) {
-  if (!guarded(now_ns) && can_confirm(now_ns)) confirmed_ns_ = now_ns - left_out_ns_;
+  if (guarded(now_ns)) return;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!is_missing(i)) continue;
+    focus_ = i;
+    return;
+  }
+  if (can_confirm(now_ns)) confirmed_ns_ = now_ns - left_out_ns_;
 }
 
 void PageState::write(std::size_t question, const std::string& words, std::int64_t now_ns) {
@@ -187,10 +193,12 @@ bool PageState::out_of_range(std::size_t question) const {
 
 std::size_t PageState::missing() const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (out_of_range(i) || (questions_[i].required && !answered(i))) ++count;
-  }
+  for (std::size_t i = 0; i < size(); ++i) count += is_missing(i) ? 1 : 0;
   return count;
+}
+
+bool PageState::is_missing(std::size_t question) const {
+  return out_of_range(question) || (questions_[question].required && !answered(question));
 }
 
 double PageState::wait_s(std::int64_t now_ns) const {

@@ -41,6 +41,7 @@ class PageState {
   void click(std::size_t question, int score, std::int64_t now_ns);
   /// Puts the focus on a question without an answer to it.
   void click_question(std::size_t question, std::int64_t now_ns);
+  /// Goes to the first question that keeps the page open, if there is one.
   void click_confirm(std::int64_t now_ns);
   /// What stands in the field of a Text.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
@@ -75,6 +76,7 @@ class PageState {
   void choose(std::size_t question, int score, std::int64_t now_ns);
   void erase(std::int64_t now_ns);
   void step_focus(int by);
+  bool is_missing(std::size_t question) const;
   std::optional<int> number(std::size_t question) const;
 
   std::vector<study::Question> questions_;

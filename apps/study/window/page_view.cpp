@@ -68,7 +68,7 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   draw_body(state, now_ns);
   const bool more = ImGui::GetScrollY() < ImGui::GetScrollMaxY() - 1;
   ImGui::EndChild();
-  if (more) draw_centred("\u2193", {screen.x / 2, bottom}, size, colour::dim);
+  if (more) draw_centred("\u2193", {(screen.x + column_) / 2, bottom}, size, colour::dim);
   draw_footer(state, now_ns);
   ImGui::End();
   ImGui::PopFont();
@@ -218,7 +218,7 @@ void PageView::draw_anchors(const Question& question, float left, float cell) {
 void PageView::draw_list(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Question& question = state.question(i);
   const float size = gui_.size_px(), width = std::min(column_, 26 * size);
-  const float x = ImGui::GetCursorScreenPos().x + (column_ - width) / 2;
+  const float x = ImGui::GetCursorScreenPos().x;
   for (const auto& [score, words] : question.anchors) {
     const std::string label = one_digit_does(question) ? std::to_string(score) + "   " + words : words;
     const float height =
@@ -232,7 +232,7 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   const Question& question = state.question(i);
   const float size = gui_.size_px(), width = 7 * size, height = 2.1F * size;
   const ImVec2 begun = ImGui::GetCursorScreenPos();
-  const ImVec2 from{begun.x + (column_ - width) / 2, begun.y}, to{from.x + width, from.y + height};
+  const ImVec2 from = begun, to{from.x + width, from.y + height};
   ImGui::SetCursorScreenPos(from);
   ImGui::PushID(static_cast<int>(i));
   if (ImGui::InvisibleButton("number", {width, height})) state.click_question(i, now_ns);
@@ -271,7 +271,7 @@ void PageView::draw_words(PageState& state, std::size_t i, std::int64_t now_ns) 
     editing_ = i;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{0.5F * size, 0.4F * size});
     ImGui::PushStyleColor(ImGuiCol_FrameBg, colour::panel);
-    ImGui::InputTextMultiline("words", edited_.data(), edited_.size(), box);
+    ImGui::InputTextMultiline("##words", edited_.data(), edited_.size(), box);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
     if (!begins) state.write(i, edited_.c_str(), now_ns);

@@ -1,0 +1,340 @@
+#include "apps/study/desk/console.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/study/desk/progress.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+using Guard = std::lock_guard<std::mutex>;
+
+constexpr std::size_t strip_length = 40;
+constexpr double little_disk_mb = 500;
+constexpr std::int64_t strip_ns = 500'000'000;
+
+template <class... Values>
+std::string text(const char* pattern, Values... values) {
+  char out[300];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  std::snprintf(out, sizeof out, pattern, values...);
+#pragma GCC diagnostic pop
+  return out;
+}
+
+/// "14:03:05" of an ISO instant.
+std::string clock_time() { return base::utc_now().substr(11, 8); }
+
+double disk_mb(const std::filesystem::path& database) {
+  std::error_code error;
+  const auto space = std::filesystem::space(std::filesystem::absolute(database).parent_path(), error);
+  return error ? -1 : 1e-6 * static_cast<double>(space.available);
+}
+
+}  // namespace
+
+char strip_sign(double shown_s, double scheduled_s) {
+  const double ratio = shown_s > 0 ? scheduled_s / shown_s : 0;  // of the frame rates
+  if (std::abs(ratio - 1) <= 0.02) return '.';
+  if (std::abs(ratio - 1) > 0.2) return '!';
+  return ratio > 1 ? '+' : '-';
+}
+
+Console::Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database)
+    : protocol_(protocol), store_(store), database_(std::move(database)) {}
+
+Console::~Console() {
+  try {
+    run_jobs();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "console: %s\n", error.what());
+  }
+}
+
+void Console::begin(const study::OpenSession& session) {
+  run_jobs();
+  const Guard guard(mutex_);
+  session_ = &session;
+  unit_.reset();
+  last_trial_.reset();
+  done_ = 0;
+  paused_ = ended_ = repeat_ = false;
+  say(text("%s: %zu steps of %zu left, %s; disk %.1f GB free", session.plan.participant.c_str(),
+           session.units.size(), session.planned, left().c_str(), 1e-3 * disk_mb(database_)));
+  say("gaze: " + session.plan.gaze_source +
+      (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
+           ? "; H1 and H5 are not testable without tracked gaze"
+           : ""));
+  say("keys: p pause, r repeat, x exclude, n note, e end, m method and setting, ? help");
+}
+
+void Console::begins(const study::OpenUnit& unit) {
+  run_jobs();
+  const Guard guard(mutex_);
+  if (std::exchange(repeat_, false)) reopen_last();  // it came too late to cut that trial
+  unit_ = unit;
+  unit_done_ = false;
+  course_ = {};
+  say(describe(unit));
+  const double mb = disk_mb(database_);
+  if (mb >= 0 && mb < little_disk_mb) say(text("WARNING: only %.0f MB of disk are free", mb));
+}
+
+void Console::shown(const study::FrameRecord& frame) {
+  const Guard guard(mutex_);
+  Course& c = course_;
+  if (frame.index == 0) {
+    c = {};
+    c.first_scheduled_ns = c.strip_scheduled_ns = frame.scheduled_ns;
+    c.first_shown_ns = c.strip_shown_ns = frame.times.submitted_ns;
+  }
+  ++c.frames;
+  c.late += frame.late ? 1 : 0;
+  c.last_scheduled_ns = frame.scheduled_ns;
+  c.last_shown_ns = frame.times.submitted_ns;
+  c.worst_late_ms =
+      std::max(c.worst_late_ms, 1e-6 * static_cast<double>(c.last_shown_ns - c.last_scheduled_ns));
+  if (c.last_scheduled_ns - c.strip_scheduled_ns < strip_ns) return;
+  c.strip += strip_sign(static_cast<double>(c.last_shown_ns - c.strip_shown_ns),
+                        static_cast<double>(c.last_scheduled_ns - c.strip_scheduled_ns));
+  if (c.strip.size() > strip_length) c.strip.erase(0, 1);
+  c.strip_scheduled_ns = c.last_scheduled_ns;
+  c.strip_shown_ns = c.last_shown_ns;
+}
+
+void Console::done(const study::UnitDone& unit) {
+  {
+    const Guard guard(mutex_);
+    ++done_;
+    unit_done_ = true;
+    if (unit_ && unit_->trial) {
+      last_trial_ = unit_;
+      last_trial_->attempts = unit.attempt;
+    }
+    for (const study::TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
+  }
+  run_jobs();
+}
+
+study::Wish Console::wish() {
+  bool safe = false;
+  study::Wish wish = study::Wish::GoOn;
+  {
+    const Guard guard(mutex_);
+    safe = !unit_ || unit_done_ || !unit_->trial;
+    if (ended_)
+      wish = study::Wish::EndSession;
+    else if (repeat_ && unit_ && unit_->trial)
+      wish = study::Wish::RepeatTrial;
+    else if (paused_)
+      wish = study::Wish::Pause;
+    repeat_ = false;
+    if (wish == study::Wish::RepeatTrial) unit_done_ = false;
+  }
+  if (safe) run_jobs();
+  return wish;
+}
+
+bool Console::take_reopened() {
+  const Guard guard(mutex_);
+  return std::exchange(reopened_, false);
+}
+
+void Console::key(char byte) {
+  const Guard guard(mutex_);
+  if (asking_ == Asking::Nothing) return command(byte);
+  if (byte == '\n' || byte == '\r') return enter();
+  if (byte == 27) {  // Esc
+    asking_ = Asking::Nothing;
+    return say("(nothing was done)");
+  }
+  if (byte == 127 || byte == 8) {
+    // A letter of UTF-8 goes as a whole.
+    while (!typed_.empty() && (static_cast<unsigned char>(typed_.back()) & 0xC0) == 0x80) typed_.pop_back();
+    if (!typed_.empty()) typed_.pop_back();
+    return;
+  }
+  if (static_cast<unsigned char>(byte) >= 32 && typed_.size() < 500) typed_ += byte;
+}
+
+void Console::command(char byte) {
+  if (!session_) return;
+  const study::OpenUnit* trial = unit_ && unit_->trial ? &*unit_ : last_trial_ ? &*last_trial_ : nullptr;
+  switch (byte) {
+    case 'p':
+      paused_ = !paused_;
+      return say(paused_ ? "PAUSE before the next step; p goes on" : "goes on");
+    case 'n':
+      return ask(Asking::Note, "note: ");
+    case 'r':
+      return trial ? ask(Asking::Repeat, text("repeat trial %d, reason: ", trial->trial->position + 1))
+                   : say("no trial to repeat");
+    case 'x':
+      return trial ? ask(Asking::Exclude, text("exclude trial %d, reason: ", trial->trial->position + 1))
+                   : say("no trial to exclude");
+    case 'e':
+      return ask(Asking::End, "end the session (a rest, then the exit)? write yes: ");
+    case 'm':
+      return reveal();
+    case '?':
+    case 'h':
+      say("p  pause before the next step, and go on     n  note, with its time");
+      say("r  repeat this trial, or the last one        x  exclude it from analyses");
+      say("e  end the session: a rest, then the exit    m  show or hide method and setting (logged)");
+      return;
+    default:
+      return;
+  }
+}
+
+void Console::ask(Asking what, const std::string& prompt) {
+  asking_ = what;
+  prompt_ = prompt;
+  typed_.clear();
+}
+
+void Console::enter() {
+  const Asking asked = std::exchange(asking_, Asking::Nothing);
+  const std::string words = std::exchange(typed_, {});
+  if (words.find_first_not_of(' ') == std::string::npos)
+    return say("(nothing was done: no reason was given)");
+  if (asked == Asking::Note) return note(words);
+  if (asked == Asking::Repeat) return repeat(words);
+  if (asked == Asking::Exclude) return exclude(words);
+  if (words != "yes") return say("(the session goes on)");
+  ended_ = true;
+  say("the session ends: a rest first; let nobody go before they feel well");
+}
+
+void Console::note(const std::string& words) {
+  const std::int64_t session = session_->id;
+  const std::optional<std::int64_t> unit = unit_ ? std::optional(unit_->id) : std::nullopt;
+  const std::string timed = clock_time() + " " + words;
+  later([this, session, unit, timed] { store_.note(session, unit, timed); });
+  say("noted: " + words);
+}
+
+void Console::repeat(const std::string& reason) {
+  reason_ = reason;
+  if (unit_ && unit_->trial && !(unit_done_ && paused_)) {
+    repeat_ = true;
+    note("repeat: " + reason);
+    return say("this trial is shown again");
+  }
+  reopen_last();
+}
+
+void Console::reopen_last() {
+  if (!last_trial_) return;
+  const std::int64_t session = session_->id, trial = last_trial_->trial_id;
+  later([this, session, trial, reason = reason_] { store_.repeat_trial(session, trial, reason); });
+  reopened_ = true;
+  say(text("trial %d is shown again at the end of the session", last_trial_->trial->position + 1));
+}
+
+void Console::exclude(const std::string& reason) {
+  const study::OpenUnit& unit = unit_ && unit_->trial ? *unit_ : *last_trial_;
+  const std::int64_t session = session_->id, trial = unit.trial_id;
+  later([this, session, trial, reason] { store_.exclude_trial(session, trial, reason); });
+  say(text("trial %d is excluded from analyses; its data stay", unit.trial->position + 1));
+}
+
+void Console::reveal() {
+  revealed_ = !revealed_;
+  const std::int64_t session = session_->id;
+  const bool shows = revealed_;
+  later([this, session, shows] {
+    store_.log(session, shows ? "setting revealed" : "setting hidden", "to the experimenter");
+  });
+  if (!revealed_) return say("method and setting are hidden again");
+  say(unit_ && unit_->trial ? "revealed (logged): " + describe_cells(*unit_->trial) : "revealed (logged)");
+}
+
+void Console::say(const std::string& line) { lines_.push_back(clock_time() + "  " + line); }
+
+void Console::later(Job job) { jobs_.push_back(std::move(job)); }
+
+/// On the session's thread. A job is forgotten only when it was done.
+void Console::run_jobs() {
+  for (;;) {
+    Job job;
+    {
+      const Guard guard(mutex_);
+      if (jobs_.empty()) return;
+      job = jobs_.front();
+      jobs_.erase(jobs_.begin());
+    }
+    job();
+  }
+}
+
+std::vector<std::string> Console::take_lines() {
+  const Guard guard(mutex_);
+  return std::exchange(lines_, {});
+}
+
+std::string Console::left() const {
+  const auto& units = session_->units;
+  const std::size_t done = std::min(done_, units.size());
+  const double s = expected_s(protocol_, std::span(units).subspan(done));
+  return s < 90 ? text("about %.0f s", s) : text("about %.0f min", s / 60);
+}
+
+std::string Console::describe(const study::OpenUnit& unit) const {
+  const study::Block& block = protocol_.blocks.at(static_cast<std::size_t>(unit.plan.block));
+  std::string line = text("step %d of %zu: %s '%s'", unit.plan.position + 1, session_->planned,
+                          study::block_kind_name(block.kind).c_str(), block.id.c_str());
+  if (unit.trial) line += text(", trial %d", unit.trial->position + 1);
+  if (unit.trial && revealed_) line += " (" + describe_cells(*unit.trial) + ")";
+  return line + "; left: " + left();
+}
+
+std::string Console::describe_cells(const study::PlannedTrial& trial) const {
+  std::string all;
+  for (const auto& index : {std::optional(trial.first), trial.second}) {
+    if (!index) continue;
+    const study::Cell& cell = protocol_.design.cells.at(static_cast<std::size_t>(*index));
+    if (!all.empty()) all += ", then ";
+    all += cell.stimulus.method + " " + cell.stimulus.n_star + " " + cell.stimulus.scene;
+    if (cell.setting.mean > 0) all += " at " + study::setting_name(cell.setting) + " frames/s";
+  }
+  return all;
+}
+
+/// Hidden, it says only how far the trial was from its schedule.
+std::string Console::describe(const study::TimingVerdict& verdict) const {
+  if (!(verdict.nominal.mean > 0)) return "timing: no schedule";
+  std::string line =
+      "timing " + study::verdict_name(verdict.verdict) +
+      text(", grade %c: mean %+.2f %%, late %lld, worst %.2f ms", static_cast<char>(verdict.grade),
+           100 * (verdict.realised.mean / verdict.nominal.mean - 1), static_cast<long long>(verdict.late),
+           verdict.worst_late_ms);
+  if (revealed_)
+    line += text("; realised %.2f, sd %.2f frames/s", verdict.realised.mean, verdict.realised.sd);
+  if (revealed_ && !verdict.reason.empty()) line += "; " + verdict.reason;
+  return line;
+}
+
+std::string Console::status() const {
+  const Guard guard(mutex_);
+  if (asking_ != Asking::Nothing) return prompt_ + typed_;
+  if (paused_) return "PAUSED; p goes on";
+  const Course& c = course_;
+  if (unit_done_ || c.frames < 2) return "";
+  const double shown_s = 1e-9 * static_cast<double>(c.last_shown_ns - c.first_shown_ns);
+  const double scheduled_s = 1e-9 * static_cast<double>(c.last_scheduled_ns - c.first_scheduled_ns);
+  std::string line = text("%5.1f s  rate %+.2f %%  late %lld  worst %.2f ms  ", shown_s,
+                          100 * (scheduled_s / shown_s - 1), static_cast<long long>(c.late), c.worst_late_ms);
+  if (revealed_) {
+    const double frames = static_cast<double>(c.frames - 1);
+    line += text("%.1f of %.1f frames/s  ", frames / shown_s, frames / scheduled_s);
+  }
+  return line + c.strip;
+}
+
+}  // namespace apps

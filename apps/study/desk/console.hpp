@@ -1,0 +1,97 @@
+#pragma once
+/// The experimenter's console: lines about the session that is running, and keys that steer it.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/protocol/protocol.hpp"
+#include "libstudy/session/session.hpp"
+#include "libstudy/store/store.hpp"
+
+namespace apps {
+
+/// Method, frame rate and all that gives them away are hidden until they are revealed, which is logged. Two
+/// threads use it: the session's, which alone touches the store, and the one that reads the keys. What a key
+/// asks of the store is done between two trials, because a running trial keeps its frames there.
+class Console {
+ public:
+  Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database);
+  /// Keeps what was still to be written; failures are told on stderr.
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  /// The session's thread: a session begins; then its hooks. wish() returns RepeatTrial once.
+  void begin(const study::OpenSession& session);
+  void begins(const study::OpenUnit& unit);
+  void shown(const study::FrameRecord& frame);
+  void done(const study::UnitDone& unit);
+  study::Wish wish();
+  /// Whether trials were opened again that this session is already past; forgets it.
+  bool take_reopened();
+
+  /// The thread of the keys: what was typed, byte by byte.
+  void key(char byte);
+  /// Lines to be written since the last call.
+  std::vector<std::string> take_lines();
+  /// What stands below them: how the trial goes, or what is being typed.
+  std::string status() const;
+
+ private:
+  enum class Asking { Nothing, Note, Repeat, Exclude, End };
+  /// A job for the session's thread.
+  using Job = std::function<void()>;
+
+  void command(char byte);
+  void ask(Asking what, const std::string& prompt);
+  void enter();
+  void note(const std::string& words);
+  void repeat(const std::string& reason);
+  void reopen_last();
+  void exclude(const std::string& reason);
+  void reveal();
+  void say(const std::string& line);
+  void later(Job job);
+  void run_jobs();
+  std::string describe(const study::OpenUnit& unit) const;
+  std::string describe_cells(const study::PlannedTrial& trial) const;
+  std::string describe(const study::TimingVerdict& verdict) const;
+  std::string left() const;
+
+  const study::Protocol& protocol_;
+  study::Store& store_;
+  std::filesystem::path database_;
+
+  mutable std::mutex mutex_;  ///< of all that follows
+  const study::OpenSession* session_ = nullptr;
+  std::optional<study::OpenUnit> unit_;  ///< under way
+  bool unit_done_ = false;
+  std::optional<study::OpenUnit> last_trial_;  ///< finished
+  std::size_t done_ = 0;                       ///< units of this session, in this run
+  bool paused_ = false, ended_ = false, repeat_ = false, revealed_ = false, reopened_ = false;
+  Asking asking_ = Asking::Nothing;
+  std::string prompt_, typed_, reason_;
+  std::vector<std::string> lines_;
+  std::vector<Job> jobs_;
+
+  /// How the present stimulus goes.
+  struct Course {
+    std::int64_t frames = 0, late = 0;
+    std::int64_t first_scheduled_ns = 0, first_shown_ns = 0, last_scheduled_ns = 0, last_shown_ns = 0;
+    double worst_late_ms = 0;
+    std::string strip;  ///< a sign for each half second
+    std::int64_t strip_scheduled_ns = 0, strip_shown_ns = 0, strip_frames = 0;
+  };
+  Course course_;
+};
+
+/// '.' where the rate over some frames is within 2 % of the schedule's, '+' faster, '-' slower by up to 20 %,
+/// '!' beyond.
+char strip_sign(double shown_s, double scheduled_s);
+
+}  // namespace apps

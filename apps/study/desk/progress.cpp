@@ -1,0 +1,85 @@
+#include "apps/study/desk/progress.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace apps {
+
+namespace {
+
+using study::BlockKind;
+using study::StepKind;
+
+double reading_s(const std::string& text) {
+  std::istringstream all(text);
+  int words = 0;
+  for (std::string word; all >> word;) ++words;
+  return words / 3.5;
+}
+
+double answering_s(const study::Question& question) {
+  if (question.kind == study::AnswerKind::Number) return 10;
+  return question.kind == study::AnswerKind::Text ? 30 : 5;
+}
+
+const study::Block& block_of(const study::Protocol& protocol, const study::OpenUnit& unit) {
+  return protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
+}
+
+const study::Cell& cell_of(const study::Protocol& protocol, const study::PlannedTrial& trial, int interval) {
+  const int cell = interval == 0 ? trial.first : trial.second.value_or(trial.first);
+  return protocol.design.cells.at(static_cast<std::size_t>(cell));
+}
+
+double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit) {
+  double total = 0;
+  for (const study::TrialStep& step : block_of(protocol, unit).steps) {
+    if (step.kind == StepKind::Black || step.kind == StepKind::Rest) total += step.seconds;
+    if (step.kind == StepKind::Stimulus)
+      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s;
+    if (step.kind == StepKind::Ask) total += 5 * static_cast<double>(step.asks.size());
+  }
+  return total;
+}
+
+}  // namespace
+
+double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit) {
+  if (unit.trial) return trial_s(protocol, unit);
+  const study::Block& block = block_of(protocol, unit);
+  switch (block.kind) {
+    case BlockKind::Rest:
+    case BlockKind::Break:
+    case BlockKind::Black:
+      return block.seconds;
+    case BlockKind::Stimulus:
+      return block.between_groups_s;
+    default: {
+      double total = std::max(block.seconds, reading_s(block.text));
+      for (const study::Question& question : block.questions)
+        total += reading_s(question.text) + answering_s(question);
+      return total;
+    }
+  }
+}
+
+double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units) {
+  double total = 0;
+  for (const study::OpenUnit& unit : units) total += expected_s(protocol, unit);
+  return total;
+}
+
+std::uint64_t expected_bytes(const study::Protocol& protocol, std::span<const study::OpenUnit> units) {
+  double frames = 0;
+  for (const study::OpenUnit& unit : units) {
+    if (!unit.trial) continue;
+    for (const study::TrialStep& step : block_of(protocol, unit).steps) {
+      if (step.kind != StepKind::Stimulus) continue;
+      const study::FpsSetting& setting = cell_of(protocol, *unit.trial, step.interval).setting;
+      frames += setting.duration_s * (setting.mean > 0 ? setting.mean : 60);  // native: as a screen at most
+    }
+  }
+  return static_cast<std::uint64_t>(64 * frames + 4096 * static_cast<double>(units.size()));
+}
+
+}  // namespace apps

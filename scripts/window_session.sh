@@ -1,0 +1,145 @@
+#!/usr/bin/env bash
+# A whole session at the participant's window, answered by real keys and the real mouse on a virtual screen.
+# Fails when the database lacks an answer. usage: scripts/window_session.sh [FOLDER]    default: out/window_session
+# Takes vip-study from $VIP_STUDY, else from build/dev. Screenshots, database and logs go to FOLDER.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=${1:-out/window_session}
+study=${VIP_STUDY:-build/dev/bin/vip-study}
+size=${VIP_SCREEN:-1280x720}
+
+if [ "${VIP_SCREEN_READY:-}" != yes ]; then
+  for tool in xvfb-run xdotool import sqlite3; do
+    command -v "$tool" >/dev/null || { echo "window_session: $tool is missing; run scripts/setup.sh" >&2; exit 1; }
+  done
+  VIP_SCREEN_READY=yes exec xvfb-run -a -s "-screen 0 ${size}x24" "$0" "$out"
+fi
+
+mkdir -p "$out"
+rm -f "$out"/study.db* "$out"/*.png "$out"/{events,keys}
+export OMP_WAIT_POLICY=passive
+if [ ! -f "$out/dam.bake" ]; then
+  "$study" bake data/scenes/single_dam.toml --method HiRes --n-star 512 --frames 60 --pictures 640x360 \
+    --out "$out/dam.bake"
+fi
+
+# The demonstration with one method, which a bake can show.
+sed -e 's/^method = .*/method = ["HiRes"]/' -e 's/^order = "constrained".*/order = "shuffle"/' -e '/^never_adjacent/d' \
+  protocols/demo.toml >"$out/protocol.toml"
+
+mkfifo "$out/keys"
+exec 3<>"$out/keys"  # the experimenter's keyboard
+"$study" run "$out/protocol.toml" --db "$out/study.db" --participant P01 --display window --gaze mouse \
+  --station test --screen-width-mm 520 --viewing-distance-mm 600 --stimulus "$out/dam.bake" --trial-seconds 2 \
+  --seed 3 --events --console <&3 >"$out/events" 2>"$out/log" &
+session=$!
+trap 'kill $session 2>/dev/null || true' EXIT
+
+width=${size%x*} height=${size#*x}
+alive() { kill -0 "$session" 2>/dev/null; }
+key() { for k in "$@"; do xdotool key "$k"; sleep 0.08; done; }
+shoot() { import -window root "$out/$1.png"; }
+click() { xdotool mousemove "$1" "$2"; sleep 0.06; xdotool click 1; sleep 0.1; }
+# The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
+click_on() { click $((width / 2)) $((height - height * 80 / 1000)); }
+
+answer() {  # answer KIND ID: what is done while such a unit is on; again and again until it is over
+  case $1 in
+    instructions | debrief)
+      click_on
+      key Return ;;
+    consent) key 1 Return ;;
+    screening) key 0 Return ;;
+    demographics)
+      key 3 0
+      shoot demographics
+      key Tab
+      xdotool type --delay 20 "Waves and splashes"
+      key Tab
+      click_on ;;
+    fms) key Right Return Return ;;
+    practice | stimulus | repeat)  # while the stimulus is on, these keys count for nothing
+      key 5 Return 1 Return
+      [ "$1" != practice ] || shoot trial_answers
+      click_on ;;
+    catch) key 2 Return ;;
+    ssq)
+      key 1 Return 0 Return 3 Return
+      shoot ssq_under_way
+      for _ in $(seq 13); do key 0 Return; done
+      key Return ;;
+    question)
+      xdotool type --delay 20 "It was pleasant"
+      key Tab Return ;;
+    break) key space ;;
+    *) sleep 0.3 ;;
+  esac
+}
+
+under_way() { tail -n 1 "$out/events" 2>/dev/null || true; }
+shot=
+give_up=$((SECONDS + 240))
+while alive; do
+  [ $SECONDS -lt $give_up ] || { shoot stuck; echo "window_session: stuck at: $(under_way)" >&2; exit 1; }
+  read -r what _ position kind id < <(under_way; echo) || true
+  [ "$what" = begins ] || { sleep 0.1; continue; }
+  sleep 0.45  # what comes in the first 300 ms of a page counts for nothing
+  if [ "$shot" != "$position" ]; then
+    shot=$position
+    shoot "$(printf '%02d_%s_%s' "$position" "$kind" "$id")"
+    case $kind in
+      rest) printf 'nthe door opened\n' >&3 ;;
+      break) printf 'xsomebody spoke\nm' >&3 ;;
+      ssq) printf 'rthe picture froze\n' >&3 ;;
+    esac
+    if [ "$kind" = repeat ]; then
+      sleep 1.8
+      shoot stimulus
+    elif [ "$kind" = practice ]; then
+      sleep 1.7
+      key Escape  # during the stimulus: the session goes on, and the trial is shown again
+      sleep 0.6
+      shoot stop_question
+      key 1 Return
+    fi
+  fi
+  answer "$kind" "$id"
+done
+status=0
+wait "$session" || status=$?
+trap - EXIT
+cat "$out/log" >&2
+[ $status -eq 0 ] || { echo "window_session: vip-study ended with $status" >&2; exit 1; }
+
+ask() { sqlite3 "$out/study.db" "$1"; }
+failed=0
+expect() {  # expect WHAT WANTED SQL
+  local got
+  got=$(ask "$3")
+  if [ "$got" = "$2" ]; then printf 'ok      %s: %s\n' "$1" "$got"; else
+    printf 'FAILED  %s: %s instead of %s\n' "$1" "$got" "$2"
+    failed=1
+  fi
+}
+expect "units left" 0 "select count(*) from unit where state <> 'done'"
+expect "trials without an answer" 0 "select count(*) from trial t where not exists (select 1 from unit u join response r using (unit_id) where u.trial_id = t.trial_id)"
+expect "session is done" done "select state from session"
+expect "gaze source" mouse "select gaze_source from session"
+expect "answers to SSQ" 16 "select count(*) from response join unit using (unit_id) where kind = 'ssq'"
+expect "first answers to SSQ" "1 0 3" "select group_concat(score, ' ') from (select score from response join unit using (unit_id) where kind = 'ssq' order by response_id limit 3)"
+expect "attention" 2 "select score from response join unit using (unit_id) where kind = 'catch'"
+expect "remark" "It was pleasant" "select words from response join unit using (unit_id) where kind = 'question'"
+expect "presentations without a verdict" 0 "select count(*) from presentation where state = 'played' and verdict is null"
+expect "cut by the question whether to stop" 1 "select count(*) from presentation where state = 'interrupted'"
+expect "note" 1 "select count(*) from note where words like '%the door opened'"
+expect "excluded trials" 1 "select count(*) from trial where excluded = 'somebody spoke'"
+expect "shown again at the end" 1 "select count(*) from presentation where attempt > 1 and state = 'played' and trial_id = (select trial_id from unit where trial_id is not null order by position desc limit 1)"
+expect "revealing is logged" 1 "select count(*) from event where kind = 'setting revealed'"
+expect "pre-flight list is kept" 1 "select count(*) from event where kind = 'preflight'"
+expect "personal answers in the database" 0 "select count(*) from response where words like '%splashes%'"
+personal=$(sqlite3 "$out/study.db.personal" "select group_concat(answer, ';') from (select * from $(sqlite3 "$out/study.db.personal" "select name from sqlite_master where type = 'table' limit 1") order by question)" || true)
+case $personal in
+  *30*Waves*) echo "ok      personal answers stand in their own file" ;;
+  *) echo "FAILED  personal file holds: $personal"; failed=1 ;;
+esac
+exit $failed

@@ -1,0 +1,257 @@
+/// The experimenter's desk: measured refresh, pre-flight list, time left, console.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "apps/study/desk/console.hpp"
+#include "apps/study/desk/preflight.hpp"
+#include "apps/study/desk/progress.hpp"
+#include "apps/study/desk/refresh.hpp"
+#include "apps/study/desk/words.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace apps {
+
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Returns of swaps on a screen of this period, in the order of `skips` (periods to the next return).
+std::vector<std::int64_t> swaps(double period_ns, int count, double jitter_ns = 0, int missed = -1) {
+  std::vector<std::int64_t> out;
+  double at = 1e9;
+  for (int i = 0; i < count; ++i) {
+    out.push_back(std::llround(at + jitter_ns * std::sin(7.0 * i)));
+    at += i == missed ? 2 * period_ns : period_ns;
+  }
+  return out;
+}
+
+TEST(Refresh, IsMeasuredWithJitterAndMissedBeats) {
+  const double period_ns = 1e9 / 59.951;
+  const auto found = judge_swaps(swaps(period_ns, 120, 2e5, 40), 60);
+  ASSERT_TRUE(found.in_effect);
+  EXPECT_NEAR(found.period_ns, period_ns, 1e-4 * period_ns);
+  EXPECT_EQ(found.nominal_hz, 60) << "59.95 is what the system calls 60";
+}
+
+TEST(Refresh, AToldRateThatIsWrongIsNotBelieved) {
+  const auto found = judge_swaps(swaps(1e9 / 144, 120), 60);
+  ASSERT_TRUE(found.in_effect);
+  EXPECT_NEAR(found.nominal_hz, 144, 0.01);
+}
+
+TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
+  EXPECT_FALSE(judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: at once
+  EXPECT_FALSE(judge_swaps(swaps(8e6, 120, 3e6), 60).in_effect);  // as long as drawing takes
+  EXPECT_FALSE(judge_swaps(swaps(1e9 / 60, 5), 60).in_effect);    // too few
+  EXPECT_EQ(judge_swaps(swaps(3e5, 120), 60).nominal_hz, 0);
+}
+
+TEST(Refresh, SchedulesBeginBetweenTwoBeats) {
+  MeasuredRefresh refresh;
+  refresh.in_effect = true;
+  refresh.period_ns = 16e6;
+  refresh.beat_ns = 1'000'000'000;
+  for (const std::int64_t earliest : {1'000'000'000LL, 1'007'999'999LL, 1'008'000'001LL, 5'000'000'003LL}) {
+    const std::int64_t at = between_beats(refresh, earliest);
+    EXPECT_GE(at, earliest);
+    EXPECT_LT(at, earliest + 16'000'000);
+    EXPECT_EQ((at - refresh.beat_ns) % 16'000'000, 8'000'000);
+    EXPECT_EQ(next_beat(refresh, at), at + 8'000'000);
+  }
+  EXPECT_EQ(between_beats({}, 12345), 12345);
+  EXPECT_EQ(next_beat({}, 12345), -1);
+}
+
+Readiness of(const std::vector<PreflightLine>& lines, const std::string& what) {
+  for (const PreflightLine& line : lines) {
+    if (line.what == what) return line.readiness;
+  }
+  ADD_FAILURE() << "no line about " << what;
+  return Readiness::Unknown;
+}
+
+TEST(Preflight, AGoodStationIsOk) {
+  ScreenFacts screen{60, 59.95, false, false};
+  StationFacts station;
+  station.governors = {"performance"};
+  station.free_disk_bytes = 50'000'000'000;
+  station.gpu_clock_mhz = 1500;
+  station.gpu_max_mhz = 1900;
+  station.on_battery = false;
+  const auto lines = judge_preflight(screen, station, 1'000'000);
+  for (const char* what : {"refresh rate", "compositor", "power governor", "free disk", "GPU clock", "power"})
+    EXPECT_EQ(of(lines, what), Readiness::Ok) << what;
+}
+
+TEST(Preflight, WhatSpoilsTimingIsWarnedOf) {
+  ScreenFacts screen{60, 0, true, true};
+  StationFacts station;
+  station.governors = {"performance", "powersave"};
+  station.free_disk_bytes = 9'000'000;
+  station.on_battery = true;
+  const auto lines = judge_preflight(screen, station, 1'000'000);
+  for (const char* what : {"refresh rate", "compositor", "power governor", "free disk", "graphics", "power"})
+    EXPECT_EQ(of(lines, what), Readiness::Warn) << what;
+  screen.measured_hz = 75;
+  EXPECT_EQ(of(judge_preflight(screen, station, 1), "refresh rate"), Readiness::Warn);
+}
+
+TEST(Preflight, WhatIsNotToldIsUnknown) {
+  const auto lines = judge_preflight({}, {}, 1);
+  for (const PreflightLine& line : lines) EXPECT_EQ(line.readiness, Readiness::Unknown) << line.what;
+  EXPECT_THAT(format_preflight(lines), HasSubstr("unknown  power governor"));
+}
+
+TEST(Words, UnknownLanguagesAreEnglish) {
+  EXPECT_EQ(desk_words("de-AT").go_on, "Weiter");
+  EXPECT_EQ(desk_words("tlh").go_on, "Continue");
+}
+
+TEST(Strip, SignsFollowTheRate) {
+  EXPECT_EQ(strip_sign(1, 1.01), '.');
+  EXPECT_EQ(strip_sign(1, 1.1), '+');
+  EXPECT_EQ(strip_sign(1.1, 1), '-');
+  EXPECT_EQ(strip_sign(1.5, 1), '!');
+  EXPECT_EQ(strip_sign(0, 1), '!');
+}
+
+/// A pilot session under way, with the store that keeps it.
+class ConsoleTest : public ::testing::Test {
+ protected:
+  ConsoleTest() : store_(folder_.path() / "s.db", study::sqlite::Open::Create) {
+    store_.add_run(study::test::run_plan(protocol_, {"P01"}));
+    runs_ = store_.open_runs();
+    console_.begin(session());
+  }
+
+  const study::OpenSession& session() const { return runs_.at(0).sessions.at(0); }
+  const study::OpenUnit& first_trial() const {
+    for (const auto& unit : session().units) {
+      if (unit.trial) return unit;
+    }
+    throw std::logic_error("no trial");
+  }
+  void type(const std::string& keys) {
+    for (const char byte : keys) console_.key(byte);
+  }
+  std::string lines() {
+    std::string all;
+    for (const std::string& line : console_.take_lines()) all += line + "\n";
+    return all;
+  }
+  std::int64_t count(const std::string& sql) {
+    return study::sqlite::Connection(folder_.path() / "s.db", study::sqlite::Open::Read)
+        .integer("SELECT count(*) FROM " + sql);
+  }
+
+  study::test::TemporaryFolder folder_;
+  study::Protocol protocol_ = study::test::pilot();
+  study::Store store_;
+  std::vector<study::OpenRun> runs_;
+  Console console_{protocol_, store_, folder_.path() / "s.db"};
+};
+
+TEST_F(ConsoleTest, HidesTheSettingUntilItIsRevealedAndLogsThat) {
+  console_.begins(first_trial());
+  study::UnitDone done{"P01", first_trial().plan, 1, {study::test::verdict()}};
+  console_.done(done);
+  const std::string hidden = lines();
+  EXPECT_THAT(hidden, HasSubstr("timing degraded"));
+  for (const char* secret : {"HiRes", "49.5", "frames/s", "one frame late"})
+    EXPECT_THAT(hidden, Not(HasSubstr(secret)));
+  EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 0);
+  type("m");
+  console_.wish();
+  EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 1);
+  console_.begins(first_trial());
+  EXPECT_THAT(lines(), HasSubstr("HiRes"));
+}
+
+TEST_F(ConsoleTest, PauseHoldsUntilItIsLifted) {
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  type("p");
+  EXPECT_EQ(console_.wish(), study::Wish::Pause);
+  EXPECT_EQ(console_.wish(), study::Wish::Pause);
+  type("p");
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+}
+
+TEST_F(ConsoleTest, TheSessionEndsOnlyOnAWholeYes) {
+  for (const char* half : {"e\n", "ey\n", "eno\n", "eye\x1b", "q", "E"}) type(half);
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  type("eyes\n");
+  EXPECT_EQ(console_.wish(), study::Wish::EndSession);
+}
+
+TEST_F(ConsoleTest, ARunningTrialIsRepeatedOnce) {
+  console_.begins(first_trial());
+  type("r\n");
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn) << "without a reason";
+  type("rdoor slammed\n");
+  EXPECT_EQ(console_.wish(), study::Wish::RepeatTrial);
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+}
+
+TEST_F(ConsoleTest, TheStoreIsLeftAloneWhileATrialRuns) {
+  console_.begins(first_trial());
+  type("nphone rang\n");
+  console_.wish();
+  EXPECT_EQ(count("note"), 0) << "the journal of frames has the store";
+  console_.done({"P01", first_trial().plan, 1, {}});
+  EXPECT_EQ(count("note WHERE words LIKE '%phone rang'"), 1);
+}
+
+TEST_F(ConsoleTest, WhatIsStillToBeWrittenIsKeptAtTheEnd) {
+  {
+    Console other(protocol_, store_, folder_.path() / "s.db");
+    other.begin(session());
+    other.begins(first_trial());
+    for (const char byte : std::string("nleft early\n")) other.key(byte);
+  }
+  EXPECT_EQ(count("note WHERE words LIKE '%left early'"), 1);
+}
+
+TEST_F(ConsoleTest, ATrialIsExcludedWithItsReason) {
+  type("x");
+  EXPECT_THAT(lines(), HasSubstr("no trial to exclude"));
+  console_.begins(first_trial());
+  type("xwron\x7fng glasses\n");
+  console_.done({"P01", first_trial().plan, 1, {}});
+  EXPECT_EQ(count("trial WHERE excluded = 'wrong glasses'"), 1);
+}
+
+TEST_F(ConsoleTest, StatusShowsLatenessAndWhatIsTyped) {
+  console_.begins(first_trial());
+  for (int i = 0; i < 40; ++i) {
+    study::FrameRecord frame;
+    frame.index = i;
+    frame.scheduled_ns = 1'000'000'000LL + i * 50'000'000LL;
+    frame.times.submitted_ns = frame.scheduled_ns + (i == 20 ? 7'000'000 : 0);
+    frame.late = i == 20;
+    console_.shown(frame);
+  }
+  EXPECT_THAT(console_.status(), HasSubstr("late 1  worst 7.00 ms"));
+  EXPECT_THAT(console_.status(), HasSubstr("..."));
+  EXPECT_THAT(console_.status(), Not(HasSubstr("frames/s"))) << "it would tell the setting";
+  type("nab");
+  EXPECT_EQ(console_.status(), "note: ab");
+}
+
+TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
+  const study::OpenUnit& trial = first_trial();
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial), 3 + 10 + 5);  // black 3, stimulus 10, one question
+  double sum = 0;
+  for (const auto& unit : session().units) sum += expected_s(protocol_, unit);
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units), sum);
+  EXPECT_GT(sum, 21 * 18);
+  // 21 settings of 10 s with a mean of 26.67 frames/s.
+  EXPECT_GT(expected_bytes(protocol_, session().units), 64u * 21 * 200);
+}
+
+}  // namespace
+
+}  // namespace apps
