@@ -5,10 +5,27 @@
 
 namespace apps {
 
+std::vector<CheckedSetting> checked_settings(const study::Protocol& protocol) {
+  std::vector<CheckedSetting> out;
+  if (protocol.design.timing == study::TimingSource::Native) return out;
+  for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
+    const study::FpsSetting& setting = protocol.design.cells[i].setting;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const CheckedSetting& other) {
+      return other.setting.mean == setting.mean && other.setting.sd == setting.sd &&
+             other.setting.duration_s == setting.duration_s;
+    });
+    if (same == out.end())
+      out.push_back({setting, {static_cast<int>(i)}});
+    else
+      same->cells.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
 RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz) {
   RefreshCheck check;
   check.refresh_hz = refresh_hz;
-  for (const auto& setting : protocol.settings) {
+  for (const auto& [setting, cells] : checked_settings(protocol)) {
     // The seed orders the holds; nothing that is reported depends on it.
     check.verdicts.push_back(study::quantise(setting, protocol.pacing, refresh_hz, 0));
     const auto& verdict = check.verdicts.back();
@@ -27,12 +44,6 @@ const RefreshCheck& best_refresh(const std::vector<RefreshCheck>& checks) {
   };
   return *std::min_element(checks.begin(), checks.end(),
                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-}
-
-double plan_seconds(const study::Protocol& protocol, double answer_s) {
-  double seconds = 0;
-  for (const auto& setting : protocol.settings) seconds += protocol.gap_s + setting.duration_s + answer_s;
-  return seconds;
 }
 
 double play_speed(const study::Protocol& protocol, const study::FpsSetting& setting) {

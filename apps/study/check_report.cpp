@@ -1,0 +1,296 @@
+#include "apps/study/check_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "libsim/methods/method.hpp"
+
+namespace apps {
+
+namespace {
+
+using study::TimingSource;
+
+const char* mean_name(const study::Protocol& protocol) {
+  return protocol.pacing.mean == study::FpsMean::Harmonic ? "harmonic" : "arithmetic";
+}
+
+const char* timing_name(const study::Design& design) {
+  switch (design.timing) {
+    case TimingSource::Native:
+      return "native";
+    case TimingSource::Equal:
+      return "equal";
+    case TimingSource::Table2:
+      return "table2";
+    default:
+      return "settings";
+  }
+}
+
+/// "HiRes single_dam 32k".
+std::string stimulus_name(const study::StimulusSpec& what) {
+  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star;
+}
+
+/// Why a setting is not exact, with the stimulus where each has settings of its own.
+std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
+  if (report.protocol.design.timing != TimingSource::Table2) return reason;
+  const auto& cells = report.settings[setting].cells;
+  std::string out =
+      stimulus_name(report.protocol.design.cells[static_cast<std::size_t>(cells.front())].stimulus);
+  if (cells.size() > 1) out += " and " + std::to_string(cells.size() - 1) + " more";
+  return reason.empty() ? out : out + ": " + reason;
+}
+
+double longest_ms(const RefreshCheck& check, std::size_t setting) {
+  return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
+}
+
+void print_session(const CheckReport& report) {
+  const auto& protocol = report.protocol;
+  std::printf("%s %s, language %s, sha256 %.12s\n\n%-14s %-13s %13s  %s\n", protocol.name.c_str(),
+              protocol.version.c_str(), protocol.language.c_str(), protocol.sha256.c_str(), "block", "kind",
+              "minutes", "what");
+  for (const auto& outline : report.outline.blocks) {
+    std::printf("%-14s %-13s %5.1f to %4.1f  %s\n", outline.block->id.c_str(),
+                study::block_kind_name(outline.block->kind).c_str(), outline.seconds.least / 60,
+                outline.seconds.most / 60, describe_block(protocol, outline).c_str());
+  }
+  const auto& all = report.outline;
+  std::printf(
+      "\nplan: %d units, %d trials; %.1f to %.1f min with %g to %g s an answer, %.1f to %.1f min of them "
+      "the %d trials of the design\n",
+      all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, quick_pace.answer_s,
+      slow_pace.answer_s, all.trials_s.least / 60, all.trials_s.most / 60,
+      protocol.design.groups * study::trials_of_group(protocol.design));
+  std::printf("balance: %s\n", describe_balance(protocol, report.balance).c_str());
+}
+
+void print_settings(const CheckReport& report, const RefreshCheck& check) {
+  std::printf("\non %g Hz, %s mean, timing = %s\n%-16s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
+              mean_name(report.protocol), timing_name(report.protocol.design), "setting", "frames", "status",
+              "mean", "sd", "longest ms", "why not exact");
+  for (std::size_t i = 0; i < report.settings.size(); ++i) {
+    const auto& verdict = check.verdicts[i];
+    std::printf("%-16s %6lld  %-11s", study::setting_name(report.settings[i].setting).c_str(),
+                static_cast<long long>(verdict.frames), study::feasibility_name(verdict.feasibility).c_str());
+    if (verdict.holds.empty())
+      std::printf(" %9s %8s %11s", "-", "-", "-");
+    else
+      std::printf(" %9.4f %8.4f %11.1f", verdict.mean, verdict.sd, longest_ms(check, i));
+    std::printf("  %s\n", remark_of(report, i, verdict.reason).c_str());
+  }
+  std::printf("\n%d exact, %d approximate, %d unreachable of %zu\n", check.exact, check.approximate,
+              check.unreachable, report.settings.size());
+  if (check.unreachable > 0) {
+    std::printf("run refuses this protocol on %g Hz: %d settings are unreachable\n", check.refresh_hz,
+                check.unreachable);
+  } else if (check.approximate > 0 && !report.protocol.accept_approximate) {
+    std::printf("run refuses approximate settings unless the protocol says accept_approximate = true\n");
+  }
+}
+
+void print_common(const std::vector<RefreshCheck>& checks) {
+  std::printf("\nexact settings by refresh:");
+  for (const auto& check : checks) std::printf(" %g Hz %d;", check.refresh_hz, check.exact);
+  const auto& best = best_refresh(checks);
+  std::printf("\nbest of these: %g Hz, %d exact, mean distance to the unquantised rates %.2g frames/s\n",
+              best.refresh_hz, best.exact, best.distance);
+}
+
+Span play_speeds(const CheckReport& report) {
+  Span out{HUGE_VAL, 0};
+  for (const auto& [setting, cells] : report.settings) {
+    out.least = std::min(out.least, play_speed(report.protocol, setting));
+    out.most = std::max(out.most, play_speed(report.protocol, setting));
+  }
+  return out;
+}
+
+void print_speed(const CheckReport& report) {
+  const auto& content = report.protocol.content;
+  if (report.settings.empty()) {
+    std::printf("play speed: %s\n", content.real_time ? "real time" : "rate of the machine x content_step_s");
+    return;
+  }
+  const Span speeds = play_speeds(report);
+  std::printf("play speed: %.2f to %.2f of real time (%s, content step %.4g ms): part of the stimulus\n",
+              speeds.least, speeds.most, content.real_time ? "real_time" : "per_frame: mean x content_step_s",
+              1000 * content.content_step_s);
+}
+
+struct BakeAdvice {
+  study::StimulusSpec what;
+  bool adaptive = false;    ///< follows gaze or picture: runs live
+  std::int64_t frames = 0;  ///< content steps that the longest cell shows
+};
+
+std::vector<BakeAdvice> bake_advice(const study::Protocol& protocol) {
+  std::vector<BakeAdvice> out;
+  for (const auto& what : stimuli_of(protocol)) {
+    BakeAdvice one{what, sim::traits_of(sim::parse_method(what.method)).adaptive(), 0};
+    for (const auto& cell : protocol.design.cells) {
+      if (!(cell.stimulus == what)) continue;
+      const double steps = protocol.content.real_time
+                               ? std::ceil(cell.setting.duration_s / protocol.content.content_step_s)
+                               : static_cast<double>(study::frame_count(cell.setting));
+      one.frames = std::max(one.frames, protocol.content.start_frame + static_cast<std::int64_t>(steps));
+    }
+    out.push_back(one);
+  }
+  return out;
+}
+
+void print_stimuli(const CheckReport& report) {
+  const bool native = report.protocol.design.timing == TimingSource::Native;
+  std::printf("\nstimuli:\n");
+  for (const auto& one : bake_advice(report.protocol)) {
+    std::printf("  %-28s ", stimulus_name(one.what).c_str());
+    if (native) {
+      std::printf("live, as fast as it runs\n");
+    } else if (one.adaptive) {
+      std::printf("live: it follows what is looked at\n");
+    } else {
+      std::printf(
+          "bake it unless it runs live in time: vip-study bake %s --method %s --n-star %s --frames %lld "
+          "--content-step %.17g --pictures WxH --out FILE\n",
+          one.what.scene.c_str(), one.what.method.c_str(), one.what.n_star.c_str(),
+          static_cast<long long>(one.frames), report.protocol.content.content_step_s);
+    }
+  }
+  std::printf("gaze: %s\n", report.protocol.needs_gaze
+                                ? "needed; without tracked gaze H1 and H5 are labelled not testable"
+                                : "not needed");
+  if (!report.measured) {
+    std::printf("live methods: not measured; --measure says whether this machine shows them in time%s\n",
+                native ? ", and native whether they differ at all" : "");
+  }
+}
+
+void print_measured(const MeasuredReport& measured) {
+  std::printf("\nmeasured here:\n%-30s %9s %8s %8s %8s\n", "stimulus", "frames/s", "sd", "p95 ms", "tau min");
+  for (const auto& one : measured.stimuli) {
+    std::printf("%-30s %9.1f %8.2f %8.1f %8.2f  %s\n", stimulus_name(one.what).c_str(), one.fps.mean,
+                one.fps.sd, one.p95_ms, one.tau_min, one.words.c_str());
+  }
+}
+
+nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
+                                    double refresh_hz) {
+  nlohmann::ordered_json json{{"mean_fps", checked.setting.mean},
+                              {"sd_fps", checked.setting.sd},
+                              {"duration_s", checked.setting.duration_s},
+                              {"cells", checked.cells},
+                              {"frames", verdict.frames},
+                              {"status", study::feasibility_name(verdict.feasibility)},
+                              {"reason", verdict.reason}};
+  if (verdict.holds.empty()) return json;
+  json["best_mean_fps"] = verdict.mean;
+  json["best_sd_fps"] = verdict.sd;
+  json["longest_hold_periods"] = verdict.longest_hold;
+  json["longest_hold_ms"] = 1000 * verdict.longest_hold / refresh_hz;
+  json["distance_fps"] = verdict.distance;
+  return json;
+}
+
+void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
+  if (!report.refresh) return;
+  const RefreshCheck& check = *report.refresh;
+  json["refresh_hz"] = check.refresh_hz;
+  json["exact"] = check.exact;
+  json["approximate"] = check.approximate;
+  json["unreachable"] = check.unreachable;
+  for (std::size_t i = 0; i < report.settings.size(); ++i)
+    json["settings"].push_back(setting_json(report.settings[i], check.verdicts[i], check.refresh_hz));
+}
+
+void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
+  if (report.common.empty()) return;
+  json["best_refresh_hz"] = best_refresh(report.common).refresh_hz;
+  const Span speeds = play_speeds(report);
+  json["play_speed"] = {speeds.least, speeds.most};
+  for (const auto& rate : report.common) {
+    json["common_refreshes"].push_back({{"refresh_hz", rate.refresh_hz},
+                                        {"exact", rate.exact},
+                                        {"approximate", rate.approximate},
+                                        {"unreachable", rate.unreachable},
+                                        {"distance_fps", rate.distance}});
+  }
+}
+
+void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
+  json["too_slow"] = measured.too_slow;
+  json["collapse"] = measured.collapse;
+  for (const auto& one : measured.stimuli) {
+    json["measured"].push_back({{"scene", one.what.scene},
+                                {"method", one.what.method},
+                                {"n_star", one.what.n_star},
+                                {"fps_mean", one.fps.mean},
+                                {"fps_sd", one.fps.sd},
+                                {"p95_ms", one.p95_ms},
+                                {"tau_min", one.tau_min},
+                                {"too_slow", one.too_slow},
+                                {"words", one.words}});
+  }
+}
+
+}  // namespace
+
+void print_report(const CheckReport& report) {
+  print_session(report);
+  if (report.refresh && !report.settings.empty()) print_settings(report, *report.refresh);
+  if (!report.common.empty()) print_common(report.common);
+  print_speed(report);
+  print_stimuli(report);
+  if (report.measured) print_measured(*report.measured);
+}
+
+nlohmann::ordered_json report_json(const CheckReport& report) {
+  const auto& protocol = report.protocol;
+  nlohmann::ordered_json json{
+      {"protocol", protocol.name},
+      {"protocol_version", protocol.version},
+      {"protocol_sha256", protocol.sha256},
+      {"mean", mean_name(protocol)},
+      {"timing", timing_name(protocol.design)},
+      {"needs_gaze", protocol.needs_gaze},
+      {"units", report.outline.units},
+      {"trials", report.outline.trials},
+      {"plan_s", report.outline.shown_s},
+      {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
+      {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};
+  for (const auto& one : report.outline.blocks) {
+    json["blocks"].push_back({{"id", one.block->id},
+                              {"kind", study::block_kind_name(one.block->kind)},
+                              {"pages", one.pages},
+                              {"trials", one.trials},
+                              {"seconds", {one.seconds.least, one.seconds.most}}});
+  }
+  const Balance& balance = report.balance;
+  json["balance"] = {{"participants", balance.planned},
+                     {"sequences", balance.sequences},
+                     {"least", balance.least},
+                     {"most", balance.most},
+                     {"interval_difference", balance.interval_difference},
+                     {"even", balance.even},
+                     {"even_below", balance.even_below},
+                     {"even_above", balance.even_above}};
+  add_refresh(json, report);
+  add_common(json, report);
+  for (const auto& one : bake_advice(protocol)) {
+    json["stimuli"].push_back({{"scene", one.what.scene},
+                               {"method", one.what.method},
+                               {"n_star", one.what.n_star},
+                               {"live", one.adaptive || protocol.design.timing == TimingSource::Native},
+                               {"bake_frames", one.frames}});
+  }
+  if (report.measured) add_measured(json, *report.measured);
+  return json;
+}
+
+}  // namespace apps

@@ -1,0 +1,27 @@
+#pragma once
+/// What `vip-study check` found, for people and as JSON.
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <vector>
+
+#include "apps/study/measured_check.hpp"
+#include "apps/study/refresh_check.hpp"
+#include "apps/study/session_outline.hpp"
+
+namespace apps {
+
+struct CheckReport {
+  study::Protocol protocol;
+  SessionOutline outline;
+  Balance balance;
+  std::vector<CheckedSetting> settings;  ///< none under TimingSource::Native
+  std::optional<RefreshCheck> refresh;   ///< on the display's own rate, when it was given
+  std::vector<RefreshCheck> common;      ///< on the common ones; none under TimingSource::Native
+  std::optional<MeasuredReport> measured;
+};
+
+void print_report(const CheckReport& report);
+nlohmann::ordered_json report_json(const CheckReport& report);
+
+}  // namespace apps

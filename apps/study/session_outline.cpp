@@ -1,0 +1,188 @@
+#include "apps/study/session_outline.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include "libstudy/design/orders.hpp"
+
+namespace apps {
+
+namespace {
+
+using study::BlockKind;
+using study::StepKind;
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char out[256];
+  std::snprintf(out, sizeof out, pattern, values...);
+  return out;
+}
+
+double reading_s(const std::string& text, const Pace& pace) {
+  if (pace.words_per_s <= 0) return 0;
+  std::istringstream words(text);
+  double count = 0;
+  for (std::string word; words >> word;) ++count;
+  return count / pace.words_per_s;
+}
+
+double page_s(const study::Block& block, const Pace& pace) {
+  switch (block.kind) {
+    case BlockKind::Stimulus:
+      return block.between_groups_s + pace.break_s;
+    case BlockKind::Rest:
+    case BlockKind::Black:
+      return block.seconds;
+    case BlockKind::Break:
+      return block.seconds + pace.break_s;
+    default:
+      return std::max(block.seconds, reading_s(block.text, pace)) +
+             static_cast<double>(block.questions.size()) * pace.answer_s;
+  }
+}
+
+double trial_s(const study::Protocol& protocol, const study::PlannedTrial& trial, double answer_s) {
+  const auto& block = protocol.blocks[static_cast<std::size_t>(trial.block)];
+  double seconds = 0;
+  for (const auto& step : block.steps) {
+    const int cell = step.interval == 0 ? trial.first : trial.second.value_or(trial.first);
+    if (step.kind == StepKind::Stimulus)
+      seconds += protocol.design.cells[static_cast<std::size_t>(cell)].setting.duration_s;
+    seconds += step.seconds + static_cast<double>(step.asks.size()) * answer_s;
+  }
+  return seconds;
+}
+
+Span unit_s(const study::Protocol& protocol, const study::Plan& plan, const study::PlannedUnit& unit) {
+  if (!unit.trial) {
+    const auto& block = protocol.blocks[static_cast<std::size_t>(unit.block)];
+    return {page_s(block, quick_pace), page_s(block, slow_pace)};
+  }
+  const auto& trial = plan.trials[static_cast<std::size_t>(*unit.trial)];
+  return {trial_s(protocol, trial, quick_pace.answer_s), trial_s(protocol, trial, slow_pace.answer_s)};
+}
+
+void add(Span& sum, const Span& part) {
+  sum.least += part.least;
+  sum.most += part.most;
+}
+
+std::string step_words(const study::Protocol& protocol, const study::TrialStep& step) {
+  switch (step.kind) {
+    case StepKind::Black:
+      return format("black %g s", step.seconds);
+    case StepKind::Rest:
+      return format("rest %g s", step.seconds);
+    case StepKind::Ask:
+      return format("ask %zu", step.asks.size());
+    default:
+      return format("stimulus %g s", protocol.design.cells.front().setting.duration_s);
+  }
+}
+
+int rows_of(const study::Design& design) {
+  if (design.order == study::TrialOrder::Latin) return study::trials_of_group(design);
+  if (design.order != study::TrialOrder::Williams) return 1;
+  return study::williams_rows(study::trials_of_group(design));
+}
+
+}  // namespace
+
+SessionOutline outline_session(const study::Protocol& protocol) {
+  const auto plan = study::make_plan(protocol, "P01", 1, 0);
+  SessionOutline out;
+  for (const auto& block : protocol.blocks) out.blocks.push_back({&block, 0, 0, {}});
+  for (const auto& unit : plan.units) {
+    auto& outline = out.blocks[static_cast<std::size_t>(unit.block)];
+    const Span seconds = unit_s(protocol, plan, unit);
+    ++(unit.trial ? outline.trials : outline.pages);
+    add(outline.seconds, seconds);
+    add(out.session_s, seconds);
+    if (!unit.trial || outline.block->kind != BlockKind::Stimulus) continue;
+    add(out.trials_s, seconds);
+    out.shown_s += trial_s(protocol, plan.trials[static_cast<std::size_t>(*unit.trial)], 0);
+  }
+  out.units = static_cast<int>(plan.units.size());
+  out.trials = static_cast<int>(plan.trials.size());
+  return out;
+}
+
+std::string describe_block(const study::Protocol& protocol, const BlockOutline& outline) {
+  const study::Block& block = *outline.block;
+  if (study::has_trials(block.kind)) {
+    std::string out = format("%d trials: ", outline.trials);
+    for (const auto& step : block.steps)
+      out += (&step == &block.steps.front() ? "" : ", ") + step_words(protocol, step);
+    if (outline.pages > 0) out += format("; %g s between groups", block.between_groups_s);
+    return out;
+  }
+  std::string out;
+  if (block.kind == BlockKind::Catch) out = format("%d pages among the trials", outline.pages);
+  if (!block.questions.empty())
+    out += format("%s%zu question%s", out.empty() ? "" : ", ", block.questions.size(),
+                  block.questions.size() == 1 ? "" : "s");
+  if (block.seconds > 0)
+    out += format("%s%g s%s", out.empty() ? "" : ", ", block.seconds,
+                  block.kind == BlockKind::Rest || block.kind == BlockKind::Black ? "" : " at least");
+  return out;
+}
+
+Balance check_balance(const study::Protocol& protocol) {
+  const study::Design& design = protocol.design;
+  Balance out;
+  out.planned = protocol.participants;
+  out.sequences = study::sequence_count(protocol);
+  std::map<std::vector<int>, int> met;
+  std::map<std::tuple<std::vector<int>, int, int>, int> difference;  // by pair of cells, ascending
+  const int slots = study::slot_count(protocol);
+  const bool dealt = design.assignment == study::Assignment::Balanced;
+  for (int slot = 0; dealt && slot < std::min(slots, out.planned); ++slot) {
+    const int people = out.planned / slots + (slot < out.planned % slots);
+    const auto groups = study::groups_met(protocol, slot, 0);
+    met[groups] += people;
+    if (!design.pairs) continue;
+    for (const auto& trial : study::make_plan(protocol, "P", 1, slot).trials) {
+      if (protocol.blocks[static_cast<std::size_t>(trial.block)].kind != BlockKind::Stimulus) continue;
+      const auto [low, high] = std::minmax(trial.first, *trial.second);
+      difference[{groups, low, high}] += trial.first == low ? people : -people;
+    }
+  }
+  if (dealt) {
+    out.least = static_cast<int>(met.size()) < out.sequences ? 0 : out.planned;
+    for (const auto& [groups, count] : met) {
+      out.least = std::min(out.least, count);
+      out.most = std::max(out.most, count);
+    }
+    for (const auto& [pair, count] : difference)
+      out.interval_difference = std::max(out.interval_difference, std::abs(count));
+  }
+  out.even = out.sequences * rows_of(design) * (design.pairs && dealt ? 2 : 1);
+  out.even_below = out.planned / out.even * out.even;
+  out.even_above = out.even_below == out.planned ? out.planned : out.even_below + out.even;
+  return out;
+}
+
+std::string describe_balance(const study::Protocol& protocol, const Balance& balance) {
+  const study::Design& design = protocol.design;
+  std::string out = format("%d participants: ", balance.planned);
+  if (design.assignment == study::Assignment::PaperRandom)
+    out += "scenes, n_* and intervals are drawn for each";
+  else if (balance.sequences == 1)
+    out += "all meet the same cells";
+  else
+    out += format("each of %d sequences of scene and n_* is met by %d to %d", balance.sequences,
+                  balance.least, balance.most);
+  if (design.pairs && design.assignment == study::Assignment::Balanced)
+    out += format("; the two orders of a pair differ by at most %d within each", balance.interval_difference);
+  if (balance.even == 1) return out + "; any number divides evenly";
+  if (balance.even_below == balance.planned) return out + "; divides evenly";
+  out += format("; does not divide by %d: ", balance.even);
+  if (balance.even_below > 0) out += format("%d or ", balance.even_below);
+  return out + format("%d would", balance.even_above);
+}
+
+}  // namespace apps
