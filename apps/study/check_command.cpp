@@ -16,10 +16,14 @@ namespace apps {
 
 namespace {
 
+/// Settings that common refresh rates are looked at for without being asked to.
+constexpr std::size_t most_compared = 21;
+
 struct CheckOptions {
   std::string protocol;
   double refresh_hz = 0;  ///< 0: not given
   std::string json;
+  bool compare = false;
   bool measure = false;
   MeasureOptions measuring;
 };
@@ -51,7 +55,8 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
   CheckReport report{
       protocol, outline_session(protocol), check_balance(protocol), checked_settings(protocol), {}, {}, {}};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
-  if (!report.settings.empty()) report.common = check_common(protocol);
+  const bool few = report.settings.size() <= most_compared;
+  if (!report.settings.empty() && (few || options.compare)) report.common = check_common(protocol);
   if (options.measure) {
     report.measured =
         judge_measured(protocol, measure_stimuli(protocol, options.measuring), options.refresh_hz);
@@ -88,6 +93,7 @@ void add_check_command(CLI::App& app) {
       ->add_option("--refresh", options->refresh_hz,
                    "The display's refresh in Hz: what it makes of each setting")
       ->check(number_in(10, 1000));
+  command->add_flag("--compare", options->compare, "Look at all common refresh rates, however long it takes");
   command->add_flag("--measure", options->measure, "Run each method for some frames on this machine");
   command->add_option("--frames", options->measuring.frames, "Frames of each that are measured")
       ->check(CLI::Range(2, 10000))

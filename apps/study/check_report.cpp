@@ -148,6 +148,7 @@ std::vector<BakeAdvice> bake_advice(const study::Protocol& protocol) {
 
 void print_stimuli(const CheckReport& report) {
   const bool native = report.protocol.design.timing == TimingSource::Native;
+  bool bakes = false;
   std::printf("\nstimuli:\n");
   for (const auto& one : bake_advice(report.protocol)) {
     std::printf("  %-28s ", stimulus_name(one.what).c_str());
@@ -156,12 +157,15 @@ void print_stimuli(const CheckReport& report) {
     } else if (one.adaptive) {
       std::printf("live: it follows what is looked at\n");
     } else {
-      std::printf(
-          "bake it unless it runs live in time: vip-study bake %s --method %s --n-star %s --frames %lld "
-          "--content-step %.17g --pictures WxH --out FILE\n",
-          one.what.scene.c_str(), one.what.method.c_str(), one.what.n_star.c_str(),
-          static_cast<long long>(one.frames), report.protocol.content.content_step_s);
+      std::printf("baked, %lld frames; or live where that is in time\n", static_cast<long long>(one.frames));
+      bakes = true;
     }
+  }
+  if (bakes) {
+    std::printf(
+        "to bake: vip-study bake SCENE --method M --n-star N --frames F --content-step %.17g --pictures "
+        "WIDTHxHEIGHT --out FILE\n",
+        report.protocol.content.content_step_s);
   }
   std::printf("gaze: %s\n", report.protocol.needs_gaze
                                 ? "needed; without tracked gaze H1 and H5 are labelled not testable"
@@ -210,10 +214,12 @@ void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
 }
 
 void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
+  if (!report.settings.empty()) {
+    const Span speeds = play_speeds(report);
+    json["play_speed"] = {speeds.least, speeds.most};
+  }
   if (report.common.empty()) return;
   json["best_refresh_hz"] = best_refresh(report.common).refresh_hz;
-  const Span speeds = play_speeds(report);
-  json["play_speed"] = {speeds.least, speeds.most};
   for (const auto& rate : report.common) {
     json["common_refreshes"].push_back({{"refresh_hz", rate.refresh_hz},
                                         {"exact", rate.exact},
@@ -244,7 +250,11 @@ void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) 
 void print_report(const CheckReport& report) {
   print_session(report);
   if (report.refresh && !report.settings.empty()) print_settings(report, *report.refresh);
-  if (!report.common.empty()) print_common(report.common);
+  if (!report.common.empty())
+    print_common(report.common);
+  else if (!report.settings.empty())
+    std::printf(
+        "\nother refresh rates: --compare looks at them, which takes minutes with so many settings\n");
   print_speed(report);
   print_stimuli(report);
   if (report.measured) print_measured(*report.measured);

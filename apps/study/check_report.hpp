@@ -17,7 +17,7 @@ struct CheckReport {
   Balance balance;
   std::vector<CheckedSetting> settings;  ///< none under TimingSource::Native
   std::optional<RefreshCheck> refresh;   ///< on the display's own rate, when it was given
-  std::vector<RefreshCheck> common;      ///< on the common ones; none under TimingSource::Native
+  std::vector<RefreshCheck> common;      ///< on the common ones, where they were looked at
   std::optional<MeasuredReport> measured;
 };
 

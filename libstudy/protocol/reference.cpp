@@ -1,0 +1,226 @@
+#include "libstudy/protocol/reference.hpp"
+
+#include "libstudy/protocol/protocol.hpp"
+
+namespace study {
+
+namespace {
+
+// Words for keys that only some files need.
+constexpr const char* where_needed = "see right";
+
+struct TableText {
+  const char* table;
+  const char* heading;
+  const char* text;
+};
+
+const std::vector<TableText>& table_texts() {
+  static const std::vector<TableText> texts{
+      {"", "The file itself", "Stands before the first table."},
+      {"design", "[design]",
+       "What is shown. Every scene, n_* and method, and under `settings` every pair of moments with sd_fps "
+       "below "
+       "mean_fps, make one cell. Cells of one scene and n_* are a group; a participant meets `groups` of "
+       "them, one "
+       "after another."},
+      {"design.moments", "[[design.moments]]",
+       "The frame rate of one cell each, for `timing = \"table2\"`; without effect under native and equal."},
+      {"pacing", "[pacing]", "How a mean and a standard deviation become the intervals of frames."},
+      {"content", "[content]", "How the process elapses with the frames."},
+      {"timing", "[timing]", "What a trial must meet to pass. The table may be left out."},
+      {"block", "[[block]]",
+       "The blocks of a session in their order. Kinds:\n\n"
+       "| kind | what it is |\n|---|---|\n"
+       "| instructions | a text to be read |\n"
+       "| screening | questions that may rule a person out |\n"
+       "| consent | a text with boxes; one of its questions has `accept` |\n"
+       "| demographics | questions, as a rule personal |\n"
+       "| practice | trials that are flagged, never dropped |\n"
+       "| stimulus | the trials of the design; exactly one block |\n"
+       "| question | questions outside the trials |\n"
+       "| rest | a pause with a countdown that nobody can cut short |\n"
+       "| break | a pause that ends when the participant wishes, not before its seconds |\n"
+       "| black | a black screen |\n"
+       "| repeat | trials shown again, with the very same intervals: test-retest |\n"
+       "| catch | pages after trials drawn at random, with an answer that attention gives |\n"
+       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3 |\n"
+       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20 |\n"
+       "| debrief | the last text |"},
+      {"block.question", "[[block.question]]",
+       "What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its "
+       "block. "
+       "Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one."},
+      {"block.question.anchors", "anchors",
+       "Words by score, as in `anchors = {1 = \"poor\", 7 = \"good\"}`."}};
+  return texts;
+}
+
+std::string row_of(const KeyReference& key) {
+  const std::string values = key.values.empty() ? "" : ", " + key.values;
+  const std::string fallback = key.fallback.empty() ? "needed" : key.fallback;
+  return "| `" + key.key + "` | " + key.type + values + " | " + fallback + " | " + key.meaning + " |\n";
+}
+
+}  // namespace
+
+const std::vector<KeyReference>& protocol_reference() {
+  static const std::vector<KeyReference> keys{
+      {"", "format", "whole number", "", "", "2"},
+      {"", "name", "text", "", "", "of the study; stored with the data"},
+      {"", "version", "text", "", "", "of the study, such as \"1.0\"; another text needs another version"},
+      {"", "language", "text", "", "", "of all texts, such as \"en\""},
+      {"", "participants", "whole number", "[1, 100000]", "",
+       "planned; `vip-study check` says what the number leaves unbalanced"},
+      {"", "accept_approximate", "true or false", "", "false",
+       "also play settings that the display meets only approximately"},
+      {"", "needs_gaze", "true or false", "", "false",
+       "without tracked gaze some hypotheses are labelled not testable"},
+      {"", "design", "table", "", "", "what is shown"},
+      {"", "pacing", "table", "", "", "how frames are timed"},
+      {"", "content", "table", "", "", "how the process elapses"},
+      {"", "timing", "table", "", "all its defaults", "what a trial must meet"},
+      {"", "block", "tables", "", "", "the session, 200 blocks at most"},
+
+      {"design", "timing", "text", "\"settings\", \"native\", \"equal\", \"table2\"", "",
+       "settings: all of mean_fps and sd_fps (pilot). native: as fast as each method runs. equal: one "
+       "mean_fps and sd_fps for all. table2: each cell's own of `moments`"},
+      {"design", "scene", "list of texts", "", "", "scene files"},
+      {"design", "method", "list of texts", "", "", "LoRes, HiRes, FovFluid, Ours, Ours-TSp"},
+      {"design", "n_star", "list of texts", "", "", "particles when all are coarsest; \"32k\" = 32,768"},
+      {"design", "duration_s", "number", "[0.1, 3600]", "", "of each stimulus, s"},
+      {"design", "mean_fps", "list of numbers", "[0.1, 1000]", where_needed,
+       "means of the frame rate, frames/s; needed under settings and equal, refused otherwise"},
+      {"design", "sd_fps", "list of numbers", "[0, 1000]", where_needed,
+       "standard deviations, frames/s; as mean_fps"},
+      {"design", "moments", "tables", "", where_needed, "needed under table2, one for each cell"},
+      {"design", "pairs", "true or false", "", "false",
+       "each trial shows two cells of a group: all unordered pairs"},
+      {"design", "groups", "whole number", "[1, 100]", "1",
+       "that a participant meets: different scenes, n_* spread as evenly as can be"},
+      {"design", "order", "text", "\"shuffle\", \"latin\", \"williams\", \"constrained\"", "",
+       "of the trials of a group. shuffle: every order equally likely. latin: each trial equally often at "
+       "each place. williams: and directly after each other one. constrained: shuffled until "
+       "`never_adjacent` holds; not for pairs"},
+      {"design", "never_adjacent", "list of texts", "", where_needed,
+       "needed under constrained: method, mean_fps, sd_fps; neighbours share none of them"},
+      {"design", "assignment", "text", "\"balanced\", \"paper_random\"", "\"balanced\"",
+       "balanced: sequences of groups, rows and the order within pairs are dealt by quota over all who "
+       "count. paper_random: drawn for each participant"},
+
+      {"design.moments", "scene", "text", "", "", "as in design.scene"},
+      {"design.moments", "method", "text", "", "", "as in design.method"},
+      {"design.moments", "n_star", "text", "", "", "as in design.n_star"},
+      {"design.moments", "mean_fps", "number", "[0.1, 1000]", "", "frames/s"},
+      {"design.moments", "sd_fps", "number", "[0, 1000]", "", "below mean_fps, frames/s"},
+
+      {"pacing", "mean", "text", "\"harmonic\", \"arithmetic\"", "\"harmonic\"",
+       "harmonic: frames over time. arithmetic: mean of 1/dt. Both are stored"},
+      {"pacing", "fps_min", "number", "[0.1, 1000]", "", "lowest instantaneous rate, frames/s"},
+      {"pacing", "fps_max", "number or text", "[0.1, 1000] or \"none\", \"refresh\"", "\"none\"",
+       "highest instantaneous rate, frames/s; refresh: the display's"},
+      {"pacing", "max_interval_ms", "number", "[1, 10000]", "",
+       "longest interval; at least 1000 / fps_min, ms"},
+      {"pacing", "order", "text", "\"white\", \"ar1\", \"trace\"", "\"white\"",
+       "of the intervals. white: shuffled. ar1: correlated. trace: in the order of a recording"},
+      {"pacing", "ar1", "number", "[-0.99, 0.99]", where_needed,
+       "needed under ar1: correlation of neighbours"},
+      {"pacing", "trace_fps", "list of numbers", "(0, inf]", where_needed,
+       "needed under trace: two recorded rates or more"},
+
+      {"content", "mode", "text", "\"per_frame\", \"real_time\"", "",
+       "per_frame: frame i shows step start_frame + i. real_time: the step that the time has come to"},
+      {"content", "content_step_s", "number", "[1e-05, 1]", "", "fluid time of a content step, s"},
+      {"content", "start_frame", "whole number", "[0, 1000000000]", "",
+       "content step that each stimulus starts from"},
+      {"content", "at_end", "text", "\"loop\", \"hold\"", "",
+       "when baked content runs out: back to start_frame, or hold the last step"},
+
+      {"timing", "late_after_ms", "number", "[0, 1000]", "0.5",
+       "a frame shown later than this after its deadline is late, ms"},
+      {"timing", "mean_relative", "number", "[0, 1]", "0.005", "bound on the mean, as a part of it"},
+      {"timing", "sd_relative", "number", "[0, 1]", "0.02",
+       "bound on the standard deviation, as a part of it; the wider of the two counts"},
+      {"timing", "sd_absolute_fps", "number", "[0, 100]", "0.25", "the same, frames/s"},
+      {"timing", "fail_mean_relative", "number", "[0, 1]", "0.05",
+       "beyond this a trial has failed; at least mean_relative"},
+      {"timing", "fail_sd_relative", "number", "[0, 1]", "0.2",
+       "at least sd_relative; the wider of the two counts"},
+      {"timing", "fail_sd_absolute_fps", "number", "[0, 1000]", "2.5", "at least sd_absolute_fps, frames/s"},
+
+      {"block", "kind", "text",
+       "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "
+       "\"question\", \"rest\", \"break\", \"black\", \"repeat\", \"catch\", \"ssq\", \"fms\", \"debrief\"",
+       "", "as above"},
+      {"block", "id", "text", "", "", "unique: a letter, then letters, digits and '_', 64 at most"},
+      {"block", "title", "text", "", "\"\"", "heading of the page; not for black"},
+      {"block", "text", "text", "", "\"\"",
+       "of the page, paragraphs parted by empty lines; needed by instructions, consent and debrief, not for "
+       "black and blocks of trials"},
+      {"block", "seconds", "number", "[0, 3600]", "0",
+       "needed by rest, break and black: their length. instructions, debrief: the least time. Not for "
+       "others, s"},
+      {"block", "count", "whole number", "[1, 1000]", where_needed,
+       "needed by practice, repeat and catch: trials or pages; for repeat and catch at most the trials of "
+       "the design"},
+      {"block", "like", "text", "", where_needed,
+       "needed by practice, repeat and catch: id of the stimulus block. Practice comes before it, repeats "
+       "after it"},
+      {"block", "stop_at", "whole number", "[1, 20]", "never",
+       "fms: this score or more offers a rest, then the exit; the same in all fms blocks"},
+      {"block", "steps", "list of texts", "", where_needed,
+       "needed by stimulus: what each trial does, one after another: \"black 3\", \"rest 30\" (seconds, 0 to "
+       "3600), \"stimulus\" (for pairs \"stimulus first\", \"stimulus second\"), \"ask ID ID ...\" (one page "
+       "of questions of a block of kind stimulus, question, ssq or fms)"},
+      {"block", "between_groups_s", "number", "[0, 3600]", "0",
+       "stimulus: a break before each group but the first, s"},
+      {"block", "question", "tables", "", where_needed, "what is asked"},
+
+      {"block.question", "id", "text", "", "",
+       "unique in the file; as the id of a block, but not fms or ssq_..."},
+      {"block.question", "text", "text", "", "", "the exact wording"},
+      {"block.question", "language", "text", "", "that of the file", "of the wording"},
+      {"block.question", "kind", "text", "\"scale\", \"choice\", \"number\", \"text\"", "",
+       "scale: a row of scores. choice: one of `anchors`. number: typed. text: free words"},
+      {"block.question", "scale", "list of numbers", "[0, 10000]", where_needed,
+       "needed by scale and number: [lowest, highest], whole; a scale has 101 scores at most"},
+      {"block.question", "anchors", "table", "", "none",
+       "words by score, ascending; needed by choice, from 0 to 100"},
+      {"block.question", "personal", "true or false", "", "false",
+       "the answer goes to the file of personal data alone; only on pages"},
+      {"block.question", "required", "true or false", "", "true; false for text",
+       "false: it may be left empty"},
+      {"block.question", "accept", "list of numbers", "two scores", "all",
+       "screening, consent and demographics before the first trials: an answer outside [lowest, highest] "
+       "ends the session"},
+      {"block.question", "stop_at", "whole number", "a score", "never",
+       "this score or more offers a rest, then the exit"},
+      {"block.question", "expect", "whole number", "a score", where_needed,
+       "needed by catch, refused elsewhere: the answer that attention gives"},
+
+      {"block.question.anchors", "SCORE", "text", "", where_needed, "the words of this score"},
+  };
+  return keys;
+}
+
+std::string protocol_reference_page() {
+  std::string out = "# Protocol files, format " + std::to_string(Protocol::format_version) +
+                    "\n\n"
+                    "Written by `vip-study reference`; `vip-study check FILE` says what a file comes to. "
+                    "Files are TOML. Units "
+                    "stand in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An "
+                    "unknown key, a wrong type, a "
+                    "value out of range and keys that contradict each other are errors at line and column. "
+                    "Every byte of a file "
+                    "enters the SHA-256 that is stored with the data.\n";
+  for (const auto& text : table_texts()) {
+    out += std::string("\n## ") + text.heading + "\n\n" + text.text +
+           "\n\n| key | type | default | meaning |\n|---|---|---|---|\n";
+    for (const auto& key : protocol_reference()) {
+      if (key.table == text.table) out += row_of(key);
+    }
+  }
+  return out;
+}
+
+}  // namespace study
