@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/study/measured_check.hpp"
-#include "apps/study/refresh_check.hpp"
-#include "apps/study/session_outline.hpp"
+#include "apps/study/check/measured_check.hpp"
+#include "apps/study/check/refresh_check.hpp"
+#include "apps/study/check/session_outline.hpp"
 
 namespace apps {
 

@@ -4,7 +4,7 @@
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/program.hpp"
-#include "apps/study/measured_check.hpp"
+#include "apps/study/check/measured_check.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"

@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/study/check/measured_check.hpp"
+#include "apps/study/check/refresh_check.hpp"
+#include "apps/study/check/session_outline.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -18,6 +21,10 @@ apps::test::Ended vip_study(const std::string& arguments) {
   return apps::test::run_shell(VIP_BIN_DIR "/vip-study " + arguments);
 }
 
+study::Protocol shipped(const std::string& name) {
+  return study::read_protocol(base::resource("protocols/" + name + ".toml"));
+}
+
 TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   const study::test::TemporaryFolder folder;
   const auto json_path = folder / "check.json";
@@ -25,6 +32,7 @@ TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_THAT(outcome.out, testing::HasSubstr("14 exact, 7 approximate, 0 unreachable of 21"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("play speed: 0.17 to 0.83 of real time"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("gaze: not needed"));
   const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
   EXPECT_EQ(json.at("exact"), 14);
   EXPECT_EQ(json.at("settings").size(), 21u);
@@ -42,14 +50,161 @@ TEST(VipStudyCheckE2e, BadInputGivesOneErrorAndNoFile) {
   const study::test::TemporaryFolder folder;
   const auto json_path = folder / "check.json";
   const auto broken = folder / "broken.toml";
-  std::ofstream(broken) << "format = 1\nname = \"x\"\nversion = 3\n";
+  std::ofstream(broken) << "format = 2\nname = \"x\"\nversion = 3\n";
   const auto outcome = vip_study("check " + broken.string() + " --refresh 90 --json " + json_path.string());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, testing::HasSubstr("broken.toml:3:11: 'version' must be text"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("mend: "));
   EXPECT_FALSE(std::filesystem::exists(json_path));
-  EXPECT_EQ(vip_study("check " + broken.string()).exit_code, 2);
   EXPECT_EQ(vip_study("check " + broken.string() + " --refresh 0").exit_code, 2);
+  EXPECT_EQ(vip_study("check").exit_code, 2);
+}
+
+TEST(VipStudyCheckE2e, ReportsBlocksBalanceAndStimuliOfTask1) {
+  const study::test::TemporaryFolder folder;
+  const auto json_path = folder / "check.json";
+  const auto outcome = vip_study("check protocols/task1.toml --json " + json_path.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out,
+              testing::HasSubstr("10 trials: stimulus 30 s, ask 5, rest 30 s; 120 s between groups"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("does not divide by 12: 24 or 36 would"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("Ours-TSp faucet 32k"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("gaze: needed"));
+  const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
+  EXPECT_EQ(json.at("timing"), "table2");
+  EXPECT_EQ(json.at("trials"), 10);
+  EXPECT_EQ(json.at("blocks").size(), 4u);
+  EXPECT_EQ(json.at("stimuli").size(), 30u);
+  EXPECT_EQ(json.at("balance").at("even_above"), 36);
+  EXPECT_FALSE(json.contains("settings"));  // no refresh was given
+}
+
+TEST(VipStudyCheckE2e, AMethodThatIsNotThereIsNamed) {
+  const study::test::TemporaryFolder folder;
+  const auto file = folder / "p.toml";
+  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
+  text.replace(text.find("\"HiRes\""), 7, "\"Best\"");
+  std::ofstream(file) << text;
+  const auto outcome = vip_study("check " + file.string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, testing::HasSubstr("p.toml: design"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("LoRes, HiRes"));
+}
+
+TEST(VipStudyCheckE2e, EveryShippedProtocolIsSound) {
+  for (const auto& entry : std::filesystem::directory_iterator(base::resource("protocols"))) {
+    const auto protocol = study::read_protocol(entry.path());
+    const auto outline = apps::outline_session(protocol);
+    EXPECT_GT(outline.trials, 0);
+    EXPECT_LT(outline.session_s.least, outline.session_s.most);
+    EXPECT_LE(apps::check_balance(protocol).even_below, protocol.participants);
+  }
+}
+
+TEST(VipStudyReferenceE2e, PrintsThePageInDocs) {
+  const auto outcome = vip_study("reference");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, base::read_file(VIP_TEST_DIR "/../docs/protocol.md", 1 << 20));
+}
+
+TEST(SessionOutline, TasksLastAsThePaperSays) {
+  const auto minutes = [](const char* name) {
+    const auto span = apps::outline_session(shipped(name)).session_s;
+    return std::pair(span.least / 60, span.most / 60);
+  };
+  const auto [task1_least, task1_most] = minutes("task1");
+  EXPECT_GE(task1_least, 13);
+  EXPECT_LE(task1_most, 22);
+  const auto [task2_least, task2_most] = minutes("task2");
+  EXPECT_GE(task2_least, 21.5);
+  EXPECT_LE(task2_most, 25);
+  const auto [demo_least, demo_most] = minutes("demo");
+  EXPECT_GE(demo_most, 8);
+  EXPECT_LE(demo_most, 12);
+}
+
+TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
+  auto protocol = shipped("task1");
+  auto balance = apps::check_balance(protocol);
+  EXPECT_EQ(balance.sequences, 12);
+  EXPECT_EQ(balance.least, 2);
+  EXPECT_EQ(balance.most, 3);
+  EXPECT_EQ(balance.even_below, 24);
+  EXPECT_EQ(balance.even_above, 36);
+  protocol.participants = 24;
+  balance = apps::check_balance(protocol);
+  EXPECT_EQ(balance.most, 2);
+  EXPECT_EQ(balance.even_above, 24);
+  protocol.participants = 5;
+  EXPECT_EQ(apps::check_balance(protocol).least, 0);
+  EXPECT_EQ(apps::check_balance(protocol).even_below, 0);
+  protocol.design.order = study::TrialOrder::Williams;
+  EXPECT_EQ(apps::check_balance(protocol).even, 120);
+
+  auto pairs = shipped("task2");
+  EXPECT_EQ(apps::check_balance(pairs).even, 6);
+  EXPECT_EQ(apps::check_balance(pairs).interval_difference, 1);
+  pairs.participants = 30;
+  EXPECT_EQ(apps::check_balance(pairs).interval_difference, 0);
+  EXPECT_EQ(apps::check_balance(shipped("ptpe_pilot")).even, 1);
+}
+
+/// Frames that all take 1 / fps seconds.
+std::vector<apps::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
+  std::vector<apps::MeasuredStimulus> out;
+  for (const auto& what : apps::stimuli_of(protocol)) {
+    out.push_back({what, what.method == "Ours-TSp", std::vector<double>(60, 1 / fps)});
+  }
+  return out;
+}
+
+study::Protocol native_task1() {
+  auto protocol = shipped("task1");
+  protocol.design.timing = study::TimingSource::Native;
+  for (auto& cell : protocol.design.cells) cell.setting.mean = cell.setting.sd = 0;
+  return protocol;
+}
+
+TEST(MeasuredCheck, FastMachinesEraseTheConditionsOfNative) {
+  const auto protocol = native_task1();
+  const auto report = apps::judge_measured(protocol, all_at(protocol, 300), 90);
+  EXPECT_THAT(report.collapse, testing::HasSubstr("every method reaches the 90 Hz"));
+  EXPECT_FALSE(report.too_slow);
+  EXPECT_NEAR(report.stimuli.front().fps.mean, 90, 1e-9);
+  EXPECT_NEAR(report.stimuli.front().tau_min, 90 - 23.68, 1e-9);
+}
+
+TEST(MeasuredCheck, AccelerationThatNeverStartsIsACollapseToo) {
+  const auto protocol = native_task1();
+  auto frames = all_at(protocol, 60);
+  frames.front().frame_s.assign(60, 1.0 / 40);
+  EXPECT_THAT(apps::judge_measured(protocol, frames, 90).collapse,
+              testing::HasSubstr("never falls below zero"));
+  for (auto& one : frames) {
+    if (one.temporal) one.frame_s.assign(60, 1.0 / 20);
+  }
+  EXPECT_EQ(apps::judge_measured(protocol, frames, 90).collapse, "");
+}
+
+TEST(MeasuredCheck, SlowMachinesAreNamedWithTheirRates) {
+  const auto protocol = shipped("task1");
+  const auto slow = apps::judge_measured(protocol, all_at(protocol, 30), 90);
+  EXPECT_TRUE(slow.too_slow);
+  EXPECT_EQ(slow.collapse, "");  // only native can collapse
+  EXPECT_THAT(slow.stimuli.front().words, testing::HasSubstr("30 frames/s where 55.25 are asked for"));
+  EXPECT_FALSE(apps::judge_measured(protocol, all_at(protocol, 80), 90).too_slow);
+  const auto native = native_task1();
+  EXPECT_TRUE(apps::judge_measured(native, all_at(native, 3), 90).too_slow);
+}
+
+TEST(RefreshCheck, CellsOfEqualMomentsAreOneSetting) {
+  const auto protocol = shipped("task1");
+  const auto settings = apps::checked_settings(protocol);
+  EXPECT_EQ(settings.size(), 29u);  // two cells of LoRes have equal moments
+  std::size_t cells = 0;
+  for (const auto& one : settings) cells += one.cells.size();
+  EXPECT_EQ(cells, 30u);
+  EXPECT_TRUE(apps::checked_settings(native_task1()).empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "apps/study/session_outline.hpp"
+#include "apps/study/check/session_outline.hpp"
 
 #include <algorithm>
 #include <cstdio>

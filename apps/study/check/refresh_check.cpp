@@ -1,4 +1,4 @@
-#include "apps/study/refresh_check.hpp"
+#include "apps/study/check/refresh_check.hpp"
 
 #include <algorithm>
 #include <tuple>

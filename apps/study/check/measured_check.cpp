@@ -1,4 +1,4 @@
-#include "apps/study/measured_check.hpp"
+#include "apps/study/check/measured_check.hpp"
 
 #include <algorithm>
 #include <cmath>
