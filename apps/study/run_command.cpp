@@ -91,6 +91,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   session.station = command.run.station;
   session.screen_width_mm = command.run.screen_width_mm;
   session.viewing_distance_mm = command.run.viewing_distance_mm;
+  if (const double refresh_hz = setup.display->refresh_hz(); refresh_hz > 0) session.refresh_hz = refresh_hz;
   return session;
 }
 

@@ -84,19 +84,21 @@ SessionPlan read_plan(const Statement& row) {
   plan.screen_width_mm = optional_real(row, 14);
   plan.viewing_distance_mm = optional_real(row, 15);
   plan.ptpe = optional_text(row, 16);
+  plan.refresh_hz = optional_real(row, 19);
   return plan;
 }
 
 std::vector<OpenSession> open_sessions(sqlite::Connection& database, std::int64_t run,
                                        std::int64_t protocol) {
-  Statement row(database,
-                "SELECT session_id, participant, visit, seed, slot, test_data, observer, clock, display, "
-                "stimulus, machine, station, time_zone, gaze_source, screen_width_mm, viewing_distance_mm, "
-                "ptpe, (SELECT count(*) FROM unit u WHERE u.session_id = s.session_id), "
-                "(SELECT count(*) FROM unit u WHERE u.session_id = s.session_id AND u.state = 'done') "
-                "FROM session s WHERE run_id = ? AND protocol_id = ? AND state = 'open' AND EXISTS "
-                "(SELECT 1 FROM unit u WHERE u.session_id = s.session_id AND u.state = 'planned') "
-                "ORDER BY session_id");
+  Statement row(
+      database,
+      "SELECT session_id, participant, visit, seed, slot, test_data, observer, clock, display, "
+      "stimulus, machine, station, time_zone, gaze_source, screen_width_mm, viewing_distance_mm, "
+      "ptpe, (SELECT count(*) FROM unit u WHERE u.session_id = s.session_id), "
+      "(SELECT count(*) FROM unit u WHERE u.session_id = s.session_id AND u.state = 'done'), "
+      "refresh_hz FROM session s WHERE run_id = ? AND protocol_id = ? AND state = 'open' AND EXISTS "
+      "(SELECT 1 FROM unit u WHERE u.session_id = s.session_id AND u.state = 'planned') "
+      "ORDER BY session_id");
   row.bind(0, run).bind(1, protocol);
   std::vector<OpenSession> sessions;
   while (row.step()) {

@@ -34,6 +34,7 @@ struct SessionPlan {
   std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed" or "none"
   std::string station;               ///< where it is recorded
   std::optional<double> screen_width_mm, viewing_distance_mm;
+  std::optional<double> refresh_hz;  ///< of the display; none: frames are shown as they come
   Plan plan;
 };
 

@@ -183,16 +183,16 @@ void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Pro
       *database_,
       "INSERT INTO session (uid, run_id, protocol_id, participant, code, visit, seed, slot, state, "
       "test_data, observer, clock, display, stimulus, machine, station, time_zone, gaze_source, "
-      "screen_width_mm, viewing_distance_mm, ptpe, person) SELECT lower(hex(randomblob(16))), "
+      "screen_width_mm, viewing_distance_mm, ptpe, refresh_hz, person) SELECT lower(hex(randomblob(16))), "
       "?1, ?2, ?3, coalesce((SELECT code FROM session WHERE participant = ?3), ?3), ?4, ?5, ?6, 'open', "
-      "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, "
+      "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, "
       "coalesce((SELECT person FROM session WHERE participant = ?3), lower(hex(randomblob(16))))");
   insert.bind(0, run_id).bind(1, protocol_id).bind(2, plan.participant).bind(3, plan.visit);
   insert.bind(4, as_signed(plan.seed)).bind(5, plan.plan.slot).bind(6, plan.test_data ? 1 : 0);
   insert.bind(7, plan.observer).bind(8, plan.virtual_clock ? "virtual" : "real").bind(9, plan.display);
   insert.bind(10, plan.stimulus).bind(11, plan.machine).bind(12, plan.station).bind(13, plan.time_zone);
   insert.bind(14, plan.gaze_source).bind(15, plan.screen_width_mm).bind(16, plan.viewing_distance_mm);
-  const std::int64_t session = insert.bind(17, plan.ptpe).run();
+  const std::int64_t session = insert.bind(17, plan.ptpe).bind(18, plan.refresh_hz).run();
   add_units(*database_, session, protocol, plan.plan);
   insert_event(session, {}, "planned", "program " + base::version(), {});
 }

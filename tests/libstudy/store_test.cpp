@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
@@ -70,6 +72,30 @@ TEST(Store, WritesTheWholePlanBeforeTheFirstUnit) {
   }
 }
 
+TEST(Store, TakesEveryProtocolThatShips) {
+  const test::TemporaryFolder folder;
+  int protocols = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(base::resource("protocols"))) {
+    const Protocol protocol = read_protocol(entry.path());
+    SCOPED_TRACE(protocol.name);
+    const auto path = folder / (protocol.name + ".db");
+    Store(path, Open::Create).add_run(test::run_plan(protocol, {"P01"}));
+    sqlite::Connection look(path, Open::Read);
+    std::set<std::string> ids;
+    for (const auto& [block, question] : all_questions(protocol)) ids.insert(question->id);
+    EXPECT_EQ(look.integer("SELECT count(*) FROM question"), static_cast<std::int64_t>(ids.size()));
+    // Each page block asks all that stands on it.
+    for (const Block& block : protocol.blocks) {
+      if (has_trials(block.kind)) continue;
+      sqlite::Statement asked(look, "SELECT count(*) FROM ask WHERE block = ?");
+      ASSERT_TRUE(asked.bind(0, block.id).step());
+      EXPECT_EQ(asked.integer(0), static_cast<std::int64_t>(block.questions.size())) << block.id;
+    }
+    ++protocols;
+  }
+  EXPECT_GE(protocols, 7);
+}
+
 TEST(Store, GivesASessionBackAsItWasPlanned) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
@@ -82,6 +108,7 @@ TEST(Store, GivesASessionBackAsItWasPlanned) {
   plan.station = "booth 2";
   plan.screen_width_mm = 597.5;
   plan.viewing_distance_mm = 700;
+  plan.refresh_hz = 59.94;
   plan.ptpe = "a = 1";
   store.add_run(run);
   const SessionPlan found = only_session(store).plan;
@@ -94,6 +121,7 @@ TEST(Store, GivesASessionBackAsItWasPlanned) {
   EXPECT_EQ(found.station, "booth 2");
   EXPECT_EQ(found.screen_width_mm, 597.5);
   EXPECT_EQ(found.viewing_distance_mm, 700);
+  EXPECT_EQ(found.refresh_hz, 59.94);
   EXPECT_EQ(found.ptpe, "a = 1");
   EXPECT_EQ(found.time_zone, "UTC");
 }

@@ -50,6 +50,7 @@ CREATE TABLE session_2 (
   observer TEXT, -- simulated observer that answered; empty: a person
   clock TEXT NOT NULL CHECK (clock IN ('real', 'virtual')), -- real or virtual clock
   display TEXT NOT NULL, -- where frames were shown
+  refresh_hz REAL CHECK (refresh_hz > 0), -- fixed refresh rate of the display; empty: none or not known, Hz
   stimulus TEXT NOT NULL, -- what was shown
   machine TEXT NOT NULL, -- operating system, processor, cores
   station TEXT NOT NULL, -- where it was recorded
@@ -171,7 +172,7 @@ INSERT INTO run_2 SELECT run_id, format('1/%d/%s/%s', run_id, started_utc, (SELE
 INSERT INTO session_2 SELECT s.session_id, format('%s/%d/%s', r.uid, s.session_id, s.participant), s.run_id, s.protocol_id,
   s.participant, (SELECT format('%s/%d/%s', q.uid, f.session_id, f.participant) FROM session f JOIN run_2 q USING (run_id)
     WHERE f.participant = s.participant ORDER BY f.session_id LIMIT 1),
-  s.participant, s.visit, s.seed, 0, iif(s.ended_utc IS NULL, 'open', 'done'), s.test_data, s.observer, s.clock, s.display,
+  s.participant, s.visit, s.seed, 0, iif(s.ended_utc IS NULL, 'open', 'done'), s.test_data, s.observer, s.clock, s.display, NULL,
   s.stimulus, s.machine, '', s.time_zone, 'none', NULL, NULL, s.ptpe, s.started_utc, s.ended_utc
   FROM session s JOIN run_2 r USING (run_id);
 INSERT INTO cell SELECT DISTINCT s.protocol_id, t.setting, '', '', '', t.nominal_mean_fps, t.nominal_sd_fps, t.duration_s
