@@ -88,6 +88,8 @@ class LiveFluid final : public study::Stimulus {
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
+  /// Whether the method looks at the picture of the last frame, so that every one must be drawn.
+  bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
 

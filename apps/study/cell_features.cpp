@@ -56,10 +56,12 @@ study::PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
   fluid.start(start_frame);
   for (std::int64_t step = 0; step <= steps + 1; ++step) {
     fluid.prepare(start_frame + step);
-    // Every picture is drawn: a method may look at the one before.
-    fluid.draw(target.framebuffer(), width_px, height_px);
     const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: the three in a row
-    if (step + 1 < between || phase > 2) continue;
+    const bool measured = step + 1 >= between && phase <= 2;
+    // The first one tells a method from where it is looked at.
+    if (measured || step == 0 || fluid.follows_picture())
+      fluid.draw(target.framebuffer(), width_px, height_px);
+    if (!measured) continue;
     last[static_cast<std::size_t>(phase)] = to_measure(target.read(), fluid.read_depth());
     if (phase < 2) continue;
     const auto [x, y] = middle_of(last[1]);
