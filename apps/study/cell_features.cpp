@@ -5,7 +5,7 @@
 #include <set>
 
 #include "apps/common/program.hpp"
-#include "apps/study/picture_measure.hpp"
+#include "apps/common/picture_measure.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

@@ -1,4 +1,4 @@
-#include "apps/study/picture_measure.hpp"
+#include "apps/common/picture_measure.hpp"
 
 #include <algorithm>
 #include <cmath>
