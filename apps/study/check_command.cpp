@@ -16,8 +16,8 @@ namespace apps {
 
 namespace {
 
-/// Settings that common refresh rates are looked at for without being asked to.
-constexpr std::size_t most_compared = 21;
+/// Frames of all settings up to which common refresh rates are looked at without being asked to.
+constexpr std::int64_t most_compared = 8000;
 
 struct CheckOptions {
   std::string protocol;
@@ -55,8 +55,9 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
   CheckReport report{
       protocol, outline_session(protocol), check_balance(protocol), checked_settings(protocol), {}, {}, {}};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
-  const bool few = report.settings.size() <= most_compared;
-  if (!report.settings.empty() && (few || options.compare)) report.common = check_common(protocol);
+  std::int64_t frames = 0;
+  for (const auto& one : report.settings) frames += study::frame_count(one.setting);
+  if (frames > 0 && (frames <= most_compared || options.compare)) report.common = check_common(protocol);
   if (options.measure) {
     report.measured =
         judge_measured(protocol, measure_stimuli(protocol, options.measuring), options.refresh_hz);

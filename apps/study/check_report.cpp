@@ -253,8 +253,7 @@ void print_report(const CheckReport& report) {
   if (!report.common.empty())
     print_common(report.common);
   else if (!report.settings.empty())
-    std::printf(
-        "\nother refresh rates: --compare looks at them, which takes minutes with so many settings\n");
+    std::printf("\nother refresh rates: --compare looks at them, which takes minutes with so many frames\n");
   print_speed(report);
   print_stimuli(report);
   if (report.measured) print_measured(*report.measured);

@@ -79,6 +79,12 @@ TEST(VipStudyCheckE2e, ReportsBlocksBalanceAndStimuliOfTask1) {
   EXPECT_FALSE(json.contains("settings"));  // no refresh was given
 }
 
+TEST(VipStudyCheckE2e, MeasuringNeedsTheRefresh) {
+  const auto outcome = vip_study("check protocols/demo.toml --measure");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, testing::HasSubstr("add --refresh HZ"));
+}
+
 TEST(VipStudyCheckE2e, AMethodThatIsNotThereIsNamed) {
   const study::test::TemporaryFolder folder;
   const auto file = folder / "p.toml";
