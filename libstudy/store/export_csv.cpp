@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "libstudy/store/database.hpp"
-#include "libstudy/store/rating_table.hpp"
 
 namespace study {
 
@@ -81,17 +80,6 @@ std::string select_sql(Connection& database, const Table& table) {
   return "SELECT " + list + " FROM " + table.name + " ORDER BY " + table.order;
 }
 
-/// The dictionary's line of a column of ratings.csv.
-ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
-  for (const ColumnMeaning& found : columns_of(database, {column.table, "", ""})) {
-    if (found.column != column.column) continue;
-    const std::string meaning = column.meaning ? column.meaning : found.meaning;
-    return {column.table, column.name, column.expression ? "INTEGER" : found.type,
-            rating_subject(column) + meaning};
-  }
-  return {column.table, column.name, "", ""};
-}
-
 std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, bool words) {
   ExportFile file(draft, dictionary_file);
   file.write(dictionary_header);
@@ -119,6 +107,16 @@ void write_protocols(Connection& database, const ExportDraft& draft) {
 }
 
 }  // namespace
+
+ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
+  for (const ColumnMeaning& found : columns_of(database, {column.table, "", ""})) {
+    if (found.column != column.column) continue;
+    const std::string meaning = column.meaning ? column.meaning : found.meaning;
+    return {column.table, column.name, column.expression ? "INTEGER" : found.type,
+            rating_subject(column) + meaning};
+  }
+  return {column.table, column.name, "", ""};
+}
 
 std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql) {
   static const std::set<std::string> types{"INTEGER", "REAL", "TEXT", "BLOB"};

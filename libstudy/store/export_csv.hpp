@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libstudy/store/export_folder.hpp"
+#include "libstudy/store/rating_table.hpp"
 
 namespace study {
 
@@ -26,5 +27,8 @@ struct ColumnMeaning {
 
 /// The columns of a CREATE TABLE text in their order; lines without a comment have an empty meaning.
 std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql);
+
+/// What a column of a joined table means, from the schema of `database`.
+ColumnMeaning meaning_of(sqlite::Connection& database, const RatingColumn& column);
 
 }  // namespace study

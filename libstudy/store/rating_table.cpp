@@ -79,8 +79,7 @@ constexpr const char* joined_tables =
     "LEFT JOIN presentation AS shown_1 ON shown_1.trial_id = trial.trial_id "
     "AND shown_1.attempt = response.attempt AND shown_1.interval = 0 "
     "LEFT JOIN presentation AS shown_2 ON shown_2.trial_id = trial.trial_id "
-    "AND shown_2.attempt = response.attempt AND shown_2.interval = 1 "
-    "ORDER BY trial.trial_id, ask.place";
+    "AND shown_2.attempt = response.attempt AND shown_2.interval = 1";
 
 }  // namespace
 
@@ -92,14 +91,14 @@ std::string rating_subject(const RatingColumn& column) {
   return from.ends_with("_2") ? "second stimulus of a pair: " : "";
 }
 
-std::string rating_table_sql() {
+std::string rating_table_sql(const std::string& condition) {
   std::string list;
   for (const RatingColumn& column : columns) {
     const std::string value =
         column.expression ? column.expression : std::string(column.from) + '.' + column.column;
     list += (list.empty() ? "" : ", ") + value + " AS " + column.name;
   }
-  return "SELECT " + list + joined_tables;
+  return "SELECT " + list + joined_tables + " WHERE " + condition + " ORDER BY trial.trial_id, ask.place";
 }
 
 }  // namespace study

@@ -23,6 +23,7 @@ std::string rating_subject(const RatingColumn& column);
 
 /// Selects them in that order, one row for each trial and question. Without an answer the score and all that
 /// describes the showing are NULL; of several answers the last one counts.
-std::string rating_table_sql();
+/// `condition` (such as "session.session_id = 3") leaves out the others.
+std::string rating_table_sql(const std::string& condition = "1");
 
 }  // namespace study

@@ -1,0 +1,322 @@
+#include "libstudy/store/export_bids.hpp"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/export_labels.hpp"
+#include "stats/base/file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+constexpr const char* description_file = "dataset_description.json";
+constexpr double ns_per_s = 1e9;
+
+/// A question as a column.
+struct Item {
+  std::int64_t id = 0;
+  std::string code, wording, anchors;
+};
+
+/// A table of texts, the first line its header.
+using Table = std::vector<std::vector<std::string>>;
+
+/// A field of a TSV file, which knows no quotes.
+std::string field(std::string text) {
+  for (char& c : text) {
+    if (c == '\t' || c == '\n' || c == '\r') c = ' ';
+  }
+  return text.empty() ? "n/a" : text;
+}
+
+std::string field(const Statement& row, int column) {
+  if (row.is_null(column)) return "n/a";
+  return row.is_real(column) ? number_text(row.real(column)) : field(row.text(column));
+}
+
+class Writer {
+ public:
+  explicit Writer(const ExportDraft& draft) : draft_(draft) {}
+
+  void table(const std::string& name, const Table& rows) {
+    ExportFile file(draft_, name);
+    for (const auto& row : rows) {
+      std::string line;
+      for (const std::string& value : row) line += (line.empty() ? "" : "\t") + value;
+      file.write(line + '\n');
+    }
+    file.finish();
+    files.push_back({name, static_cast<std::int64_t>(rows.size()) - 1});
+  }
+  void text(const std::string& name, const std::string& text) {
+    ExportFile file(draft_, name);
+    file.write(text);
+    file.finish();
+  }
+  void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
+
+  std::vector<ExportedFile> files;
+
+ private:
+  const ExportDraft& draft_;
+};
+
+Json described(const std::string& meaning) { return {{"Description", meaning}}; }
+Json described(const std::string& meaning, const std::string& unit) {
+  return {{"Description", meaning}, {"Units", unit}};
+}
+
+/// With the words that stand at its scores.
+Json described(const Item& item) {
+  Json json = described(item.wording);
+  std::istringstream lines(item.anchors);
+  for (std::string line; std::getline(lines, line);) {
+    const auto at = line.find(" = ");
+    if (at != std::string::npos) json["Levels"][line.substr(0, at)] = line.substr(at + 3);
+  }
+  return json;
+}
+
+/// Questions with scores that are asked at trials, or on pages of a block.
+std::vector<Item> items(Connection& database, std::int64_t session, const std::string& of) {
+  Statement row(database,
+                "SELECT DISTINCT q.question_id, q.code, q.wording, q.anchors FROM question q "
+                "JOIN ask k USING (question_id) JOIN session s ON s.protocol_id = q.protocol_id "
+                "JOIN unit u ON u.session_id = s.session_id AND u.block = k.block "
+                "WHERE s.session_id = ? AND q.personal = 0 AND q.kind <> 'text' AND " +
+                    of + " ORDER BY q.question_id");
+  row.bind(0, session);
+  std::vector<Item> found;
+  while (row.step()) found.push_back({row.integer(0), row.text(1), row.text(2), row.text(3)});
+  return found;
+}
+
+constexpr const char* events_sql =
+    "SELECT p.start_ns, p.end_ns, u.kind, t.position, p.attempt, p.interval, p.state, c.scene, c.method, "
+    "c.n_star, c.mean_fps, c.sd_fps, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.longest_ms, "
+    "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, u.unit_id, t.second_cell IS NOT NULL "
+    "FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
+    "JOIN session s ON s.session_id = t.session_id "
+    "JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
+    "WHERE s.session_id = ? ORDER BY p.presentation_id";
+
+Json event_columns() {
+  return {
+      {"onset", described("start of the stimulus, from the first of the session; after the program began "
+                          "anew, as if it had gone on without a pause",
+                          "s")},
+      {"duration", described("from its first frame to the end of its last; n/a: cut short", "s")},
+      {"trial_type", described("practice, stimulus or repeat")},
+      {"trial", described("order among the session's trials, from 0")},
+      {"attempt", described("showing of the trial, from 1")},
+      {"interval", described("0: first or only stimulus, 1: second of a pair")},
+      {"state", described("played, interrupted or running")},
+      {"scene", described("scene file")},
+      {"method", described("how the fluid is computed")},
+      {"n_star", described("particles when all are coarsest")},
+      {"nominal_mean_fps", described("wished mean frame rate; 0: as fast as the method runs", "frames/s")},
+      {"nominal_sd_fps", described("wished standard deviation of the frame rate", "frames/s")},
+      {"frames", described("frames shown")},
+      {"mean_fps", described("realised harmonic mean", "frames/s")},
+      {"mean_arithmetic_fps", described("realised arithmetic mean", "frames/s")},
+      {"sd_fps", described("realised population standard deviation", "frames/s")},
+      {"longest_ms", described("longest interval between frames", "ms")},
+      {"late_frames", described("frames beyond the protocol's bound")},
+      {"verdict", described("timing: pass, degraded or fail; n/a: no schedule to judge by")},
+      {"grade", described("evidence: A photodiode, B display, C compositor, D submit")},
+      {"excluded", described("1: excluded by the experimenter")}};
+}
+
+/// Score and response time of a question at a showing.
+std::pair<std::string, std::string> answer_of(Connection& database, std::int64_t unit, std::int64_t question,
+                                              std::int64_t attempt) {
+  Statement row(
+      database,
+      "SELECT score, response_time_s FROM response WHERE unit_id = ? AND question_id = ? AND attempt = ?");
+  if (!row.bind(0, unit).bind(1, question).bind(2, attempt).step()) return {"n/a", "n/a"};
+  return {field(row, 0), field(row, 1)};
+}
+
+Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
+                 const Json& columns) {
+  Table rows(1);
+  for (const auto& [name, meaning] : columns.items()) rows[0].push_back(name);
+  Statement row(database, events_sql);
+  row.bind(0, session);
+  std::int64_t zero = 0, end = 0;
+  for (bool first = true; row.step(); first = false) {
+    const std::int64_t start = row.integer(0);
+    if (first)
+      zero = start;
+    else if (start - zero < end)
+      zero = start - end;  // the clock of another process
+    const std::int64_t onset = start - zero;
+    end = std::max(onset, row.is_null(1) ? onset : row.integer(1) - zero);
+    std::vector<std::string> line{
+        number_text(static_cast<double>(onset) / ns_per_s),
+        row.is_null(1) ? "n/a" : number_text(static_cast<double>(end - onset) / ns_per_s)};
+    for (int i = 2; i <= 20; ++i) line.push_back(field(row, i));
+    const bool judged = row.integer(5) == row.integer(22);
+    for (const Item& item : asked) {
+      auto [score, seconds] = judged ? answer_of(database, row.integer(21), item.id, row.integer(4))
+                                     : std::pair<std::string, std::string>{"n/a", "n/a"};
+      line.push_back(score);
+      line.push_back(seconds);
+    }
+    rows.push_back(std::move(line));
+  }
+  return rows;
+}
+
+void write_events(Connection& database, const LabelledSession& session, Writer& writer) {
+  const auto asked = items(database, session.id, "u.trial_id IS NOT NULL");
+  Json columns = event_columns();
+  for (const Item& item : asked) {
+    columns[item.code] = described(item);
+    columns[item.code + "_response_time"] = described("from question to answer", "s");
+  }
+  const std::string sub = "sub-" + session.subject, ses = "ses-" + session.session;
+  const std::string stem =
+      sub + "/" + ses + "/beh/" + sub + "_" + ses + "_task-" + session.protocol + "_events";
+  writer.table(stem + ".tsv", event_rows(database, session.id, asked, columns));
+  Statement screen(database,
+                   "SELECT refresh_hz, screen_width_mm, viewing_distance_mm, machine, program_version "
+                   "FROM session JOIN run USING (run_id) WHERE session_id = ?");
+  screen.bind(0, session.id).step();
+  Json presentation{{"OperatingSystem", screen.text(3)},
+                    {"SoftwareName", "vip-study"},
+                    {"SoftwareVersion", screen.text(4)}};
+  if (!screen.is_null(0)) presentation["ScreenRefreshRate"] = screen.real(0);
+  if (!screen.is_null(2)) presentation["ScreenDistance"] = screen.real(2) / 1000;
+  columns["StimulusPresentation"] = presentation;
+  writer.json(stem + ".json", columns);
+}
+
+void write_people(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
+  Table people{{"participant_id", "code"}};
+  std::map<std::string, Table> visits;
+  for (const LabelledSession& session : sessions) {
+    const std::string sub = "sub-" + session.subject;
+    auto [rows, fresh] = visits.try_emplace(sub);
+    if (fresh) {
+      people.push_back({sub, session.participant});
+      rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
+                       "test_data", "observer", "station", "gaze_source", "state"}};
+    }
+    Statement row(database,
+                  "SELECT s.started_utc, p.name, p.version, p.sha256, s.visit, s.test_data OR p.test_data, "
+                  "s.observer, s.station, s.gaze_source, s.state FROM session s JOIN protocol p "
+                  "USING (protocol_id) WHERE s.session_id = ?");
+    row.bind(0, session.id).step();
+    std::vector<std::string> line{"ses-" + session.session};
+    for (int i = 0; i < 10; ++i) line.push_back(field(row, i));
+    rows->second.push_back(std::move(line));
+  }
+  writer.table("participants.tsv", people);
+  writer.json("participants.json", {{"code", described("participant code in the study's database")}});
+  for (const auto& [sub, rows] : visits) writer.table(sub + "/" + sub + "_sessions.tsv", rows);
+  writer.json("sessions.json", {{"acq_time", described("first stimulus, UTC")},
+                                {"protocol", described("name in the protocol file")},
+                                {"protocol_version", described("version in the protocol file")},
+                                {"protocol_sha256", described("SHA-256 of the protocol")},
+                                {"visit", described("visit of the participant under the protocol")},
+                                {"test_data", described("1: never pooled with real data")},
+                                {"observer", described("simulated observer that answered; n/a: a person")},
+                                {"station", described("where it was recorded")},
+                                {"gaze_source", described("tracked, mouse, fixed or none")},
+                                {"state", described("open, done, or how it ended early")}});
+}
+
+/// Pages of one questionnaire: the scales by their kind, others by their block.
+void write_phenotypes(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
+  Labels labels;
+  std::map<std::string, std::vector<std::vector<std::pair<std::string, std::string>>>>
+      tools;  // rows of (column, value)
+  std::map<std::string, Json> meanings;
+  for (const LabelledSession& session : sessions) {
+    Statement unit(database,
+                   "SELECT unit_id, block, kind FROM unit WHERE session_id = ? AND trial_id IS NULL "
+                   "AND state = 'done' AND kind NOT IN ('practice', 'stimulus', 'repeat') ORDER BY position");
+    for (unit.bind(0, session.id); unit.step();) {
+      const std::string block = unit.text(1), kind = unit.text(2);
+      const auto asked = items(database, session.id, "u.unit_id = " + unit.text(0));
+      if (asked.empty()) continue;
+      const std::string& tool = labels.of(kind == "ssq" || kind == "fms" ? kind : block);
+      Json& meaning = meanings[tool];
+      meaning["MeasurementToolMetadata"] = described("page of kind " + kind + " of a vip-study protocol");
+      meaning["session_id"] = described("session");
+      meaning["block"] = described("page of the protocol");
+      std::vector<std::pair<std::string, std::string>> row{{"participant_id", "sub-" + session.subject},
+                                                           {"session_id", "ses-" + session.session},
+                                                           {"block", field(block)}};
+      for (const Item& item : asked) {
+        meaning[item.code] = described(item);
+        row.emplace_back(item.code, answer_of(database, unit.integer(0), item.id, 0).first);
+      }
+      tools[tool].push_back(std::move(row));
+    }
+  }
+  for (const auto& [tool, rows] : tools) {
+    Table table(1);
+    for (const auto& row : rows) {
+      for (const auto& [column, value] : row) {
+        if (std::find(table[0].begin(), table[0].end(), column) == table[0].end()) table[0].push_back(column);
+      }
+    }
+    for (const auto& row : rows) {
+      std::vector<std::string> line(table[0].size(), "n/a");
+      for (const auto& [column, value] : row)
+        line[static_cast<std::size_t>(std::find(table[0].begin(), table[0].end(), column) -
+                                      table[0].begin())] = value;
+      table.push_back(std::move(line));
+    }
+    writer.table("phenotype/" + tool + ".tsv", table);
+    writer.json("phenotype/" + tool + ".json", meanings[tool]);
+  }
+}
+
+bool is_export(const fs::path& folder) {
+  const fs::path description = folder / description_file;
+  std::error_code ignored;
+  if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 20)
+    return false;
+  const auto json = Json::parse(base::read_file(description, 1u << 20), nullptr, false);
+  return json.is_object() && json.contains("GeneratedBy") &&
+         json["GeneratedBy"].dump().find("\"vip-study\"") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& folder) {
+  ExportDraft draft(folder, is_export);
+  const auto database = open_database(path, Open::Read, read_schema_steps());
+  Writer writer(draft);
+  database->execute("BEGIN");
+  const auto sessions = labelled_sessions(*database);
+  writer.json(description_file,
+              {{"Name", draft.target().filename().string()},
+               {"BIDSVersion", "1.11.0"},
+               {"DatasetType", "raw"},
+               {"GeneratedBy", Json::array({{{"Name", "vip-study"}, {"Version", base::version()}}})}});
+  writer.text("README.md",
+              "# Ratings of real-time fluid\n\nBehaviour only: what was shown when, how it was rated.\n");
+  write_people(*database, sessions, writer);
+  for (const LabelledSession& session : sessions) write_events(*database, session, writer);
+  write_phenotypes(*database, sessions, writer);
+  database->execute("COMMIT");
+  remember_export(path, draft.target());
+  draft.put_in_place();
+  return writer.files;
+}
+
+}  // namespace study

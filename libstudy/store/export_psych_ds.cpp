@@ -1,0 +1,113 @@
+#include "libstudy/store/export_psych_ds.hpp"
+
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/export_labels.hpp"
+#include "stats/base/file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using sqlite::Connection;
+using sqlite::Open;
+
+namespace {
+
+constexpr const char* description_file = "dataset_description.json";
+
+constexpr std::array page_columns{
+    RatingColumn{"participant", "session", "session", "participant"},
+    RatingColumn{"visit", "session", "session", "visit"},
+    RatingColumn{"test_data", "session", "session", "test_data"},
+    RatingColumn{"unit_position", "unit", "unit", "position"},
+    RatingColumn{"block", "unit", "unit", "block"},
+    RatingColumn{"block_kind", "unit", "unit", "kind"},
+    RatingColumn{"question", "question", "question", "code"},
+    RatingColumn{"score", "response", "response", "score"},
+    RatingColumn{"response_time_s", "response", "response", "response_time_s"},
+};
+
+std::string pages_sql(std::int64_t session) {
+  std::string list;
+  for (const RatingColumn& column : page_columns)
+    list +=
+        (list.empty() ? "" : ", ") + std::string(column.from) + '.' + column.column + " AS " + column.name;
+  return "SELECT " + list +
+         " FROM response JOIN unit USING (unit_id) JOIN session USING (session_id) "
+         "JOIN question USING (question_id) WHERE unit.trial_id IS NULL AND session.session_id = " +
+         std::to_string(session) + " ORDER BY response.response_id";
+}
+
+bool is_export(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder / "data", ignored)) return false;
+  const fs::path description = folder / description_file;
+  if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
+    return false;
+  const auto json = Json::parse(base::read_file(description, 1u << 24), nullptr, false);
+  return json.is_object() && json.value("creator", "") == "vip-study";
+}
+
+void write_text(const ExportDraft& draft, const std::string& name, const std::string& text) {
+  ExportFile file(draft, name);
+  file.write(text);
+  file.finish();
+}
+
+/// Each column once; two files may share one.
+Json variables(Connection& database) {
+  std::map<std::string, std::string> meanings;
+  for (const RatingColumn& column : rating_columns())
+    meanings.emplace(column.name, meaning_of(database, column).meaning);
+  for (const RatingColumn& column : page_columns)
+    meanings.emplace(column.name, meaning_of(database, column).meaning);
+  Json list = Json::array();
+  for (const auto& [name, meaning] : meanings)
+    list.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", meaning}});
+  return list;
+}
+
+void write_description(Connection& database, const ExportDraft& draft) {
+  const Json json{{"@context", "https://schema.org/"},
+                  {"@type", "Dataset"},
+                  {"name", draft.target().filename().string()},
+                  {"description", "Ratings of real-time fluid at controlled frame rates"},
+                  {"creator", "vip-study"},
+                  {"version", base::version()},
+                  {"variableMeasured", variables(database)}};
+  write_text(draft, description_file, json.dump(2) + "\n");
+  write_text(
+      draft, "README.md",
+      "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
+      "what each column means. Empty: not known.\n");
+}
+
+}  // namespace
+
+std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& folder) {
+  ExportDraft draft(folder, is_export);
+  const auto database = open_database(path, Open::Read, read_schema_steps());
+  std::vector<ExportedFile> files;
+  database->execute("BEGIN");
+  fs::create_directory(draft.path() / "data");
+  for (const LabelledSession& session : labelled_sessions(*database)) {
+    const std::string stem =
+        "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
+    const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
+    const std::string condition = "session.session_id = " + std::to_string(session.id);
+    files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
+    files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
+  }
+  write_description(*database, draft);
+  database->execute("COMMIT");
+  remember_export(path, draft.target());
+  draft.put_in_place();
+  return files;
+}
+
+}  // namespace study
