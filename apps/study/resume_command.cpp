@@ -11,10 +11,21 @@ namespace apps {
 
 namespace {
 
+/// A protocol that an earlier version wrote may be of a format that is no longer read.
+study::Protocol read_again(const study::OpenRun& run, const std::string& place) {
+  try {
+    return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name);
+  } catch (const base::Error& error) {
+    const std::string reason = error.what();
+    throw base::Error(
+        place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
+        "finish it with the version of vip-study that wrote it; status, export and vip-stats read it");
+  }
+}
+
 /// The protocol from its text in the database; an error when it reads otherwise than it did.
 study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& place) {
-  study::Protocol protocol =
-      study::parse_protocol(run.protocol_text, place + ": protocol " + run.protocol_name);
+  study::Protocol protocol = read_again(run, place);
   if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
   if (protocol.sha256 != run.protocol_sha256) {
     throw base::Error(place, "protocol '" + run.protocol_name + "' does not have the hash stored with it",

@@ -20,7 +20,12 @@ sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 /// A block of the test bake's particles, one frame further with each step.
 class FakeSimulation final : public sim::Simulation {
  public:
-  bool look(const sim::Looks&) override { return true; }
+  /// `looks` gets what it is told, if any.
+  explicit FakeSimulation(std::vector<sim::Looks>* looks = nullptr) : looks_(looks) {}
+  bool look(const sim::Looks& looks) override {
+    if (looks_) looks_->push_back(looks);
+    return true;
+  }
   bool follows_picture() const override { return false; }
   int frame() const override { return frame_; }
   void step_frame() override { ++frame_; }
@@ -46,6 +51,7 @@ class FakeSimulation final : public sim::Simulation {
   std::string explain() const override { return ""; }
 
  private:
+  std::vector<sim::Looks>* looks_;
   int frame_ = 0;
 };
 
@@ -185,6 +191,31 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   }
   EXPECT_LT(far, want.size() / 100);
   EXPECT_GT(moved, want.size() / 50);
+}
+
+TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAPicture) {
+  apps::HeadlessDisplay display(64, 36);
+  std::vector<sim::Looks> looks;
+  apps::LiveViewing viewing;
+  viewing.gaze = [](int width, int height) { return std::optional(std::pair(0.25 * width, 0.5 * height)); };
+  viewing.vertical_fov_deg = [](int, int) { return 40.0; };
+  apps::LiveFluid live(
+      scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
+  live.start(0);
+  live.prepare(1);
+  EXPECT_TRUE(looks.empty());  // nothing was seen yet
+  display.render(live);
+  live.prepare(3);
+  ASSERT_EQ(looks.size(), 2u);
+  const sim::EyeLook& eye = looks[0].eyes.at(0);
+  EXPECT_TRUE(eye.gaze.valid);
+  // The camera has the viewer's angle, and the gaze goes through a quarter of its width.
+  sim::Camera camera = scene().view;
+  camera.vertical_fov_deg = 40;
+  const sim::View view = sim::make_view(camera, 64, 36);
+  EXPECT_EQ(eye.view.projection, view.projection);
+  const sim::Gaze expected = apps::gaze_through(view, 16, 18);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(eye.gaze.direction[k], expected.direction[k], 1e-6);
 }
 
 }  // namespace

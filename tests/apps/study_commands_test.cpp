@@ -70,6 +70,44 @@ TEST_F(StudyCommandsE2e, TheSameParticipantsAreSentToResume) {
   EXPECT_EQ(run({"--participant", "P03"}).exit_code, 0);
 }
 
+TEST_F(StudyCommandsE2e, BothTasksRunAndEachParticipantTakesAnotherSlot) {
+  for (const std::string task : {"task1", "task2"}) {
+    SCOPED_TRACE(task);
+    const std::string database = folder_ / (task + ".db");
+    const std::string protocol = base::resource("protocols/" + task + ".toml").string();
+    const auto run = [&](const std::string& code) {
+      return run_program({vip_study, "run", protocol, "--db", database, "--participant", code, "--observer",
+                          "frames", "--station", "north"});
+    };
+    for (const char* code : {"P1", "P2"}) {
+      const Ended ended = run(code);
+      ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    }
+    EXPECT_EQ(count_in(database, "SELECT count(DISTINCT slot) FROM session WHERE state = 'done'"), 2);
+    EXPECT_EQ(
+        count_in(database, "SELECT count(*) FROM session WHERE station = 'north' AND gaze_source = 'none'"),
+        2);
+    // Ten reports of five answers, or ten choices, and two boxes of consent.
+    EXPECT_EQ(count_in(database, "SELECT count(*) FROM response"), 2 * ((task == "task1" ? 50 : 10) + 2));
+    EXPECT_EQ(count_in(database, "SELECT count(*) FROM presentation WHERE verdict = 'pass'"),
+              2 * (task == "task1" ? 10 : 20));
+  }
+}
+
+TEST_F(StudyCommandsE2e, APersonNeedsANameAWindowAndRealTime) {
+  const auto asks = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{vip_study, "run", folder_ / "short.toml", "--db", database_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  expect_error(asks({}), "--participant: is missing");
+  expect_error(asks({"--participant", "P1", "--display", "none"}), "shows nothing to a person");
+  expect_error(asks({"--participant", "P1", "--clock", "virtual"}), "does not wait for a person");
+  expect_error(asks({"--observer", "random", "--gaze", "mouse"}), "needs a window");
+  expect_error(asks({"--observer", "random", "--screen-width-mm", "500"}), "only together");
+  expect_error(asks({"--observer", "nobody"}), "is not a kind of observer");
+}
+
 TEST_F(StudyCommandsE2e, WrongInputMakesNoDatabase) {
   const auto arguments = [&](const std::vector<std::string>& more) {
     return run_arguments(folder_ / "short.toml", database_, more);
