@@ -142,4 +142,34 @@ case $personal in
   *30*Waves*) echo "ok      personal answers stand in their own file" ;;
   *) echo "FAILED  personal file holds: $personal"; failed=1 ;;
 esac
+
+# A display that is lost in the middle of a trial, and the session resumed on another one.
+screen_of() {  # screen_of FILE: starts a virtual screen and prints its number
+  : >"$1"
+  Xvfb -displayfd 3 -screen 0 800x600x24 3>"$1" >/dev/null 2>&1 &
+  screen=$!
+  until [ -s "$1" ]; do sleep 0.1; done
+}
+rm -f "$out"/lost.db* "$out/lost_events"
+screen_of "$out/screen"
+DISPLAY=:$(cat "$out/screen") "$study" run "$out/protocol.toml" --db "$out/lost.db" --participant P02 --observer random \
+  --display window --size 640x360 --stimulus "$out/dam.bake" --trial-seconds 4 --events >"$out/lost_events" 2>"$out/lost_log" &
+session=$!
+until grep -q 'begins .* stimulus' "$out/lost_events" || ! alive; do sleep 0.1; done
+sleep 4
+kill -9 "$screen"
+status=0
+wait "$session" || status=$?
+[ $status -eq 1 ] && grep -q "the display is gone" "$out/lost_log" || { echo "FAILED  no clear error"; cat "$out/lost_log"; failed=1; }
+lost() { sqlite3 "$out/lost.db" "$1"; }
+answers=$(lost "select count(*) from response")
+[ "$(lost "select state from presentation order by presentation_id desc limit 1")" = interrupted ] ||
+  { echo "FAILED  the cut trial is not marked"; failed=1; }
+screen_of "$out/screen"
+DISPLAY=:$(cat "$out/screen") "$study" resume --db "$out/lost.db" >>"$out/lost_events" 2>>"$out/lost_log" || failed=1
+kill "$screen"
+echo "        $answers answers before the display was lost, $(lost "select count(*) from response") in the end"
+[ "$(lost "select count(*) from unit where state <> 'done'")" = 0 ] || { echo "FAILED  resume left something"; failed=1; }
+[ "$(lost "select max(attempt) from presentation")" = 2 ] || { echo "FAILED  the cut trial was not shown again"; failed=1; }
+[ "$failed" -ne 0 ] || echo "ok      a lost display: nothing is lost, resume goes on"
 exit $failed

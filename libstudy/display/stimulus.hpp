@@ -52,6 +52,12 @@ class Display {
   virtual TimingGrade grade() const = 0;
   /// Fixed refresh rate in Hz, or 0 when frames are shown as they come.
   virtual double refresh_hz() const = 0;
+  /// The same as measured: a screen of 60 Hz may take 59.95 pictures a second. Holds are counted in its
+  /// periods.
+  virtual double measured_hz() const { return refresh_hz(); }
+  /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A screen
+  /// with a beat of its own answers with the middle between two beats, where no frame slips over an edge.
+  virtual std::int64_t first_onset(std::int64_t earliest_ns) const { return earliest_ns; }
   /// Draws the stimulus off-screen so that present() is short. May do nothing.
   virtual void render(Stimulus& stimulus) = 0;
   /// Shows what was rendered, now; returns when it was handed over.

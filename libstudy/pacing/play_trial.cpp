@@ -89,7 +89,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   std::int64_t onset_ns = 0;
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
     FrameRecord record = make_frame(static_cast<std::int64_t>(i), onset_ns, course, stimulus, display);
-    if (i == 0) first_ns = clock.now_ns() + lead_ns;
+    if (i == 0) first_ns = display.first_onset(clock.now_ns() + lead_ns);
     record.scheduled_ns = first_ns + onset_ns;
     clock.wait_until(record.scheduled_ns);
     record.times = display.present(clock);

@@ -36,7 +36,7 @@ std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSet
                       "setting " + setting_name(setting) + " cannot be shown: " + found.reason,
                       "see vip-study check --refresh; use another display or accept_approximate = true");
   }
-  return holds_ns(found.holds, refresh_hz);
+  return holds_ns(found.holds, display.measured_hz());
 }
 
 void check_settings(const Protocol& protocol, const Display& display) {

@@ -50,6 +50,12 @@ TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
   EXPECT_EQ(judge_swaps(swaps(3e5, 120), 60).nominal_hz, 0);
 }
 
+TEST(Refresh, ABeatIsWhereTheEarliestSwapsCameBack) {
+  // Beats at 20, 36, 52, 68, 100 ms; one came back on time, one beat was missed.
+  const std::vector<std::int64_t> late{20'300'000, 36'000'000, 52'900'000, 68'200'000, 100'500'000};
+  EXPECT_EQ(beat_of(late, 16e6), 100'000'000);
+}
+
 TEST(Refresh, SchedulesBeginBetweenTwoBeats) {
   MeasuredRefresh refresh;
   refresh.in_effect = true;

@@ -27,13 +27,17 @@ std::atomic<bool> display_lost = false;
   throw base::Error("window", problem + (told ? std::string(": ") + told : std::string()), mend);
 }
 
-/// Xlib ends the program when its connection breaks, unless such a handler returns.
+/// Xlib ends the program when its connection breaks, unless both handlers return.
 void survive_a_lost_display() {
   display_lost = false;
-  if (Display* display = glfwGetX11Display()) {
-    XSetIOErrorExitHandler(
-        display, [](Display*, void*) { display_lost = true; }, nullptr);
-  }
+  Display* display = glfwGetX11Display();
+  if (!display) return;
+  XSetIOErrorHandler([](Display*) {
+    display_lost = true;
+    return 0;
+  });
+  XSetIOErrorExitHandler(
+      display, [](Display*, void*) { display_lost = true; }, nullptr);
 }
 
 GLFWmonitor* find_monitor(int index, const std::string& mend) {
@@ -121,11 +125,7 @@ Monitor GlfwWindow::monitor() const {
   return describe(mine ? mine : glfwGetPrimaryMonitor());
 }
 
-void GlfwWindow::check_display() const {
-  if (display_lost) {
-    throw base::Error("window", "the display is gone", "bring it back and start the program again");
-  }
-}
+bool GlfwWindow::display_is_gone() { return display_lost; }
 
 Compositor find_compositor() {
   if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland has no other way

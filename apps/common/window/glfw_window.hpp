@@ -46,8 +46,8 @@ class GlfwWindow {
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
   /// The monitor it fills or, of a window, the primary one.
   Monitor monitor() const;
-  /// base::Error once the display itself is gone. Nothing can be drawn any more then.
-  void check_display() const;
+  /// The display itself is gone: nothing can be drawn any more.
+  static bool display_is_gone();
 
  private:
   GLFWwindow* window_ = nullptr;

@@ -57,9 +57,19 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   const double measured_hz = 1e9 / out.period_ns;
   const bool told_well = told_hz > 0 && std::abs(measured_hz / told_hz - 1) < 0.005;
   out.nominal_hz = told_well ? told_hz : measured_hz;
-  out.beat_ns = returns_ns.back();
+  out.beat_ns = beat_of(returns_ns.last(10), out.period_ns);
   out.finding = text("swaps wait for the screen: measured %.4f Hz, told %.4g Hz", measured_hz, told_hz);
   return out;
+}
+
+std::int64_t beat_of(std::span<const std::int64_t> returns_ns, double period_ns) {
+  const std::int64_t last = returns_ns.back();
+  std::int64_t beat = last;
+  for (const std::int64_t at : returns_ns) {
+    const double periods = std::round(static_cast<double>(last - at) / period_ns);
+    beat = std::min<std::int64_t>(beat, at + std::llround(periods * period_ns));
+  }
+  return beat;
 }
 
 std::int64_t between_beats(const MeasuredRefresh& refresh, std::int64_t earliest_ns) {

@@ -20,6 +20,9 @@ struct MeasuredRefresh {
 /// Swaps that do not keep time (steps that are no multiples of a period of 2 to 50 ms) are not in effect.
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz);
 
+/// The beat that the last of some swaps met: each came back at a beat or a little after it, never before.
+std::int64_t beat_of(std::span<const std::int64_t> returns_ns, double period_ns);
+
 /// The first instant from earliest_ns on that lies in the middle between two beats: schedules that begin
 /// there keep the largest distance from the edge where a frame would slip into another period. earliest_ns
 /// itself without a beat.

@@ -95,7 +95,10 @@ void ParticipantWindow::poll(double wait_s) {
     glfwWaitEventsTimeout(wait_s);
   else
     glfwPollEvents();
-  window_.check_display();
+  if (GlfwWindow::display_is_gone()) {
+    throw base::Error("the participant's window", "the display is gone; all answers given are kept",
+                      "bring it back and continue with vip-study resume");
+  }
   if (window_.asked_to_close()) {
     throw base::Error("the participant's window", "was closed; all answers given are kept",
                       "continue with vip-study resume");

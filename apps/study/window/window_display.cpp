@@ -14,7 +14,7 @@ namespace apps {
 
 namespace {
 
-constexpr int measured_swaps = 120;
+constexpr int measured_swaps = 120, queued_swaps = 4, beat_swaps = 6;
 
 std::string describe(const Monitor& monitor) {
   char text[160];
@@ -30,9 +30,9 @@ WindowDisplay::WindowDisplay(std::shared_ptr<ParticipantWindow> window)
       picture_(window_->size().width, window_->size().height),
       monitor_(window_->window().monitor()),
       device_(sim::gl_description()),
-      refresh_(measure(measured_swaps)) {}
+      refresh_(judge_swaps(swap_black(measured_swaps), monitor_.refresh_hz)) {}
 
-MeasuredRefresh WindowDisplay::measure(int swaps) {
+std::vector<std::int64_t> WindowDisplay::swap_black(int swaps) {
   std::vector<std::int64_t> returns;
   for (int i = 0; i < swaps; ++i) {
     window_->show_black();
@@ -40,13 +40,26 @@ MeasuredRefresh WindowDisplay::measure(int swaps) {
     returns.push_back(clock_.now_ns());
     window_->poll(0);
   }
-  return judge_swaps(returns, monitor_.refresh_hz);
+  return returns;
+}
+
+double WindowDisplay::measured_hz() const { return refresh_.in_effect ? 1e9 / refresh_.period_ns : 0; }
+
+std::int64_t WindowDisplay::first_onset(std::int64_t earliest_ns) const {
+  return between_beats(refresh_, earliest_ns);
+}
+
+/// The first swaps fill the queue of pictures and come back at once.
+void WindowDisplay::find_beat() {
+  if (!refresh_.in_effect) return;
+  const auto returns = swap_black(queued_swaps + beat_swaps);
+  refresh_.beat_ns = beat_of(std::span(returns).last(beat_swaps), refresh_.period_ns);
 }
 
 ScreenFacts WindowDisplay::facts() const {
   ScreenFacts facts;
   facts.told_hz = monitor_.refresh_hz;
-  facts.measured_hz = refresh_.in_effect ? 1e9 / refresh_.period_ns : 0;
+  facts.measured_hz = measured_hz();
   const Compositor compositor = find_compositor();
   if (compositor != Compositor::Unknown) facts.compositor = compositor == Compositor::Running;
   facts.software_gl = sim::gl_is_software();

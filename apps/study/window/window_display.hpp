@@ -26,6 +26,11 @@ class WindowDisplay final : public study::Display {
   study::TimingGrade grade() const override { return study::TimingGrade::CpuSubmit; }
   /// 0 where swaps do not wait for the screen.
   double refresh_hz() const override { return refresh_.nominal_hz; }
+  double measured_hz() const override;
+  std::int64_t first_onset(std::int64_t earliest_ns) const override;
+  /// Takes the screen's beat anew, on a black window: some ten periods. Its drift since the start is then
+  /// nothing to a trial. At once where swaps do not wait.
+  void find_beat();
   /// Draws off-screen, copies to the window's back buffer and waits until the device has finished: present()
   /// is then a swap alone, and a slow picture shows as a late one.
   void render(study::Stimulus& stimulus) override;
@@ -35,7 +40,7 @@ class WindowDisplay final : public study::Display {
   ScreenFacts facts() const;
 
  private:
-  MeasuredRefresh measure(int swaps);
+  std::vector<std::int64_t> swap_black(int swaps);
 
   std::shared_ptr<ParticipantWindow> window_;
   study::RealClock clock_;

@@ -4,6 +4,11 @@
 
 namespace apps {
 
+namespace {
+// Longer than it takes to find the beat of a screen of 50 Hz.
+constexpr std::int64_t before_stimulus_ns = 250'000'000;
+}  // namespace
+
 void WindowParticipant::read(const study::Block& block, double least_s, study::Clock& clock,
                              const study::Check& check) {
   window_->run_page(block.title, block.text, {}, least_s, clock, check);
@@ -22,6 +27,8 @@ void WindowParticipant::pause(study::PauseKind kind, double seconds, study::Cloc
   const std::int64_t until_ns = clock.now_ns() + std::llround(1e9 * seconds);
   switch (kind) {
     case study::PauseKind::Black:
+      window_->wait("", until_ns - before_stimulus_ns, clock, check);
+      before_stimulus_();
       return window_->wait("", until_ns, clock, check);
     case study::PauseKind::Rest:
       return window_->wait(words.rest, until_ns, clock, check);

@@ -10,7 +10,9 @@ namespace apps {
 
 class WindowParticipant final : public study::Participant {
  public:
-  explicit WindowParticipant(std::shared_ptr<ParticipantWindow> window) : window_(std::move(window)) {}
+  /// before_stimulus: called at the end of each black pause, when a stimulus may follow.
+  WindowParticipant(std::shared_ptr<ParticipantWindow> window, std::function<void()> before_stimulus)
+      : window_(std::move(window)), before_stimulus_(std::move(before_stimulus)) {}
 
   std::optional<std::string> simulated() const override { return {}; }
   void read(const study::Block& block, double least_s, study::Clock& clock,
@@ -22,6 +24,7 @@ class WindowParticipant final : public study::Participant {
 
  private:
   std::shared_ptr<ParticipantWindow> window_;
+  std::function<void()> before_stimulus_;
 };
 
 }  // namespace apps

@@ -17,9 +17,10 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   auto display = std::make_unique<WindowDisplay>(window);
 
   WindowParts parts;
+  WindowDisplay* const screen = display.get();  // outlives the person: see SessionSetup
   parts.screen = display->facts();
   parts.display = std::move(display);
-  parts.person = std::make_unique<WindowParticipant>(window);
+  parts.person = std::make_unique<WindowParticipant>(window, [screen] { screen->find_beat(); });
   parts.gaze = [window](int, int) { return window->mouse(); };
   parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
   return parts;
