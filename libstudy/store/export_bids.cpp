@@ -237,12 +237,44 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
                                 {"state", described("open, done, or how it ended early")}});
 }
 
-/// Pages of one questionnaire: the scales by their kind, others by their block.
+/// All pages of one questionnaire: a table whose columns grow with what was asked.
+class Questionnaire {
+ public:
+  void add_page(std::vector<std::string> key, const std::vector<Item>& asked,
+                const std::vector<std::string>& answers) {
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      meaning_[asked[i].code] = described(asked[i]);
+      const auto column = std::find(header_.begin(), header_.end(), asked[i].code);
+      const auto place = static_cast<std::size_t>(column - header_.begin());
+      if (column == header_.end()) header_.push_back(asked[i].code);
+      key.resize(std::max(key.size(), place + 1), "n/a");
+      key[place] = answers[i];
+    }
+    rows_.push_back(std::move(key));
+  }
+
+  void write(const std::string& name, Writer& writer) const {
+    Table table{header_};
+    for (auto row : rows_) {
+      row.resize(header_.size(), "n/a");
+      table.push_back(std::move(row));
+    }
+    writer.table("phenotype/" + name + ".tsv", table);
+    writer.json("phenotype/" + name + ".json", meaning_);
+  }
+
+ private:
+  std::vector<std::string> header_{"participant_id", "session_id", "block"};
+  Table rows_;
+  Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")},
+                {"session_id", described("session")},
+                {"block", described("page of the protocol")}};
+};
+
+/// The scales by their kind, other pages by their block.
 void write_phenotypes(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
   Labels labels;
-  std::map<std::string, std::vector<std::vector<std::pair<std::string, std::string>>>>
-      tools;  // rows of (column, value)
-  std::map<std::string, Json> meanings;
+  std::map<std::string, Questionnaire> tools;
   for (const LabelledSession& session : sessions) {
     Statement unit(database,
                    "SELECT unit_id, block, kind FROM unit WHERE session_id = ? AND trial_id IS NULL "
@@ -251,38 +283,14 @@ void write_phenotypes(Connection& database, const std::vector<LabelledSession>& 
       const std::string block = unit.text(1), kind = unit.text(2);
       const auto asked = items(database, session.id, "u.unit_id = " + unit.text(0));
       if (asked.empty()) continue;
-      const std::string& tool = labels.of(kind == "ssq" || kind == "fms" ? kind : block);
-      Json& meaning = meanings[tool];
-      meaning["MeasurementToolMetadata"] = described("page of kind " + kind + " of a vip-study protocol");
-      meaning["session_id"] = described("session");
-      meaning["block"] = described("page of the protocol");
-      std::vector<std::pair<std::string, std::string>> row{{"participant_id", "sub-" + session.subject},
-                                                           {"session_id", "ses-" + session.session},
-                                                           {"block", field(block)}};
-      for (const Item& item : asked) {
-        meaning[item.code] = described(item);
-        row.emplace_back(item.code, answer_of(database, unit.integer(0), item.id, 0).first);
-      }
-      tools[tool].push_back(std::move(row));
+      std::vector<std::string> answers;
+      for (const Item& item : asked)
+        answers.push_back(answer_of(database, unit.integer(0), item.id, 0).first);
+      tools[labels.of(kind == "ssq" || kind == "fms" ? kind : block)].add_page(
+          {"sub-" + session.subject, "ses-" + session.session, field(block)}, asked, answers);
     }
   }
-  for (const auto& [tool, rows] : tools) {
-    Table table(1);
-    for (const auto& row : rows) {
-      for (const auto& [column, value] : row) {
-        if (std::find(table[0].begin(), table[0].end(), column) == table[0].end()) table[0].push_back(column);
-      }
-    }
-    for (const auto& row : rows) {
-      std::vector<std::string> line(table[0].size(), "n/a");
-      for (const auto& [column, value] : row)
-        line[static_cast<std::size_t>(std::find(table[0].begin(), table[0].end(), column) -
-                                      table[0].begin())] = value;
-      table.push_back(std::move(line));
-    }
-    writer.table("phenotype/" + tool + ".tsv", table);
-    writer.json("phenotype/" + tool + ".json", meanings[tool]);
-  }
+  for (const auto& [name, tool] : tools) tool.write(name, writer);
 }
 
 bool is_export(const fs::path& folder) {
