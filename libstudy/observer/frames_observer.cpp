@@ -11,8 +11,8 @@ namespace study {
 namespace {
 
 constexpr std::string_view kind = "frames";
-const std::string mend = "write frames, or frames:grain=1.2,bias=0.3 and the like";
-constexpr double neutral_granularity_px = 10, neutral_flicker = 0.02, tau_scale = 15;
+const std::string mend = "write frames, or frames:grain=4,bias=0.3 and the like";
+constexpr double neutral_granularity_px = 8.5, neutral_flicker = 0.02, tau_scale = 15;
 constexpr double symptom_level = 0.6, symptom_scale = 3;
 
 std::array<ObserverKey, 8> keys_of(FramesObserverParameters& p) {

@@ -10,7 +10,7 @@ namespace study {
 
 /// Quality of a stimulus in scores, 0 = neither good nor bad:
 ///
-///   q = timing tanh(tau / 15) - grain log2(granularity / 10 px) - flicker log2(flicker / 0.02)
+///   q = timing tanh(tau / 15) - grain log2(granularity / 8.5 px) - flicker log2(flicker / 0.02)
 ///
 /// with tau = mu - 23.68 exp(0.02 delta) (the paper's PTPE@4.0) of the frames as they were shown and features
 /// as in PictureFeatures. Realism and its like: nearest score to the scale's midpoint + q + participant +
@@ -19,7 +19,7 @@ namespace study {
 /// second is preferred when q_2 - q_1 + bias + noise > 0. The weights are our choice: they order the methods
 /// plausibly, and nothing in them was fitted to the paper's results.
 struct FramesObserverParameters {
-  double grain = 1.2;           ///< scores an octave, >= 0
+  double grain = 4;             ///< scores an octave, >= 0
   double flicker = 0.6;         ///< scores an octave, >= 0
   double timing = 1.2;          ///< scores, >= 0
   double noise = 0.9;           ///< scores, >= 0

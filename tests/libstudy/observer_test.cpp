@@ -177,13 +177,13 @@ std::unique_ptr<Observer> observer_of(const std::string& specification) {
 TEST(MakeObserver, SpecificationsAreWrittenBackInFull) {
   for (const std::string text :
        {"random", "constant:4", "constant:2.5", "dropout:0.2,random", "dropout:0.1,constant:7",
-        "frames:grain=1.2,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0,sickness=0.25,"
+        "frames:grain=4,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0,sickness=0.25,"
         "fatigue=0.02"}) {
     EXPECT_EQ(observer_of(text)->simulated(), text);
   }
   EXPECT_EQ(observer_of("dropout:0.2")->simulated(), "dropout:0.2,random");
   EXPECT_EQ(observer_of("frames:bias=0.5")->simulated(),
-            "frames:grain=1.2,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0.5,sickness=0.25,"
+            "frames:grain=4,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0.5,sickness=0.25,"
             "fatigue=0.02");
   for (const char* bad : {"", "people", "constant:", "constant:x", "dropout:2", "dropout:0.1,people",
                           "frames:", "frames:bias=x", "frames:colour=1", "framesx", "random:1"})
@@ -266,7 +266,7 @@ TEST(DropoutObserver, LeavesWithItsProbabilityBeforeEachTrial) {
 }
 
 TEST(FramesObserver, PrefersFinePicturesAndSteadyTiming) {
-  const auto observer = observer_of("frames");
+  const auto observer = observer_of("frames:grain=1.2");
   const ShownStimulus coarse = stimulus("LoRes", 30, 5), fine = stimulus("HiRes", 30, 5);
   // q_2 - q_1 = 1.2 octaves: Phi(1.2 / 0.9) = 0.909.
   EXPECT_NEAR(second_preferred(*observer, coarse, fine), 0.909, 0.02);
@@ -283,7 +283,7 @@ TEST(FramesObserver, TheIntervalBiasShiftsChoicesOfEqualStimuli) {
 }
 
 TEST(FramesObserver, CoarsePicturesLookLessRealAndMakeSicker) {
-  const auto observer = observer_of("frames");
+  const auto observer = observer_of("frames:grain=1.2");
   Question dizziness = seven_points();
   dizziness.id = "dizziness";
   dizziness.scale_min = 0;
