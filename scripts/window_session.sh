@@ -155,7 +155,7 @@ screen_of "$out/screen"
 DISPLAY=:$(cat "$out/screen") "$study" run "$out/protocol.toml" --db "$out/lost.db" --participant P02 --observer random \
   --display window --size 640x360 --stimulus "$out/dam.bake" --trial-seconds 4 --events >"$out/lost_events" 2>"$out/lost_log" &
 session=$!
-until grep -q 'begins .* stimulus' "$out/lost_events" || ! alive; do sleep 0.1; done
+until grep -qs 'begins .* stimulus' "$out/lost_events" || ! alive; do sleep 0.1; done
 sleep 4
 kill -9 "$screen"
 status=0
