@@ -52,7 +52,7 @@ struct Answer {
 
 struct TimedAnswer {
   Answer answer;
-  double response_time_s = 0;  ///< from its showing to its confirmation
+  double response_time_s = 0;  ///< from the page's showing to the last change of this answer
 };
 
 }  // namespace study
