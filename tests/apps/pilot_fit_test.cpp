@@ -24,6 +24,10 @@ apps::PilotFit fit_rows(const std::vector<RatingRow>& rows, double level = 4,
   return apps::fit_pilot(*apps::select_pilot(rows, selection), level, {200, 1, 0.95});
 }
 
+apps::PilotSelection choice(const std::string& protocol, apps::ExcludedVerdicts exclude) {
+  return {protocol, "", exclude};
+}
+
 bool has_flag(const apps::PilotFit& fit, const std::string& code) {
   return std::any_of(fit.flags.begin(), fit.flags.end(), [&](const auto& flag) { return flag.code == code; });
 }
@@ -63,9 +67,32 @@ TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
   EXPECT_EQ(usual.unanswered, 1);
   EXPECT_EQ(usual.practice, 1);
   EXPECT_EQ(usual.without_timing, 1);
-  EXPECT_EQ(apps::select_pilot(rows, {"", apps::ExcludedVerdicts::None})->ratings.size(), rows.size() - 3);
-  EXPECT_EQ(apps::select_pilot(rows, {"", apps::ExcludedVerdicts::Degraded})->ratings.size(),
+  EXPECT_EQ(apps::select_pilot(rows, choice("", apps::ExcludedVerdicts::None))->ratings.size(),
+            rows.size() - 3);
+  EXPECT_EQ(apps::select_pilot(rows, choice("", apps::ExcludedVerdicts::Degraded))->ratings.size(),
             rows.size() - 5);
+}
+
+TEST(PilotFit, LeavesOutRepeatsAndWhatTheExperimenterExcluded) {
+  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
+  rows[0].repeat = true;
+  rows[1].excluded = true;
+  const auto data = *apps::select_pilot(rows, {});
+  EXPECT_EQ(data.ratings.size(), rows.size() - 2);
+  EXPECT_EQ(data.repeat, 1);
+  EXPECT_EQ(data.excluded, 1);
+}
+
+TEST(PilotFit, NeverPoolsQuestions) {
+  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
+  for (auto& row : rows) row.question = "satisfaction";
+  rows[0].question = "realism";
+  EXPECT_NE(apps::select_pilot(rows, {}).reason().find("--question"), std::string::npos);
+  apps::PilotSelection selection;
+  selection.question = "satisfaction";
+  EXPECT_EQ(apps::select_pilot(rows, selection)->ratings.size(), rows.size() - 1);
+  selection.question = "speed";
+  EXPECT_NE(apps::select_pilot(rows, selection).reason().find("'speed'"), std::string::npos);
 }
 
 TEST(PilotFit, NeverPoolsTestDataOrProtocols) {
@@ -79,8 +106,8 @@ TEST(PilotFit, NeverPoolsTestDataOrProtocols) {
   EXPECT_EQ(real.test_left_out, static_cast<int>(rows.size()) - 1);
   rows[1].protocol_sha256 = std::string(64, '2');
   EXPECT_NE(apps::select_pilot(rows, {}).reason().find("several protocols"), std::string::npos);
-  EXPECT_EQ(apps::select_pilot(rows, {"2", apps::ExcludedVerdicts::Fail})->ratings.size(), 1u);
-  EXPECT_FALSE(apps::select_pilot(rows, {"3", apps::ExcludedVerdicts::Fail}));
+  EXPECT_EQ(apps::select_pilot(rows, choice("2", apps::ExcludedVerdicts::Fail))->ratings.size(), 1u);
+  EXPECT_FALSE(apps::select_pilot(rows, choice("3", apps::ExcludedVerdicts::Fail)));
   EXPECT_FALSE(apps::select_pilot({}, {}));
 }
 
