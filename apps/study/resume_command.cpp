@@ -17,9 +17,9 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
     return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name);
   } catch (const base::Error& error) {
     const std::string reason = error.what();
-    throw base::Error(
-        place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
-        "finish it with the version of vip-study that wrote it; status, export and vip-stats read it");
+    throw base::Error(place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
+                      "finish it with the version of vip-study that wrote it, from the copy '.bak' beside it "
+                      "where this one has upgraded it; status, export and vip-stats read it");
   }
 }
 

@@ -44,7 +44,7 @@ TEST_F(InstallE2e, StudyFindsProtocolAndSchema) {
   const Ended played = run({"vip-study", "run", "protocols/ptpe_pilot.toml", "--db", at("study.db"),
                             "--participants", "1", "--observer", "ptpe:a=24,b=0.02"});
   EXPECT_EQ(played.exit_code, 0) << played.err;
-  EXPECT_EQ(answers_in(at("study.db")).size(), 21u);
+  EXPECT_EQ(answers_in(at("study.db")).size(), 22u);  // 21 ratings and the consent
 }
 
 TEST_F(InstallE2e, ViewFindsSceneAndShaders) {
