@@ -1,5 +1,7 @@
 #include "apps/study/session_player.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -8,6 +10,7 @@
 #include <optional>
 
 #include "apps/common/program.hpp"
+#include "apps/study/desk/certificate.hpp"
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
@@ -177,22 +180,9 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
 
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol) {
-  const bool harmonic = protocol.pacing.mean == study::FpsMean::Harmonic;
-  std::printf("Timing certificate (%s mean, frames/s; worst = largest distance of one trial)\n",
-              harmonic ? "harmonic" : "arithmetic");
-  std::printf("%6s %6s %7s %8s %7s %8s %7s %7s %8s %5s %9s %5s %s\n", "mu", "delta", "trials", "mu real",
-              "worst", "d real", "worst", "late", "worst ms", "pass", "degraded", "fail", "grade");
-  std::int64_t pass = 0, all = 0;
-  for (const auto& row : study::read_certificate(database, run.id, protocol.pacing.mean)) {
-    std::printf("%6g %6g %7lld %8.3f %7.3f %8.3f %7.3f %7lld %8.3f %5lld %9lld %5lld %s\n", row.nominal.mean,
-                row.nominal.sd, static_cast<long long>(row.trials), row.mean, row.mean_worst, row.sd,
-                row.sd_worst, static_cast<long long>(row.late), row.worst_late_ms,
-                static_cast<long long>(row.pass), static_cast<long long>(row.degraded),
-                static_cast<long long>(row.fail), row.grades.c_str());
-    pass += row.pass;
-    all += row.trials;
-  }
-  std::printf("%lld of %lld trials pass\n", static_cast<long long>(pass), static_cast<long long>(all));
+  const auto rows = study::read_certificate(database, run.id, protocol.pacing.mean);
+  const bool coloured = ::isatty(STDOUT_FILENO) == 1;
+  std::fputs(format_certificate(rows, protocol.pacing.mean, coloured).c_str(), stdout);
 }
 
 }  // namespace apps

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
+#include "apps/study/desk/certificate.hpp"
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/preflight.hpp"
 #include "apps/study/desk/progress.hpp"
@@ -15,6 +17,7 @@ namespace apps {
 
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -35,6 +38,43 @@ TEST(Refresh, IsMeasuredWithJitterAndMissedBeats) {
   ASSERT_TRUE(found.in_effect);
   EXPECT_NEAR(found.period_ns, period_ns, 1e-4 * period_ns);
   EXPECT_EQ(found.nominal_hz, 60) << "59.95 is what the system calls 60";
+}
+
+/// A cell of four trials of which so many were degraded and failed.
+study::CertificateRow cell_with(std::int64_t degraded, std::int64_t fail) {
+  study::CertificateRow row;
+  row.nominal = {50, 5, 10};
+  row.trials = 4;
+  row.mean = 49.5;
+  row.degraded = degraded;
+  row.fail = fail;
+  row.pass = 4 - degraded - fail;
+  row.grades = "D";
+  return row;
+}
+
+TEST(Certificate, MarksCellsThatFailedByAWord) {
+  const auto text = format_certificate({cell_with(0, 0), cell_with(1, 0), cell_with(2, 1)},
+                                       study::FpsMean::Harmonic, false);
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_THAT(lines[0], HasSubstr("harmonic mean"));
+  EXPECT_THAT(lines[2], AllOf(Not(HasSubstr("FAIL")), Not(HasSubstr("DEGRADED"))));
+  EXPECT_THAT(lines[3], AllOf(HasSubstr("DEGRADED"), Not(HasSubstr("FAIL"))));
+  EXPECT_THAT(lines[4], HasSubstr("FAIL"));
+  EXPECT_EQ(lines[5], "8 of 12 trials pass, 1 FAIL");
+  EXPECT_THAT(text, Not(HasSubstr("\033"))) << "colour where there is no terminal";
+}
+
+TEST(Certificate, IsRedOnATerminalWhereATrialFailed) {
+  const auto coloured = [](const study::CertificateRow& row) {
+    return format_certificate({row}, study::FpsMean::Harmonic, true);
+  };
+  EXPECT_THAT(coloured(cell_with(0, 0)), Not(HasSubstr("\033")));
+  EXPECT_THAT(coloured(cell_with(1, 0)), AllOf(HasSubstr("\033[33m"), Not(HasSubstr("\033[31m"))));
+  EXPECT_THAT(coloured(cell_with(1, 1)), AllOf(HasSubstr("\033[31m"), HasSubstr("FAIL\033[0m\n")));
 }
 
 TEST(Refresh, AToldRateThatIsWrongIsNotBelieved) {
