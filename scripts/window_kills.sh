@@ -1,0 +1,321 @@
+#!/usr/bin/env bash
+# Kills a person's session at the window with SIGKILL at KILLS instants drawn from SEED, resumes it after each, and then
+# fills the disk in the middle of a trial of another. Answered by real keys and the real mouse on a virtual screen.
+# Fails when an answer is lost or asked for twice, when a cut trial is not marked and shown again, or when the database
+# is harmed. usage: scripts/window_kills.sh [FOLDER [KILLS [SEED]]]    default: out/window_kills 50 1
+# Takes vip-study from $VIP_STUDY, else from build/dev. Databases, events and logs go to FOLDER.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=${1:-out/window_kills} kills=${2:-50} seed=${3:-1}
+study=${VIP_STUDY:-build/dev/bin/vip-study}
+size=${VIP_SCREEN:-800x450}
+
+if [ "${VIP_SCREEN_READY:-}" != yes ]; then
+  for tool in xvfb-run xdotool sqlite3; do
+    command -v "$tool" >/dev/null || { echo "window_kills: $tool is missing; run scripts/setup.sh" >&2; exit 1; }
+  done
+  VIP_SCREEN_READY=yes exec xvfb-run -a -s "-noreset -screen 0 ${size}x24" "$0" "$out" "$kills" "$seed"
+fi
+
+mkdir -p "$out/copy"
+rm -f "$out"/{kills,full}.* "$out"/copy/*
+export OMP_WAIT_POLICY=passive LC_ALL=C
+if [ ! -f "$out/dam.bake" ]; then
+  "$study" bake data/scenes/single_dam.toml --method HiRes --n-star 512 --frames 60 --pictures 640x360 \
+    --out "$out/dam.bake"
+fi
+
+failures=0
+fail() { echo "FAILED  $name, $stage: $*"; failures=$((failures + 1)); }
+
+write_protocol() {  # write_protocol FILE MEANS SECONDS: every kind of page that keeps an answer, and trials
+  cat >"$1" <<END
+format = 2
+name = "$name"
+version = "1"
+language = "en"
+participants = 1
+accept_approximate = true
+
+[design]
+scene = ["data/scenes/single_dam.toml"]
+method = ["HiRes"]
+n_star = ["512"]
+timing = "settings"
+mean_fps = [$2]
+sd_fps = [0, 3]
+duration_s = $3
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.016666666666666666
+start_frame = 0
+at_end = "loop"
+
+[[block]]
+kind = "instructions"
+id = "welcome"
+text = "You will see water."
+
+[[block]]
+kind = "consent"
+id = "consent"
+text = "A test."
+
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I would like to go on."
+anchors = {0 = "no", 1 = "yes"}
+accept = [1, 1]
+
+[[block]]
+kind = "demographics"
+id = "person"
+
+[[block.question]]
+id = "age"
+kind = "number"
+text = "Your age in years"
+scale = [10, 110]
+personal = true
+
+[[block]]
+kind = "fms"
+id = "sickness"
+
+[[block]]
+kind = "practice"
+id = "warm_up"
+like = "ratings"
+count = 1
+
+[[block]]
+kind = "stimulus"
+id = "ratings"
+steps = ["black 0.3", "stimulus", "ask satisfaction smoothness"]
+
+[[block.question]]
+id = "satisfaction"
+kind = "scale"
+text = "How satisfied are you with the motion of the fluid?"
+scale = [1, 7]
+
+[[block.question]]
+id = "smoothness"
+kind = "choice"
+text = "Was it smooth?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block]]
+kind = "question"
+id = "remarks"
+
+[[block.question]]
+id = "remark"
+kind = "text"
+text = "Is there anything you would like to say?"
+
+[[block]]
+kind = "debrief"
+id = "thanks"
+text = "That was all."
+END
+}
+
+width=${size%x*} height=${size#*x}
+# A key that finds no window is lost, as it would be; the unit is still on and is answered again.
+key() { for k in "$@"; do xdotool key "$k" || true; sleep 0.06; done; }
+# The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
+click_on() {
+  xdotool mousemove $((width / 2)) $((height - height * 80 / 1000)) || true
+  sleep 0.06
+  xdotool click 1 || true
+  sleep 0.08
+}
+
+answer() {  # answer KIND: what a person does while such a unit is on, again and again until it is over
+  case $1 in
+    instructions | debrief) click_on; key Return ;;
+    consent) key 1 Return ;;
+    demographics) key BackSpace BackSpace BackSpace BackSpace 3 0 Tab; click_on ;;
+    fms) key Right Return Return ;;
+    practice | stimulus) key 5 Return 1 Return ;;
+    question) key w a t e r Tab Return ;;
+  esac
+}
+
+session=
+alive() { kill -0 "$session" 2>/dev/null; }
+start() {  # start COMMAND ...: one process of the session; its events go to a file of their own
+  : >"$out/$name.events"
+  "$study" "$@" --db "$db" --events >"$out/$name.events" 2>"$out/$name.log" &
+  session=$!
+}
+start_run() {
+  start run "$out/$name.toml" --participant P01 --display window --gaze mouse --station test --screen-width-mm 520 \
+    --viewing-distance-mm 600 --stimulus "$out/dam.bake" --seed "$seed"
+}
+sit() {  # sit SECONDS: the person answers until the process ends, however it does; its exit status is in `ended`
+  local until=$((SECONDS + $1)) what kind
+  while alive; do
+    if [ $SECONDS -ge $until ]; then
+      fail "stuck at: $(tail -n 1 "$out/$name.events")"
+      kill -9 "$session"
+      break
+    fi
+    read -r what _ _ kind _ < <(tail -n 1 "$out/$name.events"; echo) || true
+    if [ "$what" = begins ]; then answer "$kind"; fi
+    sleep 0.1
+  done
+  ended=0
+  wait "$session" 2>/dev/null || ended=$?
+}
+trap 'kill -9 $session 2>/dev/null || true' EXIT
+
+# What stands in a file after a kill is read from a copy, so that the next process finds the file as it was left.
+copy() {
+  rm -f "$out"/copy/*
+  cp "$db"* "$out/copy/"
+}
+ask() { sqlite3 "$out/copy/$name.db" "$1"; }
+ask_personal() { sqlite3 "$out/copy/$name.db.personal" "$1"; }
+planned() { [ -s "$db" ] && copy && [ "$(ask "select count(*) from sqlite_schema where name = 'unit'")" = 1 ] && [ "$(ask "select count(*) from unit")" != 0 ]; }
+
+wanted() { [ "$2" = "$3" ] || fail "$1: '$3' instead of '$2'"; }
+none() { [ -z "$2" ] || fail "$1: $(echo "$2" | head -n 5 | tr '\n' ';')"; }
+kept() {  # kept WHAT FILE QUERY: what was there is there still, unchanged; remembers what is there now
+  [ -e "$2" ] || : >"$2"
+  echo "$3" | sed '/^$/d' | sort >"$2.now"
+  none "$1 lost or changed" "$(comm -23 "$2" "$2.now")"
+  mv "$2.now" "$2"
+}
+
+check() {  # every promise, of a session whose process has just ended
+  "$study" status --db "$db" >"$out/$name.status" 2>&1 || fail "status: $(cat "$out/$name.status")"
+  copy
+  wanted integrity ok "$(ask "pragma integrity_check")"
+  none "foreign keys" "$(ask "pragma foreign_key_check")"
+  # Nobody was asked again what was done before this process, and it went on where the last one was cut.
+  sed -n 's/^begins P01 \([0-9]*\) .*/\1/p' "$out/$name.events" >"$out/$name.begun"
+  none "asked twice" "$(sort "$out/$name.begun" | comm -12 - <(sort "$out/$name.done"))"
+  if [ -s "$out/$name.begun" ]; then wanted "goes on at" "$first_open" "$(head -n 1 "$out/$name.begun")"; fi
+  # What was announced is there; at most one unit more was safe and not told yet.
+  sed -n 's/^done P01 \([0-9]*\) .*/\1/p' "$out/$name.events" >>"$out/$name.said"
+  ask "select position from unit where state = 'done'" >"$out/$name.done"
+  none "announced and lost" "$(sort "$out/$name.said" | comm -23 - <(sort "$out/$name.done"))"
+  none "announced twice" "$(sort "$out/$name.said" | uniq -d)"
+  local untold
+  untold=$(sort "$out/$name.done" | comm -23 - <(sort "$out/$name.said"))
+  [ "$(echo "$untold" | wc -w)" -le 1 ] || fail "done and not announced: $untold"
+  echo "$untold" | sed '/^$/d' >>"$out/$name.said"
+  first_open=$(ask "select min(position) from unit where state <> 'done'")
+  # Every answer stays as it was given, and no question of a unit has two.
+  kept answers "$out/$name.answers" "$(ask "select * from response")"
+  kept notes "$out/$name.log_events" "$(ask "select event_id, utc, kind from event")"
+  if [ -e "$db.personal" ]; then
+    wanted "integrity of the personal file" ok "$(ask_personal "pragma integrity_check")"
+    if [ "$(ask_personal "select count(*) from sqlite_schema")" != 0 ]; then
+      kept "personal answers" "$out/$name.personal_answers" "$(ask_personal "select * from personal")"
+    fi
+  fi
+  none "answered twice" "$(ask "select unit_id, question_id from response group by 1, 2 having count(*) > 1")"
+  none "done without an answer" "$(ask "select position from unit u where state = 'done' and trial_id is not null and
+    (select count(*) from response r where r.unit_id = u.unit_id) <> 2")"
+  # Only the newest showing may still be called running: what ended before it is marked.
+  none "interrupted and not marked" "$(ask "select presentation_id from presentation where state = 'running' and
+    presentation_id < (select max(presentation_id) from presentation)")"
+  if [ -s "$out/$name.begun" ] && [ -n "$cut" ]; then
+    wanted "the showing that was cut" interrupted "$(ask "select state from presentation where presentation_id = $cut")"
+  fi
+  if [ -z "$cut" ] || [ -s "$out/$name.begun" ]; then cut=$(ask "select presentation_id from presentation where state = 'running'"); fi
+  none "attempts skipped" "$(ask "select trial_id from presentation group by 1 having count(*) <> max(attempt)")"
+}
+
+check_whole() {
+  copy
+  wanted "units left" 0 "$(ask "select count(*) from unit where state <> 'done'")"
+  wanted "the session" done "$(ask "select state from session")"
+  wanted "answers to each question" "1 1 $1 $1 1" "$(ask "select group_concat(n, ' ') from (select count(*) n from response
+    join question using (question_id) group by code order by code = 'remark', code = 'smoothness', code = 'satisfaction', code = 'take_part')")"
+  wanted "the personal answer" 30 "$(ask_personal "select answer from personal where question = 'age'")"
+  wanted "showings under way" 0 "$(ask "select count(*) from presentation where state = 'running'")"
+  none "interrupted and not shown again" "$(ask "select trial_id from presentation p where state = 'interrupted' and
+    not exists (select 1 from presentation q where q.trial_id = p.trial_id and q.attempt > p.attempt and q.state = 'played')")"
+  none "judged a showing that was cut" "$(ask "select unit_id from response r join unit u using (unit_id)
+    join presentation p on p.trial_id = u.trial_id and p.attempt = r.attempt where p.state <> 'played'")"
+}
+
+new_session() {
+  name=$1 stage=start db=$out/$1.db cut= first_open=0
+  : >"$out/$name.done"
+  : >"$out/$name.said"
+}
+
+begun=$SECONDS
+new_session kills
+write_protocol "$out/kills.toml" "$(seq -s , 20 $((20 + (kills + 2) / 3)))" 1.2
+RANDOM=$seed
+for ((kill = 1; kill <= kills; ++kill)); do
+  stage="kill $kill"
+  life_ms=$((RANDOM % 5000))
+  if planned; then start resume; else start_run; fi
+  # Not by the one who answers, so that a kill falls anywhere: between two keys, within a trial, while a file is opened.
+  (sleep "$((life_ms / 1000)).$(printf %03d $((life_ms % 1000)))"; exec kill -9 "$session") 2>/dev/null &
+  killer=$!
+  sit 60 2>/dev/null  # the shell tells of every kill
+  kill "$killer" 2>/dev/null || true
+  wait "$killer" 2>/dev/null || true
+  if [ "$ended" -ne 137 ]; then
+    fail "ended with $ended before it was killed: $(tail -n 3 "$out/kills.log")"
+    break
+  fi
+  if planned; then check; elif [ -s "$out/kills.said" ] || grep -q '^done' "$out/kills.events"; then fail "the plan is lost"; fi
+  printf 'kill %2d after %4d ms at: %s\n' "$kill" "$life_ms" "$(tail -n 1 "$out/kills.events")"
+done
+stage=end
+if planned; then start resume; else start_run; fi
+sit 400
+wanted "exit status of the last resume" 0 "$ended"
+check
+trials=$(ask "select count(*) from trial")
+check_whole "$trials"
+cuts=$(ask "select count(*) from presentation where state = 'interrupted'")
+[ "$kills" -lt 20 ] || [ "$cuts" -gt 0 ] || fail "no kill fell within a stimulus; take another seed"
+[ $failures -ne 0 ] || echo "ok      $kills kills in $((SECONDS - begun)) s: $(ask "select count(*) from unit") steps, $trials trials, \
+$(ask "select count(*) from response") answers; $cuts showings cut, with \
+$(ask "select count(*) from frame join presentation using (presentation_id) where state = 'interrupted'") frames kept"
+
+# A disk that fills in the middle of a trial: the file may grow by three pages, and eight seconds of frames need more.
+new_session full
+write_protocol "$out/full.toml" "60" 8
+start_run
+until grep -q '^begins' "$out/full.events" || ! alive; do sleep 0.1; done
+kill -TERM "$session"
+sit 30
+copy
+start resume --max-pages $(($(ask "pragma page_count") + 3))
+sit 120
+stage="full disk"
+wanted "exit status" 1 "$ended"
+grep -q "no room left" "$out/full.log" && grep -q "vip-study resume" "$out/full.log" || fail "no clear error: $(tail -n 3 "$out/full.log")"
+check
+said=$(grep -c . "$out/full.said" || true)
+wanted "it was full within" "trial" "$(tail -n 1 "$out/full.events" | sed -E 's/begins P01 [0-9]+ (practice|stimulus) .*/trial/')"
+[ -n "$cut$(ask "select presentation_id from presentation where state = 'interrupted'")" ] || fail "no showing was cut"
+stage=end
+start resume
+sit 120
+wanted "exit status of the resume" 0 "$ended"
+check
+check_whole "$(ask "select count(*) from trial")"
+[ $failures -ne 0 ] || echo "ok      a full disk within a trial: clear error, $said steps kept, resume goes on to the end"
+trap - EXIT
+[ $failures -eq 0 ]
