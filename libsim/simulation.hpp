@@ -15,7 +15,7 @@
 #include "libsim/methods/preset.hpp"
 #include "libsim/saliency/looks.hpp"
 #include "libsim/scene/scene.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
 

@@ -21,7 +21,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/fps_window.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
 

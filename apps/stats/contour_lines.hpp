@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stats/score_grid.hpp"
+#include "stats/ptpe/score_grid.hpp"
 
 namespace apps {
 

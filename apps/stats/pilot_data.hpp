@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libstudy/store/ratings.hpp"
-#include "stats/pilot.hpp"
+#include "stats/ptpe/pilot.hpp"
 #include "stats/result.hpp"
 
 namespace apps {

@@ -8,7 +8,7 @@
 
 #include "apps/stats/pilot_data.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
-#include "stats/pilot.hpp"
+#include "stats/ptpe/pilot.hpp"
 
 namespace apps {
 

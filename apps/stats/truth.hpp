@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/stats/pilot_fit.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "stats/fps_window.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libstudy/observer/specification.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace study {
 

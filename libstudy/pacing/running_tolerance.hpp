@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "stats/fps_window.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace study {
 

@@ -15,7 +15,7 @@
 #include "libstudy/session/participant.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/store.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace study {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/stats/pilot_data.hpp"
-#include "stats/pilot.hpp"
+#include "stats/ptpe/pilot.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "stats/fps_window.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
 

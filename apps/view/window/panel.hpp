@@ -9,7 +9,7 @@
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "stats/fps_window.hpp"
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 struct GLFWwindow;
 

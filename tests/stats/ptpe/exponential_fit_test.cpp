@@ -1,4 +1,4 @@
-#include "stats/exponential_fit.hpp"
+#include "stats/ptpe/exponential_fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/exponential_fit.hpp"
+#include "stats/ptpe/exponential_fit.hpp"
 #include "stats/result.hpp"
 
 namespace stats {

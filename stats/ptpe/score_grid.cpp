@@ -1,4 +1,4 @@
-#include "stats/score_grid.hpp"
+#include "stats/ptpe/score_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

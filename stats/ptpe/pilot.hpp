@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "stats/bootstrap.hpp"
-#include "stats/score_grid.hpp"
+#include "stats/ptpe/score_grid.hpp"
 
 namespace stats {
 

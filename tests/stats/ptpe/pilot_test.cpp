@@ -1,4 +1,4 @@
-#include "stats/pilot.hpp"
+#include "stats/ptpe/pilot.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/ptpe.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 #include <gtest/gtest.h>
 
