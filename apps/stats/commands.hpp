@@ -1,0 +1,10 @@
+#pragma once
+/// The commands of vip-stats: each in a file of its own, each adds itself to the program.
+
+#include <CLI/CLI.hpp>
+
+namespace apps {
+
+void add_fit_ptpe_command(CLI::App& app);
+
+}  // namespace apps
