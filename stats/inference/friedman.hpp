@@ -1,0 +1,35 @@
+#pragma once
+/// Friedman's rank test of k related conditions.
+
+#include <span>
+#include <vector>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct Friedman {
+  int n = 0;          ///< participants used
+  int n_missing = 0;  ///< participants dropped, because one of their values or more is missing
+  int k = 0;          ///< conditions
+  double chi2 = 0;    ///< corrected for ties
+  int df = 0;
+  double p = 0;          ///< of chi2 (large n)
+  double kendall_w = 0;  ///< concordance of the participants, 0 to 1
+  /// Iman and Davenport 1980: closer to its level in small samples. Infinite, with p = 0, when all
+  /// participants have the same order.
+  double iman_davenport_f = 0;
+  double df1 = 0, df2 = 0;
+  double iman_davenport_p = 0;
+  std::vector<double> mean_ranks;  ///< of each condition, 1 = smallest value; ties share their mean rank
+};
+
+/// `rows`: participants by conditions, row after row, each of k values; NaN = missing.
+/// Refused: fewer than two conditions or complete participants, infinite values, all rows tied.
+/// std::invalid_argument when the values do not fill whole rows or k < 1.
+Result<Friedman> friedman_test(std::span<const double> rows, int k);
+
+/// Ranks of the values, 1 = smallest; ties share their mean rank. All finite or infinite, none NaN.
+std::vector<double> mean_ranks(std::span<const double> values);
+
+}  // namespace stats

@@ -1,0 +1,73 @@
+#pragma once
+/// Power of the tests that the study uses, and the number of participants for a wished power. Exact: no
+/// simulation and no normal approximation.
+
+#include <optional>
+
+#include "stats/inference/alternative.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Paired equals OneSample on the differences; TwoSample has n in each of two independent groups.
+enum class Design { OneSample, Paired, TwoSample };
+
+/// Power of Student's t-test for a standardised difference d (mean over the SD of the differences, or of a
+/// group): noncentral t, both tails counted. n > 1 may be a fraction (per group).
+/// Refused: n <= 1, alpha outside (0, 1), d not finite.
+Result<double> t_power(double n, double d, double alpha = 0.05, Design design = Design::Paired,
+                       Alternative alternative = Alternative::TwoSided);
+
+struct SampleSize {
+  double n_real = 0;  ///< where the power is met exactly (for a binomial test: n)
+  int n = 0;          ///< the smallest whole number that meets it
+  double power = 0;   ///< at n
+};
+
+/// Participants (per group) for a power of the t-test. Refused: d = 0 or of the wrong sign, power outside
+/// (alpha, 1), more than 1e7 participants.
+Result<SampleSize> t_sample_size(double d, double power, double alpha = 0.05, Design design = Design::Paired,
+                                 Alternative alternative = Alternative::TwoSided);
+
+/// An equivalence test (two one-sided t-tests) in the units of the scale.
+struct Equivalence {
+  double low = -0.5, high = 0.5;  ///< margins
+  double sd = 1;                  ///< of the differences, or of each group
+  double difference = 0;          ///< true difference
+  double alpha = 0.05;            ///< of each one-sided test
+  Design design = Design::Paired;
+};
+
+/// Probability that both one-sided tests reject, exact (integral over the sample's variance: Owen 1965,
+/// Phillips 1990). Refused: n <= 1, sd <= 0, low >= high, alpha outside (0, 0.5].
+Result<double> tost_power(double n, const Equivalence& equivalence);
+
+/// Refused too: a difference on or outside the margins, power outside (0, 1).
+Result<SampleSize> tost_sample_size(double power, const Equivalence& equivalence);
+
+/// A non-inferiority or superiority test against a margin is t_power with d = (difference - margin) / sd and
+/// a one-sided alternative.
+
+struct BinomialPower {
+  double power = 0;         ///< when the true proportion is p1
+  double actual_alpha = 0;  ///< the same when it is p0: at most alpha
+  /// Smallest k above n p0 and largest k below it that are significant; empty where none is.
+  std::optional<int> k_critical_upper, k_critical_lower;
+};
+
+/// The exact binomial test's power by enumeration. Refused: n < 1 or not whole, p0 or p1 outside [0, 1],
+/// alpha outside (0, 1).
+Result<BinomialPower> binomial_power(double n, double p1, double p0 = 0.5, double alpha = 0.05,
+                                     Alternative alternative = Alternative::TwoSided);
+
+struct BinomialSampleSize {
+  int n = 0;          ///< smallest n that has the power
+  double power = 0;   ///< at n
+  int n_lasting = 0;  ///< from here on all n up to 3 n_lasting have it (power is a saw over n)
+};
+
+/// Refused: p1 = p0, power outside (alpha, 1), more than 20,000 participants.
+Result<BinomialSampleSize> binomial_sample_size(double p1, double power, double p0 = 0.5, double alpha = 0.05,
+                                                Alternative alternative = Alternative::TwoSided);
+
+}  // namespace stats

@@ -1,0 +1,36 @@
+#pragma once
+/// One-way analysis of variance with repeated measures.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct RepeatedAnova {
+  int n = 0;          ///< participants used
+  int n_missing = 0;  ///< participants dropped, because one of their values or more is missing
+  int k = 0;          ///< conditions
+  double ss_conditions = 0, ss_subjects = 0, ss_error = 0;
+  double f = 0;
+  double df1 = 0, df2 = 0;  ///< before any correction
+  double p = 0;             ///< if the differences between conditions have equal variances (sphericity)
+  double epsilon_gg = 0;    ///< Greenhouse and Geisser 1959, 1 / (k-1) to 1; 1 means sphericity
+  /// Huynh and Feldt 1976, not capped: may exceed 1. Empty where its denominator is 0 (n = 2).
+  std::optional<double> epsilon_hf;
+  double p_gg = 0;              ///< with both df times epsilon_gg
+  std::optional<double> p_hf;   ///< with both df times min(1, epsilon_hf)
+  double partial_eta2 = 0;      ///< ss_conditions / (ss_conditions + ss_error)
+  double generalized_eta2 = 0;  ///< ss_conditions / total (Olejnik and Algina 2003)
+  std::vector<double> means;    ///< of each condition
+};
+
+/// `rows`: participants by conditions, row after row, each of k values; NaN = missing.
+/// Refused: fewer than two conditions or complete participants, infinite values, no variation left within
+/// participants once the conditions' means are removed (F would divide by zero).
+/// std::invalid_argument when the values do not fill whole rows or k < 1.
+Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k);
+
+}  // namespace stats

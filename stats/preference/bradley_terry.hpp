@@ -1,0 +1,75 @@
+#pragma once
+/// Bradley and Terry's model of paired comparisons (1952): P(i beats j) = 1 / (1 + exp(lambda_j - lambda_i)).
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Whether the strengths are finite (Ford 1957): each split of the items in two must have wins both ways.
+enum class Connection {
+  Strong,     ///< finite maximum of the likelihood
+  Separated,  ///< connected, but some items never lose to the others: infinite
+  None,       ///< two groups of items were never compared
+};
+struct ConnectionReport {
+  Connection connection = Connection::Strong;
+  std::string reason;  ///< e.g. "item 5 wins every comparison"; empty when Strong
+};
+/// `wins`: items by items, row after row; entry (i, j) is how often i was preferred to j.
+/// std::invalid_argument unless there are items^2 entries, all finite and >= 0.
+ConnectionReport connection(std::span<const double> wins, int items);
+
+enum class BradleyTerryMethod {
+  MaximumLikelihood,
+  BiasReduced,  ///< Firth 1993: finite even where items are separated
+  Automatic,    ///< maximum likelihood where it is finite, else bias reduced
+};
+
+struct PairDifference {
+  int i = 0, j = 0;       ///< items, from 0, i < j
+  double difference = 0;  ///< lambda_i - lambda_j, logits
+  double se = 0;
+  std::array<double, 2> ci{};  ///< Wald
+  double p = 0;                ///< Wald
+  double probability = 0;      ///< that i is preferred to j
+  std::array<double, 2> probability_ci{};
+};
+
+struct BradleyTerry {
+  int items = 0;
+  double comparisons = 0;
+  bool bias_reduced = false;
+  std::string why_bias_reduced;  ///< the reason when Automatic chose it
+  double confidence = 0.95;
+  std::vector<double> lambda_ref1, se_ref1;  ///< the first item has 0
+  std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
+  std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0
+  std::vector<std::array<double, 2>> ci_sum0;  ///< Wald
+  std::vector<double> worth;                   ///< exp(lambda), sum 1
+  double log_likelihood = 0;                   ///< without binomial coefficients
+  /// Goodness of fit: deviance against one free proportion for each pair; p empty when no df is left.
+  double gof_deviance = 0;
+  int gof_df = 0;
+  std::optional<double> gof_p;
+  /// Likelihood ratio against equal strengths.
+  double lrt_chi2 = 0;
+  int lrt_df = 0;
+  double lrt_p = 0;
+  std::vector<PairDifference> pairs;  ///< all pairs, also those never compared directly
+};
+
+/// Refused: fewer than two items, no comparison, items never compared, and for MaximumLikelihood an infinite
+/// estimate (the reason names the items). For BiasReduced, tests of likelihood ratio use the bias-reduced
+/// strengths in the ordinary likelihood. std::invalid_argument as for connection(), an entry (i, i) > 0 or a
+/// confidence outside (0, 1).
+Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
+                                   BradleyTerryMethod method = BradleyTerryMethod::Automatic,
+                                   double confidence = 0.95);
+
+}  // namespace stats

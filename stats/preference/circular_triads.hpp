@@ -1,0 +1,41 @@
+#pragma once
+/// Does a participant contradict himself? Circular triads among all pairs: A over B, B over C, C over A
+/// (Kendall and Babington Smith 1940).
+
+#include <span>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct CircularTriads {
+  int items = 0;
+  int triads = 0;       ///< circular ones
+  int most = 0;         ///< largest number possible
+  double expected = 0;  ///< of random choices: a quarter of all triads
+  double zeta = 0;      ///< consistency, 1 - triads / most: 1 = no contradiction, 0 = as many as possible
+  /// Probability of so few circular triads if every choice is a coin's throw; small = the participant has an
+  /// order. Exact up to 7 items, else Kendall's chi-square (1962).
+  double p = 0;
+  bool exact = true;
+};
+
+/// `wins`: items by items, row after row; exactly one of (i, j) and (j, i) is 1, the other 0.
+/// Refused: fewer than three items, a pair unanswered or answered twice (the reason names it; items from 1).
+/// std::invalid_argument unless there are items^2 entries.
+Result<CircularTriads> circular_triads(std::span<const double> wins, int items);
+
+struct GroupTriads {
+  int participants = 0;
+  int items = 0;
+  int triads = 0;  ///< sum over the participants
+  double expected = 0;
+  double mean_zeta = 0;
+  double p = 0;  ///< of so small a sum if all choose at random: exact convolution up to 7 items, else normal
+  bool exact = true;
+};
+
+/// Of several participants who all judged the same number of items. Refused: none, or different numbers.
+Result<GroupTriads> group_triads(std::span<const CircularTriads> participants);
+
+}  // namespace stats
