@@ -1,12 +1,15 @@
 #pragma once
 /// The reference answers in tests/stats/oracle, or in $VIP_ORACLE_DIR when that is set.
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,18 +27,70 @@ inline nlohmann::json cases(const std::string& family) {
   return nlohmann::json::parse(in).at("cases");
 }
 
+/// Whether the pack holds a family; tests of a family that is absent are skipped.
+inline bool has(const std::string& family) { return std::filesystem::exists(folder() / (family + ".json")); }
+
+/// A number, "Inf" or "-Inf"; null = missing = NaN.
+inline double number(const nlohmann::json& item) {
+  if (item.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (item == "Inf") return std::numeric_limits<double>::infinity();
+  if (item == "-Inf") return -std::numeric_limits<double>::infinity();
+  return item.get<double>();
+}
+
 /// null = missing = NaN.
 inline std::vector<double> numbers(const nlohmann::json& list) {
   std::vector<double> out;
-  for (const auto& item : list) {
-    out.push_back(item.is_null() ? std::numeric_limits<double>::quiet_NaN() : item.get<double>());
-  }
+  for (const auto& item : list) out.push_back(number(item));
   return out;
+}
+
+/// Whether a field is there and not null, that is, to be compared.
+inline bool asks(const nlohmann::json& expect, const std::string& field) {
+  return expect.contains(field) && !expect.at(field).is_null();
 }
 
 /// Bound for a field: relative, and absolute in units of `scale` where the answer is zero.
 inline double bound(double expected, double rtol, double scale) {
   return rtol * (expected == 0 ? scale : std::abs(expected));
 }
+
+/// `got` against one expected number, to `rtol` of it. Where the answer is zero, or zero but for the rounding
+/// of the program that computed it (1e-12 of `scale`, the size of what was subtracted), to rtol of `scale`.
+inline void expect_number(const std::string& what, double got, const nlohmann::json& expected, double rtol,
+                          double scale = 1) {
+  if (expected.is_null()) return;
+  const double want = number(expected);
+  if (std::isinf(want)) {
+    EXPECT_EQ(got, want) << what;
+    return;
+  }
+  const double allowed = bound(std::abs(want) < 1e-12 * scale ? 0 : want, rtol, scale);
+  EXPECT_LE(std::abs(got - want), allowed) << what << ": " << got << " instead of " << want;
+}
+
+/// expect_number for a field of a case: nothing when the pack does not ask for it, a failure when it does and
+/// there is no value. rtol is the case's own unless given.
+inline void expect_field(const nlohmann::json& c, const std::string& field, std::optional<double> got,
+                         double scale = 1, std::optional<double> rtol = {}) {
+  if (!asks(c.at("expect"), field)) return;
+  const std::string what = c.at("id").get<std::string>() + ": " + field;
+  if (!got) {
+    ADD_FAILURE() << what << ": no value";
+    return;
+  }
+  expect_number(what, *got, c.at("expect").at(field), rtol.value_or(c.at("rtol").get<double>()), scale);
+}
+
+/// A case that has no answer must be refused with a reason.
+template <class R>
+void expect_refused(const nlohmann::json& c, const R& result) {
+  EXPECT_FALSE(result) << c.at("id") << ": a number where there is none";
+  if (!result) {
+    EXPECT_FALSE(result.reason().empty()) << c.at("id");
+  }
+}
+
+inline bool is_undefined(const nlohmann::json& c) { return c.at("expect").at("status") == "undefined"; }
 
 }  // namespace oracle

@@ -1,0 +1,55 @@
+#pragma once
+/// Equivalence and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
+/// values, refusals and errors as in t_test.hpp.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Differences inside (low, high) count as none, in the data's unit. std::invalid_argument unless low < high,
+/// both finite.
+struct Margins {
+  double low = -0.5, high = 0.5;
+};
+
+/// Two one-sided tests: `t_lower` against "estimate <= low", `t_upper` against "estimate >= high".
+struct Equivalence {
+  double estimate = 0, stderr_estimate = 0, df = 0;
+  double t_lower = 0, p_lower = 0;
+  double t_upper = 0, p_upper = 0;
+  double p = 0;  ///< the larger of the two: equivalence is shown when p < alpha
+  std::array<double, 2>
+      ci{};           ///< of the estimate, confidence 1 - 2 alpha: equivalence when inside the margins
+  std::size_t n = 0;  ///< values, pairs, or both groups together
+  std::size_t n_missing = 0;
+};
+
+/// Mean of x - reference. alpha in (0, 1/2).
+Result<Equivalence> equivalence_one(std::span<const double> x, double reference, Margins margins,
+                                    double alpha = 0.05);
+Result<Equivalence> equivalence_paired(std::span<const double> x, std::span<const double> y, Margins margins,
+                                       double alpha = 0.05);
+Result<Equivalence> equivalence_independent(std::span<const double> x, std::span<const double> y,
+                                            Margins margins, double alpha = 0.05);
+Result<Equivalence> equivalence_welch(std::span<const double> x, std::span<const double> y, Margins margins,
+                                      double alpha = 0.05);
+
+/// One-sided test that x is not worse than y by `margin` > 0 or more, pairs.
+struct NonInferiority {
+  double estimate = 0, stderr_estimate = 0, df = 0;  ///< mean(x) - mean(y)
+  double t = 0, p = 0;                               ///< against "worse by the margin or more"
+  double bound = 0;  ///< one-sided 1 - alpha limit of the estimate on its bad side
+  std::size_t n = 0, n_missing = 0;
+};
+
+enum class Better { Higher, Lower };
+
+/// std::invalid_argument unless margin > 0.
+Result<NonInferiority> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
+                                              double margin, Better better, double alpha = 0.05);
+
+}  // namespace stats

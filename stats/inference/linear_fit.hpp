@@ -1,0 +1,44 @@
+#pragma once
+/// Ordinary least squares and one-way analysis of variance.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Empty fields need a degree of freedom more than the data have.
+struct LinearFit {
+  std::vector<double> coefficients;     ///< of the columns in their order, the intercept (if any) first
+  std::vector<double> standard_errors;  ///< empty without a degree of freedom
+  std::size_t n = 0, n_missing = 0;
+  double rss = 0;
+  double df = 0;                      ///< n - number of coefficients
+  std::optional<double> residual_sd;  ///< sqrt(rss / df)
+  std::optional<double> r2;  ///< about the mean with an intercept, about zero without; empty if y is constant
+  std::optional<double> f, f_p;  ///< all slopes zero
+};
+
+/// y on columns of equal length. Householder QR with scaled columns in double-double, so collinear data
+/// (Longley, Wampler) keep their digits. A row with a NaN is missing. std::invalid_argument when lengths
+/// differ. Refused: fewer rows than coefficients, an infinite value, columns that depend on each other.
+Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
+                             bool intercept = true);
+/// y on x, x^2 ... x^degree, the powers exact to double-double.
+Result<LinearFit> fit_polynomial(std::span<const double> x, std::span<const double> y, std::size_t degree);
+
+struct OneWayAnova {
+  std::size_t n = 0, n_missing = 0;
+  double df_between = 0, df_within = 0;
+  double ss_between = 0, ss_within = 0;
+  double f = 0, p = 0;
+  double eta_squared = 0;  ///< ss_between / total
+};
+
+/// Refused: fewer than two groups with values, no degree of freedom within, all values within groups equal.
+Result<OneWayAnova> anova_one_way(const std::vector<std::vector<double>>& groups);
+
+}  // namespace stats

@@ -1,0 +1,21 @@
+#pragma once
+/// Shapiro-Wilk test of normality.
+
+#include <cstddef>
+#include <span>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct ShapiroWilk {
+  double w = 0;  ///< in (0, 1]; 1 is a straight normal plot
+  double p = 0;
+  std::size_t n = 0, n_missing = 0;
+};
+
+/// W with the weights and the p-value of Royston (1995, AS R94). NaN = missing. Refused: fewer than 3 or more
+/// than 5000 values (the approximation ends there), all values equal, an infinite value.
+Result<ShapiroWilk> shapiro_wilk(std::span<const double> values);
+
+}  // namespace stats

@@ -1,0 +1,81 @@
+#pragma once
+/// Student's and Welch's t-tests with effect sizes.
+///
+/// NaN = missing: a pair needs both sides; independent groups drop their own. Means and variances are exact
+/// to double-double, so t depends only on the doubles given, whatever their offset or scale. Refused: too few
+/// values, an infinite value, and data that are constant but for rounding (standard error below 10 eps of the
+/// largest mean, as R's t.test does). std::invalid_argument: pairs of different length, confidence outside
+/// (0, 1), null value not finite.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "stats/inference/alternative.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct TTestOptions {
+  Alternative alternative = Alternative::TwoSided;
+  double confidence = 0.95;  ///< of `ci` and of the interval of the effect size
+  double null_value = 0;     ///< mean (one sample) or difference of means under the null hypothesis
+};
+
+/// What all t-tests have.
+struct TTest {
+  double estimate = 0;  ///< mean, or mean(x) - mean(y), in the data's unit
+  double stderr_estimate = 0;
+  double t = 0;   ///< (estimate - null_value) / stderr_estimate
+  double df = 0;  ///< not whole for Welch
+  double p = 0;
+  std::array<double, 2> ci{};  ///< of `estimate`; one end infinite for a one-sided alternative
+  std::size_t n_missing = 0;   ///< values, or pairs, left out
+};
+
+struct OneSampleTTest : TTest {
+  std::size_t n = 0;
+  double mean = 0, sd = 0;
+  double cohen_d = 0;                  ///< (mean - null_value) / sd
+  std::array<double, 2> cohen_d_ci{};  ///< by the noncentral t; always two-sided
+};
+
+/// Standardised paired differences after Lakens (2013); their null value is the test's.
+struct PairedTTest : TTest {
+  std::size_t n = 0;  ///< pairs
+  double mean_x = 0, mean_y = 0, sd_x = 0, sd_y = 0, sd_difference = 0;
+  std::optional<double> r;                            ///< correlation; empty when one side is constant
+  double cohen_dz = 0;                                ///< difference / sd of the differences
+  std::optional<double> hedges_gz;                    ///< dz times Hedges' factor; empty with two pairs
+  std::optional<double> cohen_dav;                    ///< difference / root of the mean variance
+  std::optional<double> cohen_drm;                    ///< dz sqrt(2 (1 - r)); empty without r
+  std::array<double, 2> cohen_dz_ci{};                ///< by the noncentral t; always two-sided
+  std::optional<std::array<double, 2>> hedges_gz_ci;  ///< cohen_dz_ci times Hedges' factor
+};
+
+struct IndependentTTest : TTest {
+  std::size_t n_x = 0, n_y = 0;
+  double mean_x = 0, mean_y = 0;
+  std::optional<double> sd_x, sd_y;  ///< empty for a group of one
+  double sd_pooled = 0;
+  double cohen_ds = 0;                  ///< difference / pooled sd (zero of both groups is refused)
+  std::optional<double> hedges_gs;      ///< ds times Hedges' factor; empty with one degree of freedom
+  std::optional<double> glass_delta;    ///< difference / sd of y; empty when y is constant
+  std::array<double, 2> cohen_ds_ci{};  ///< by the noncentral t; always two-sided
+};
+
+/// Needs two values.
+Result<OneSampleTTest> t_test_one(std::span<const double> x, const TTestOptions& options = {});
+/// Needs two pairs.
+Result<PairedTTest> t_test_paired(std::span<const double> x, std::span<const double> y,
+                                  const TTestOptions& options = {});
+/// Equal variances (Student). Needs one value in each group and three in all.
+Result<IndependentTTest> t_test_independent(std::span<const double> x, std::span<const double> y,
+                                            const TTestOptions& options = {});
+/// Variances of their own (Welch 1947, Satterthwaite's df). Needs two values in each group. The effect sizes
+/// are those of the pooled test.
+Result<IndependentTTest> t_test_welch(std::span<const double> x, std::span<const double> y,
+                                      const TTestOptions& options = {});
+
+}  // namespace stats

@@ -1,0 +1,61 @@
+#pragma once
+/// Wilcoxon's signed-rank test and the test of Mann and Whitney. NaN = missing: dropped and counted.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// Exact p-values condition on the midranks found, so they hold with ties as well; without ties they are the
+/// classical ones. They are left out beyond n = 1000, where the normal ones serve.
+struct SignedRank {
+  std::size_t n = 0, n_nonzero = 0, n_missing = 0;
+  double w_plus = 0, w_minus = 0;  ///< sums of midranks of |d|, zeros dropped (Wilcoxon 1945)
+  bool has_ties = false;           ///< among the |d| that are not zero
+  double rank_biserial = 0;        ///< (w_plus - w_minus) / (w_plus + w_minus)
+  std::optional<double> p_exact, p_exact_less, p_exact_greater;  ///< two-sided: twice the smaller, at most 1
+  double p_normal = 0;              ///< two-sided, tie-corrected, with continuity correction
+  double p_normal_uncorrected = 0;  ///< without continuity correction
+  /// What R's wilcox.test takes: exact below 50 values without ties and zeros, otherwise p_normal.
+  double p_default = 0;
+  bool default_is_exact = false;
+  /// Zeros ranked with the others, their ranks then dropped (Pratt 1959).
+  double pratt_w_plus = 0, pratt_z = 0, pratt_p_normal = 0;
+  std::optional<double> pratt_p_exact;
+  double hodges_lehmann = 0;  ///< median of all Walsh averages (d_i + d_j) / 2, i <= j, zeros included
+  /// Order statistics of the Walsh averages by the exact distribution, at least the confidence asked for, or
+  /// all of them when n is too small for it; empty with ties or zeros, and beyond n = 1000.
+  std::optional<std::array<double, 2>> hodges_lehmann_ci;
+};
+
+/// Differences, against a median of zero. Values closer than `resolution` to zero or to each other count as
+/// equal; 0 takes the doubles as they are. std::invalid_argument unless confidence lies in (0, 1) and
+/// resolution >= 0. Refused: no values, an infinite value, no difference that is not zero.
+Result<SignedRank> signed_rank(std::span<const double> differences, double confidence = 0.95,
+                               double resolution = 0);
+/// Pairs x - y (std::invalid_argument unless of equal length). The resolution is 8 eps of the largest value:
+/// averages of ratings that differ in their last bits only are ties.
+Result<SignedRank> signed_rank(std::span<const double> x, std::span<const double> y,
+                               double confidence = 0.95);
+
+struct MannWhitney {
+  std::size_t n_x = 0, n_y = 0, n_missing = 0;
+  double u = 0;                           ///< pairs in which x is the larger, ties counting one half
+  double probability_of_superiority = 0;  ///< u / (n_x n_y), Vargha and Delaney's A
+  double rank_biserial = 0;               ///< 2 A - 1
+  bool has_ties = false;
+  std::optional<double> p_exact;  ///< two-sided, conditional on the midranks; empty beyond 1e9 steps of work
+  std::optional<double> p_exact_less, p_exact_greater;
+  std::optional<double> p_normal;  ///< with continuity correction; empty when all values are equal
+  std::optional<double> p_normal_uncorrected;  ///< without
+  double hodges_lehmann = 0;                   ///< median of all x_i - y_j
+};
+
+/// Refused: a group without values, an infinite value.
+Result<MannWhitney> mann_whitney(std::span<const double> x, std::span<const double> y);
+
+}  // namespace stats
