@@ -1,5 +1,5 @@
 #pragma once
-/// Equivalence and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
+/// EquivalenceTest and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
 /// values, refusals and errors as in t_test.hpp.
 
 #include <array>
@@ -17,7 +17,7 @@ struct Margins {
 };
 
 /// Two one-sided tests: `t_lower` against "estimate <= low", `t_upper` against "estimate >= high".
-struct Equivalence {
+struct EquivalenceTest {
   double estimate = 0, stderr_estimate = 0, df = 0;
   double t_lower = 0, p_lower = 0;
   double t_upper = 0, p_upper = 0;
@@ -29,17 +29,17 @@ struct Equivalence {
 };
 
 /// Mean of x - reference. alpha in (0, 1/2).
-Result<Equivalence> equivalence_one(std::span<const double> x, double reference, Margins margins,
-                                    double alpha = 0.05);
-Result<Equivalence> equivalence_paired(std::span<const double> x, std::span<const double> y, Margins margins,
-                                       double alpha = 0.05);
-Result<Equivalence> equivalence_independent(std::span<const double> x, std::span<const double> y,
-                                            Margins margins, double alpha = 0.05);
-Result<Equivalence> equivalence_welch(std::span<const double> x, std::span<const double> y, Margins margins,
-                                      double alpha = 0.05);
+Result<EquivalenceTest> equivalence_one(std::span<const double> x, double reference, Margins margins,
+                                        double alpha = 0.05);
+Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
+                                           Margins margins, double alpha = 0.05);
+Result<EquivalenceTest> equivalence_independent(std::span<const double> x, std::span<const double> y,
+                                                Margins margins, double alpha = 0.05);
+Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<const double> y,
+                                          Margins margins, double alpha = 0.05);
 
 /// One-sided test that x is not worse than y by `margin` > 0 or more, pairs.
-struct NonInferiority {
+struct NonInferiorityTest {
   double estimate = 0, stderr_estimate = 0, df = 0;  ///< mean(x) - mean(y)
   double t = 0, p = 0;                               ///< against "worse by the margin or more"
   double bound = 0;  ///< one-sided 1 - alpha limit of the estimate on its bad side
@@ -49,7 +49,7 @@ struct NonInferiority {
 enum class Better { Higher, Lower };
 
 /// std::invalid_argument unless margin > 0.
-Result<NonInferiority> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
-                                              double margin, Better better, double alpha = 0.05);
+Result<NonInferiorityTest> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
+                                                  double margin, Better better, double alpha = 0.05);
 
 }  // namespace stats
