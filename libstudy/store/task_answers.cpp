@@ -1,0 +1,216 @@
+#include "libstudy/store/task_answers.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "libstudy/protocol/protocol.hpp"
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/names.hpp"
+
+namespace study {
+
+using sqlite::Connection;
+using sqlite::Statement;
+
+namespace {
+
+constexpr const char* sessions_sql =
+    "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
+    "display FROM session WHERE protocol_id = ? ORDER BY participant, visit";
+
+// The last showing answered, or without an answer the last one played; not one that was set aside.
+constexpr const char* trials_sql =
+    "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, "
+    "coalesce((SELECT max(r.attempt) FROM response r WHERE r.unit_id = u.unit_id AND r.attempt > "
+    "t.set_aside), "
+    "(SELECT max(l.attempt) FROM presentation l WHERE l.trial_id = t.trial_id AND l.state = 'played' "
+    "AND l.attempt > t.set_aside), 0) "
+    "FROM trial t JOIN unit u USING (trial_id) WHERE t.session_id = ? ORDER BY t.position";
+
+constexpr const char* showing_sql =
+    "SELECT verdict, grade, reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames "
+    "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
+
+constexpr const char* answers_sql =
+    "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block "
+    "JOIN question q ON q.question_id = k.question_id AND q.kind IN ('scale', 'choice') AND q.personal = 0 "
+    "LEFT JOIN response r ON r.unit_id = u.unit_id AND r.question_id = q.question_id AND r.attempt = ?2 "
+    "WHERE u.unit_id = ?1 AND k.protocol_id = ?3 ORDER BY k.place";
+
+constexpr const char* catches_sql =
+    "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block AND k.protocol_id = ?2 "
+    "JOIN question q ON q.question_id = k.question_id "
+    "LEFT JOIN response r ON r.unit_id = u.unit_id AND r.question_id = q.question_id "
+    "WHERE u.session_id = ?1 AND u.kind = 'catch' ORDER BY u.position, k.place";
+
+void add_once(std::vector<std::string>& list, const std::string& item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+/// Reads the sessions of one protocol.
+class Reader {
+ public:
+  Reader(Connection& database, std::int64_t protocol_id, const Protocol& protocol)
+      : protocol_id_(protocol_id),
+        protocol_(protocol),
+        session_(database, sessions_sql),
+        trial_(database, trials_sql),
+        showing_(database, showing_sql),
+        answer_(database, answers_sql),
+        catch_(database, catches_sql) {}
+
+  std::vector<TaskSession> sessions() {
+    std::vector<TaskSession> out;
+    session_.bind(0, protocol_id_);
+    while (session_.step()) {
+      TaskSession session{session_.text(1),
+                          static_cast<int>(session_.integer(2)),
+                          session_.text(3),
+                          session_.integer(4) != 0 || protocol_.test_data,
+                          session_.text(5),
+                          session_.text(6),
+                          session_.text(7),
+                          session_.text(8),
+                          {},
+                          {}};
+      session.trials = trials(session_.integer(0));
+      session.catches = catches(session_.integer(0));
+      out.push_back(std::move(session));
+    }
+    return out;
+  }
+
+ private:
+  std::vector<TaskTrial> trials(std::int64_t session) {
+    std::vector<TaskTrial> out;
+    trial_.bind(0, session);
+    while (trial_.step()) {
+      const std::int64_t attempt = trial_.integer(7);
+      TaskTrial trial;
+      trial.position = static_cast<int>(trial_.integer(2));
+      trial.kind = trial_.text(3);
+      trial.first = showing(trial_.integer(0), attempt, 0, trial_.integer(4));
+      if (!trial_.is_null(5)) trial.second = showing(trial_.integer(0), attempt, 1, trial_.integer(5));
+      if (!trial_.is_null(6)) trial.excluded = trial_.text(6);
+      trial.answers = answers(trial_.integer(1), attempt);
+      if (trial.kind == "repeat") trial.repeats = original(out, trial);
+      out.push_back(std::move(trial));
+    }
+    return out;
+  }
+
+  TaskShowing showing(std::int64_t trial, std::int64_t attempt, int interval, std::int64_t cell) {
+    TaskShowing out;
+    const Cell& planned = protocol_.design.cells.at(static_cast<std::size_t>(cell));
+    out.what = planned.stimulus;
+    out.nominal = planned.setting;
+    showing_.reset();
+    showing_.bind(0, trial).bind(1, attempt).bind(2, interval);
+    out.played = showing_.step();
+    if (!out.played) return out;
+    if (!showing_.is_null(0)) out.verdict = verdict_of(showing_.text(0));
+    out.grade = grade_of(showing_.text(1));
+    out.reason = showing_.text(2);
+    out.realised = {static_cast<std::size_t>(showing_.integer(3)), showing_.real(4), showing_.real(5),
+                    showing_.real(6)};
+    out.longest_ms = showing_.real(7);
+    out.late = showing_.integer(8);
+    return out;
+  }
+
+  std::vector<TaskAnswer> answers(std::int64_t unit, std::int64_t attempt) {
+    std::vector<TaskAnswer> out;
+    answer_.bind(0, unit).bind(1, attempt).bind(2, protocol_id_);
+    while (answer_.step()) {
+      out.push_back({answer_.text(0), {}});
+      if (!answer_.is_null(1)) out.back().score = static_cast<int>(answer_.integer(1));
+    }
+    return out;
+  }
+
+  std::vector<CatchAnswer> catches(std::int64_t session) {
+    std::vector<CatchAnswer> out;
+    catch_.bind(0, session).bind(1, protocol_id_);
+    while (catch_.step()) {
+      const std::optional<int> expected = expected_of(catch_.text(0));
+      if (!expected) continue;
+      out.push_back({catch_.text(0), *expected, {}});
+      if (!catch_.is_null(1)) out.back().score = static_cast<int>(catch_.integer(1));
+    }
+    return out;
+  }
+
+  std::optional<int> expected_of(const std::string& code) const {
+    for (const auto& [block, question] : all_questions(protocol_)) {
+      if (question->id == code) return question->expect;
+    }
+    return {};
+  }
+
+  static std::optional<int> original(const std::vector<TaskTrial>& before, const TaskTrial& repeat) {
+    for (const TaskTrial& trial : before) {
+      const bool same_second = trial.second.has_value() == repeat.second.has_value() &&
+                               (!trial.second || trial.second->what == repeat.second->what);
+      if (trial.kind == "stimulus" && trial.first.what == repeat.first.what && same_second)
+        return trial.position;
+    }
+    return {};
+  }
+
+  std::int64_t protocol_id_;
+  const Protocol& protocol_;
+  Statement session_, trial_, showing_, answer_, catch_;
+};
+
+/// Questions that the steps of its trials ask.
+std::vector<Question> trial_questions(const Protocol& protocol) {
+  std::vector<Question> out;
+  std::set<std::string> asked, known;
+  for (const Block& block : protocol.blocks) {
+    for (const TrialStep& step : block.steps) asked.insert(step.asks.begin(), step.asks.end());
+  }
+  for (const auto& [block, question] : all_questions(protocol)) {
+    const bool judged = question->kind == AnswerKind::Scale || question->kind == AnswerKind::Choice;
+    if (judged && asked.contains(question->id) && known.insert(question->id).second) out.push_back(*question);
+  }
+  return out;
+}
+
+TaskProtocol describe(const Protocol& protocol) {
+  TaskProtocol out;
+  out.name = protocol.name;
+  out.version = protocol.version;
+  out.sha256 = protocol.sha256;
+  out.pairs = protocol.design.pairs;
+  out.participants = protocol.participants;
+  out.questions = trial_questions(protocol);
+  for (const Cell& cell : protocol.design.cells) {
+    add_once(out.scenes, cell.stimulus.scene);
+    add_once(out.methods, cell.stimulus.method);
+    add_once(out.n_stars, cell.stimulus.n_star);
+  }
+  return out;
+}
+
+}  // namespace
+
+TaskStudy read_tasks(const std::filesystem::path& path) {
+  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+  TaskStudy study;
+  study.withdrawn = static_cast<int>(database->integer("SELECT count(*) FROM tombstone"));
+  // A protocol that shows several methods; a database of the first version knew none.
+  Statement row(*database,
+                "SELECT p.protocol_id, p.name, p.text, p.trial_seconds FROM protocol p WHERE "
+                "(SELECT count(DISTINCT c.method) FROM cell c WHERE c.protocol_id = p.protocol_id) > 1 "
+                "ORDER BY p.protocol_id");
+  while (row.step()) {
+    Protocol protocol = parse_protocol(row.text(2), path.string() + ", protocol " + row.text(1));
+    if (!row.is_null(3)) override_trial_seconds(protocol, row.real(3));
+    TaskProtocol out = describe(protocol);
+    out.sessions = Reader(*database, row.integer(0), protocol).sessions();
+    study.protocols.push_back(std::move(out));
+  }
+  return study;
+}
+
+}  // namespace study

@@ -1,0 +1,85 @@
+#pragma once
+/// The answers of Task 1 (single showings of methods) and Task 2 (pairs) as the analyses see them. Read-only:
+/// nothing in the database is changed.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/pacer.hpp"
+#include "libstudy/protocol/design.hpp"
+#include "libstudy/protocol/question.hpp"
+
+namespace study {
+
+/// One stimulus of a trial and how it was shown.
+struct TaskShowing {
+  StimulusSpec what;
+  FpsSetting nominal;              ///< moments 0: as fast as the method ran
+  bool played = false;             ///< what follows is known
+  std::optional<Verdict> verdict;  ///< empty without a schedule to judge by
+  TimingGrade grade = TimingGrade::CpuSubmit;
+  std::string reason;  ///< why it is not a pass
+  stats::FpsMoments realised;
+  double longest_ms = 0;
+  std::int64_t late = 0;  ///< frames
+};
+
+/// A question about a trial and its answer so far; choices count from the scale's lowest score.
+struct TaskAnswer {
+  std::string question;
+  std::optional<int> score;
+};
+
+struct TaskTrial {
+  int position = 0;   ///< 0-based order among the session's trials
+  std::string kind;   ///< "stimulus", "practice" or "repeat"
+  TaskShowing first;  ///< first or only one
+  std::optional<TaskShowing> second;
+  std::optional<std::string> excluded;  ///< the experimenter's reason
+  std::vector<TaskAnswer> answers;      ///< on scales and choices, in the order of the page
+  /// Of a repeat: position of the trial with the same stimuli in the same order.
+  std::optional<int> repeats;
+};
+
+/// A catch page and the answer that attention gives.
+struct CatchAnswer {
+  std::string question;
+  int expected = 0;
+  std::optional<int> score;
+};
+
+struct TaskSession {
+  std::string participant;  ///< code
+  int visit = 1;
+  std::string observer;  ///< simulated observer that answered; empty = a person
+  bool test_data = false;
+  std::string state;        ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::string gaze_source;  ///< "tracked", "mouse", "fixed" or "none"
+  std::string station, display;
+  std::vector<TaskTrial> trials;  ///< by position
+  std::vector<CatchAnswer> catches;
+};
+
+/// A protocol that shows methods, with all its sessions by participant and visit.
+struct TaskProtocol {
+  std::string name, version, sha256;
+  bool pairs = false;                                 ///< a trial shows two methods (Task 2)
+  int participants = 0;                               ///< planned
+  std::vector<std::string> scenes, methods, n_stars;  ///< in the order of the file
+  std::vector<Question> questions;                    ///< on scales and choices, asked about trials
+  std::vector<TaskSession> sessions;
+};
+
+struct TaskStudy {
+  std::vector<TaskProtocol> protocols;  ///< a pilot of frame rates is none of them
+  int withdrawn = 0;                    ///< participants who withdrew, from whatever protocol
+};
+
+/// Of several showings of a trial the last that was answered counts, unless it was set aside. base::Error as
+/// read_ratings().
+TaskStudy read_tasks(const std::filesystem::path& database);
+
+}  // namespace study
