@@ -1,0 +1,83 @@
+#pragma once
+/// H1 to H6 of the paper (5.3.1) as confirmatory tests: each a family of its own with Holm within it. What
+/// the paper's own, uncorrected procedure says of the same data stands beside.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/analysis/plan.hpp"
+#include "stats/analysis/score_table.hpp"
+#include "stats/analysis/task2.hpp"
+
+namespace stats {
+
+enum class HypothesisStatus {
+  Supported,        ///< every test of the family holds
+  PartlySupported,  ///< some do
+  NotSupported,     ///< none does
+  NotTestable,      ///< the study cannot tell, whatever the figures are
+  NoData,           ///< no test could be computed
+};
+/// "supported", "partly supported", ...
+const char* status_name(HypothesisStatus status);
+
+enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };
+/// "superiority", "equivalence", "non-inferiority", "preference".
+const char* kind_name(HypothesisKind kind);
+
+struct HypothesisTest {
+  std::string label;
+  std::string score, n_star;       ///< of Task 1
+  std::string a, b;                ///< methods
+  std::size_t n = 0;               ///< participants with both; answers
+  std::optional<int> k;            ///< a chosen (Task 2)
+  std::optional<double> estimate;  ///< mean difference a - b, or share of a
+  std::optional<std::array<double, 2>> ci;
+  double ci_confidence = 0.95;
+  std::optional<double> margin;
+  std::optional<double> p, p_holm;
+  bool holds = false;             ///< p_holm < alpha in the direction claimed
+  bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)
+  std::string reason;             ///< why there is no p; it then counts as 1 in the family
+  std::optional<double> paper_p;  ///< two-sided, uncorrected
+  bool paper_holds = false;
+  /// Of a two-sided test of preference: what Holm makes of p over the five pairs of the paper's Fig. 10 and
+  /// over all ten. The choice of the family decides, so all are shown.
+  std::optional<double> p_holm_of_five, p_holm_of_ten;
+};
+
+struct Hypothesis {
+  std::string id;     ///< "H1"
+  std::string title;  ///< the paper's words
+  int task = 1;
+  HypothesisKind kind = HypothesisKind::Superiority;
+  double alpha = 0.05;
+  std::string rule;
+  HypothesisStatus status = HypothesisStatus::NoData;
+  HypothesisStatus status_if_testable = HypothesisStatus::NoData;
+  std::string status_text;  ///< one sentence
+  int confirmed = 0;        ///< tests that hold
+  std::vector<HypothesisTest> tests;
+  std::string paper_rule, paper_text;
+  bool paper_supported = false;
+  std::string paper_published;  ///< what the paper said of its own data
+};
+
+/// H1 to H3. `untestable`: why H1 cannot be tested, such as gaze that was not tracked; empty: it can.
+/// Superiority is tested two-sided, equivalence by two one-sided tests, non-inferiority one-sided, all paired
+/// over participants and within each n_*.
+std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
+                                         const AnalysisPlan& plan, const std::string& untestable);
+
+/// H4 to H6. `untestable`: why H5 cannot be tested. H4 and H5 two-sided, H6 one-sided.
+std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
+                                         const std::vector<std::string>& methods, const AnalysisPlan& plan,
+                                         const std::string& untestable);
+
+/// The pairs in the paper's Fig. 10.
+bool in_paper_figure_10(const std::string& a, const std::string& b);
+
+}  // namespace stats

@@ -1,0 +1,48 @@
+#pragma once
+/// What is fixed before the data are seen: margins, level, exclusion rules, seed. Preregistration freezes it.
+
+#include <cstdint>
+#include <optional>
+
+namespace stats {
+
+/// Trials left out by timing verdict, the worse of two for a pair. Degraded trials stay by default: what was
+/// really shown is known and lies near what was wished.
+enum class TimingRule { None, Fail, Degraded };
+
+/// A participant with several answers to one pair breaks the binomial test's independence (pooled blocks: 9.6
+/// % false alarms at 5 %).
+enum class RepeatedPairs { Refuse, Warn };
+
+struct ExclusionRules {
+  TimingRule timing = TimingRule::Fail;
+  /// Least share of catch pages answered as attention would, in [0, 1]; none: not asked for. Concerns those
+  /// who saw catch pages.
+  std::optional<double> min_catch_correct = 0.5;
+  /// Largest mean |difference| between a repeated showing and its original, points of the main rating; none:
+  /// no such rule. On seven points random answers differ by 2.3 on average, so 3 leaves out those who do
+  /// worse.
+  std::optional<double> max_repeat_difference = 3.0;
+  /// Least share of repeated pairs answered alike, in [0, 1]; none by default, since one repeat tells
+  /// nothing.
+  std::optional<double> min_repeat_agreement;
+  /// One and the same answer to every trial of a visit (main rating, or interval chosen), given this many
+  /// answers or more; 0: no such rule. Eight equal choices of a careful observer without preference: 2 / 2^8
+  /// = 0.8 %.
+  int straight_lining_answers = 8;
+  /// Least share of a visit's planned trials that must be answered, in [0, 1].
+  double min_answered = 0;
+};
+
+struct AnalysisPlan {
+  double alpha = 0.05;            ///< of each family, in (0, 0.5)
+  double confidence = 0.95;       ///< of intervals, in (0, 1)
+  double margin_realism = 0.5;    ///< points on 1 to 7, > 0
+  double margin_sickness = 0.25;  ///< points on 0 to 3, > 0
+  ExclusionRules exclusions;
+  RepeatedPairs repeated_pairs = RepeatedPairs::Refuse;
+  int resamples = 10000;  ///< of BCa intervals
+  std::uint64_t seed = 1;
+};
+
+}  // namespace stats

@@ -1,0 +1,73 @@
+#pragma once
+/// Task 1: cells, all pairs of methods within each n_*, omnibus tests.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stats/analysis/plan.hpp"
+#include "stats/analysis/score_table.hpp"
+#include "stats/inference/bootstrap_interval.hpp"
+#include "stats/inference/describe.hpp"
+#include "stats/inference/equivalence.hpp"
+#include "stats/inference/friedman.hpp"
+#include "stats/inference/normality.hpp"
+#include "stats/inference/repeated_anova.hpp"
+#include "stats/inference/t_test.hpp"
+#include "stats/inference/wilcoxon.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// One box of the box plots (paper, Fig. 9). Indices as in the table.
+struct MethodCell {
+  int n_star = 0, method = 0;
+  std::vector<double> values;    ///< participants' means, without missing ones
+  std::vector<double> outliers;  ///< beyond 1.5 interquartile ranges: drawn, never dropped
+  Result<Description> summary = Refusal{"not computed"};
+  Result<BoxPlot> box = Refusal{"not computed"};
+  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< for its interval
+  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};
+  Result<ShapiroWilk> normality = Refusal{"not computed"};
+};
+
+/// Two methods at one n_*, difference a - b, participants with both.
+struct MethodComparison {
+  int n_star = 0, a = 0, b = 0;
+  std::size_t n = 0;                     ///< participants with both
+  std::size_t n_missing = 0;             ///< participants with only one
+  std::optional<double> mean_a, mean_b;  ///< of participants with both
+  Result<PairedTTest> t = Refusal{"not computed"};
+  Result<IndependentTTest> welch = Refusal{"not computed"};  ///< as if the groups were independent
+  Result<SignedRank> wilcoxon = Refusal{"not computed"};
+  Result<EquivalenceTest> equivalence = Refusal{"not computed"};
+  Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< of the differences
+  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean difference
+  /// Within the pairs of this score and n_*; a refused test counts as not significant.
+  std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh;
+};
+
+struct Omnibus {
+  int n_star = 0;
+  int n = 0;             ///< participants with all methods
+  int n_incomplete = 0;  ///< participants without some
+  Result<Friedman> friedman = Refusal{"not computed"};
+  Result<RepeatedAnova> anova = Refusal{"not computed"};
+};
+
+struct ScoreAnalysis {
+  std::vector<MethodCell> cells;              ///< n_* by method
+  std::vector<MethodComparison> comparisons;  ///< n_* by pair, a before b
+  std::vector<Omnibus> omnibus;
+};
+
+ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan);
+
+/// Values of the participants with both, in pairs.
+struct PairedValues {
+  std::vector<double> x, y;
+  std::vector<double> differences() const;
+};
+PairedValues complete_pairs(std::span<const double> x, std::span<const double> y);
+
+}  // namespace stats

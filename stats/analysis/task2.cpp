@@ -1,0 +1,117 @@
+#include "stats/analysis/task2.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "stats/inference/adjust.hpp"
+
+namespace stats {
+
+namespace {
+
+PairPreference count_pair(std::span<const PairChoice> choices, int a, int b) {
+  PairPreference out;
+  out.a = a;
+  out.b = b;
+  std::map<int, int> per_participant;
+  for (const PairChoice& choice : choices) {
+    const bool forwards = choice.first == a && choice.second == b;
+    if (!forwards && !(choice.first == b && choice.second == a)) continue;
+    ++out.n;
+    out.a_first += forwards ? 1 : 0;
+    out.first_chosen += choice.first_chosen ? 1 : 0;
+    out.k += choice.first_chosen == forwards ? 1 : 0;
+    out.max_per_participant = std::max(out.max_per_participant, ++per_participant[choice.participant]);
+  }
+  out.participants = static_cast<int>(per_participant.size());
+  return out;
+}
+
+void test_pair(PairPreference& pair, const AnalysisPlan& plan) {
+  pair.test = binomial_test(pair.k, pair.n, 0.5, Alternative::TwoSided, plan.confidence);
+  if (pair.max_per_participant <= 1) return;
+  pair.warning =
+      "one participant answered this pair " + std::to_string(pair.max_per_participant) +
+      " times: answers of one person are not independent, and the binomial test then rejects too often";
+  if (plan.repeated_pairs == RepeatedPairs::Refuse) pair.test = Refusal{pair.warning};
+}
+
+void correct(std::vector<PairPreference>& pairs) {
+  std::vector<double> p;
+  for (const auto& pair : pairs)
+    p.push_back(pair.test ? pair.test->p : std::numeric_limits<double>::quiet_NaN());
+  const auto holm = adjust(p, Adjustment::Holm, p.size());
+  const auto bh = adjust(p, Adjustment::BenjaminiHochberg, p.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (holm && pairs[i].test) pairs[i].p_holm = holm->p[i];
+    if (bh && pairs[i].test) pairs[i].p_bh = bh->p[i];
+  }
+}
+
+IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, const AnalysisPlan& plan) {
+  IntervalBias out;
+  std::map<int, std::pair<int, int>> people;  // first chosen, answers
+  std::vector<Comparison> trials;
+  for (const PairChoice& choice : choices) {
+    auto& [first, answers] = people[choice.participant];
+    first += choice.first_chosen ? 1 : 0;
+    ++answers;
+    out.first_chosen += choice.first_chosen ? 1 : 0;
+    trials.push_back({choice.first, choice.second, choice.first_chosen, choice.position + 1.0});
+  }
+  out.n = static_cast<int>(choices.size());
+  out.test = binomial_test(out.first_chosen, out.n, 0.5, Alternative::TwoSided, plan.confidence);
+  std::vector<double> shares;
+  for (const auto& [person, counts] : people) shares.push_back(1.0 * counts.first / counts.second);
+  out.by_participant = t_test_one(shares, {Alternative::TwoSided, plan.confidence, 0.5});
+  out.model = order_bias(trials, methods, plan.confidence);
+  return out;
+}
+
+void count_triads(PreferenceAnalysis& out, std::span<const PairChoice> choices, int methods) {
+  std::map<int, std::vector<PairChoice>> people;
+  for (const PairChoice& choice : choices) people[choice.participant].push_back(choice);
+  std::vector<CircularTriads> complete;
+  for (const auto& [participant, own] : people) {
+    out.triads.push_back({participant, circular_triads(win_table(own, methods), methods)});
+    if (out.triads.back().triads) complete.push_back(*out.triads.back().triads);
+  }
+  out.group_triads = group_triads(complete);
+}
+
+}  // namespace
+
+std::vector<double> win_table(std::span<const PairChoice> choices, int methods) {
+  std::vector<double> wins(static_cast<std::size_t>(methods) * static_cast<std::size_t>(methods));
+  for (const PairChoice& choice : choices) {
+    if (std::min(choice.first, choice.second) < 0 || std::max(choice.first, choice.second) >= methods ||
+        choice.first == choice.second)
+      throw std::invalid_argument("a pair must show two different methods of the study");
+    const auto winner = static_cast<std::size_t>(choice.first_chosen ? choice.first : choice.second);
+    const auto loser = static_cast<std::size_t>(choice.first_chosen ? choice.second : choice.first);
+    ++wins[winner * static_cast<std::size_t>(methods) + loser];
+  }
+  return wins;
+}
+
+PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
+                                       const AnalysisPlan& plan) {
+  PreferenceAnalysis out;
+  const auto wins = win_table(choices, methods);
+  for (int a = 0; a < methods; ++a) {
+    for (int b = a + 1; b < methods; ++b) {
+      out.pairs.push_back(count_pair(choices, a, b));
+      test_pair(out.pairs.back(), plan);
+    }
+  }
+  correct(out.pairs);
+  out.interval = test_intervals(choices, methods, plan);
+  out.bradley_terry = bradley_terry(wins, methods, BradleyTerryMethod::Automatic, plan.confidence);
+  count_triads(out, choices, methods);
+  return out;
+}
+
+}  // namespace stats
