@@ -1,0 +1,154 @@
+#include "stats/minimise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "stats/cholesky.hpp"
+
+namespace stats {
+
+namespace {
+
+using Vector = std::vector<double>;
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+double largest(std::span<const double> a) {
+  double out = 0;
+  for (const double v : a) out = std::max(out, std::abs(v));
+  return out;
+}
+
+struct Point {
+  Vector x, gradient;
+  double value = 0;
+};
+
+class Descent {
+ public:
+  Descent(const Objective& objective, Vector start) : f_(objective), n_(start.size()) {
+    at_.x = std::move(start);
+    at_.gradient.resize(n_);
+    at_.value = f_(at_.x, at_.gradient);
+    if (!std::isfinite(at_.value)) throw std::invalid_argument("the start lies outside the domain");
+  }
+
+  void bfgs();
+  Minimum newton();
+
+ private:
+  /// The first of the steps 1, 1/2, 1/4 ... along `direction` that lowers the value enough.
+  std::optional<Point> step(const Vector& direction, double slope, double decrease) const;
+  Vector hessian() const;
+  void update_inverse(Vector& inverse, const Vector& s, const Vector& y) const;
+
+  const Objective& f_;
+  std::size_t n_;
+  Point at_;
+};
+
+std::optional<Point> Descent::step(const Vector& direction, double slope, double decrease) const {
+  Point next;
+  next.x.resize(n_);
+  next.gradient.resize(n_);
+  for (double length = 1; length > 1e-12; length /= 2) {
+    for (std::size_t i = 0; i < n_; ++i) next.x[i] = at_.x[i] + length * direction[i];
+    next.value = f_(next.x, next.gradient);
+    if (next.value <= at_.value + decrease * length * slope) return next;
+  }
+  return std::nullopt;
+}
+
+/// Eq. 6.17 of Nocedal and Wright, left out where the curvature is not positive.
+void Descent::update_inverse(Vector& inverse, const Vector& s, const Vector& y) const {
+  const double curvature = dot(s, y);
+  if (!(curvature > 1e-10 * std::sqrt(dot(s, s) * dot(y, y)))) return;
+  Vector hy(n_);
+  for (std::size_t i = 0; i < n_; ++i) hy[i] = dot({&inverse[i * n_], n_}, y);
+  const double scale = (1 + dot(y, hy) / curvature) / curvature;
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j < n_; ++j) {
+      inverse[i * n_ + j] += scale * s[i] * s[j] - (hy[i] * s[j] + s[i] * hy[j]) / curvature;
+    }
+  }
+}
+
+void Descent::bfgs() {
+  Vector inverse(n_ * n_), direction(n_), s(n_), y(n_);
+  const auto restart = [&] {
+    std::fill(inverse.begin(), inverse.end(), 0.0);
+    for (std::size_t i = 0; i < n_; ++i) inverse[i * n_ + i] = 1 / std::max(1.0, largest(at_.gradient));
+  };
+  restart();
+  for (int iteration = 0; iteration < 500; ++iteration) {
+    for (std::size_t i = 0; i < n_; ++i) direction[i] = -dot({&inverse[i * n_], n_}, at_.gradient);
+    double slope = dot(direction, at_.gradient);
+    if (!(slope < 0)) {
+      restart();
+      continue;
+    }
+    if (-slope < 1e-9 * (1 + 1e-3 * std::abs(at_.value))) return;
+    const auto next = step(direction, slope, 1e-4);
+    if (!next) return;
+    for (std::size_t i = 0; i < n_; ++i) {
+      s[i] = next->x[i] - at_.x[i];
+      y[i] = next->gradient[i] - at_.gradient[i];
+    }
+    at_ = *next;
+    update_inverse(inverse, s, y);
+  }
+}
+
+Vector Descent::hessian() const {
+  Vector out(n_ * n_), x = at_.x, above(n_), below(n_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double h = 1e-5 * std::max(1.0, std::abs(x[i]));
+    x[i] = at_.x[i] + h;
+    f_(x, above);
+    x[i] = at_.x[i] - h;
+    f_(x, below);
+    x[i] = at_.x[i];
+    for (std::size_t j = 0; j < n_; ++j) out[i * n_ + j] = (above[j] - below[j]) / (2 * h);
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      out[i * n_ + j] = out[j * n_ + i] = (out[i * n_ + j] + out[j * n_ + i]) / 2;
+    }
+  }
+  return out;
+}
+
+Minimum Descent::newton() {
+  Minimum out;
+  for (int iteration = 0; iteration < 12 && !out.converged; ++iteration) {
+    out.hessian = hessian();
+    const auto factor = Cholesky::of(out.hessian);
+    if (!factor) break;
+    Vector direction = factor->solve(at_.gradient);
+    for (double& v : direction) v = -v;
+    const double length = largest(direction);
+    out.converged = length <= 1e-6;
+    const auto next = step(direction, dot(direction, at_.gradient), 0);
+    if (next) at_ = *next;
+    if (!next) break;
+  }
+  out.x = at_.x;
+  out.value = at_.value;
+  return out;
+}
+
+}  // namespace
+
+Minimum minimise(const Objective& objective, std::vector<double> start) {
+  Descent descent(objective, std::move(start));
+  descent.bfgs();
+  return descent.newton();
+}
+
+}  // namespace stats

@@ -1,0 +1,70 @@
+#pragma once
+/// Cumulative-link (ordered) regression of ratings (McCullagh 1980): P(Y <= j) = F(theta_j - x beta), with
+/// or without a normal random effect of the participant.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/ordinal/link.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// One column of the design; NaN = missing.
+struct Predictor {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// Indicator columns of the groups but the reference, in ascending order of their numbers, named
+/// `name` + number. NaN groups are missing. A reference that no group has is std::invalid_argument.
+std::vector<Predictor> indicators(const std::string& name, std::span<const double> groups, double reference);
+
+struct OrdinalFit {
+  Link link = Link::Logit;
+  std::vector<double> levels;      ///< scores that occur, ascending; unused ones have no threshold
+  std::vector<double> thresholds;  ///< one fewer than levels, ascending
+  std::vector<double> beta;        ///< one for each predictor; larger = higher ratings
+  std::vector<double> covariance;  ///< of thresholds, then beta; row-major, from the observed information
+  double log_likelihood = 0;
+  int n = 0;          ///< rows used
+  int n_missing = 0;  ///< rows with a NaN, left out
+
+  /// Standard errors of thresholds, then beta.
+  std::vector<double> se() const;
+};
+
+/// Maximum likelihood by Newton's method on the concave log-likelihood. All columns have one length
+/// (std::invalid_argument). Refused: no rows; one score throughout; a predictor that is constant or a
+/// combination of the others; an infinite value; separation, which is named with its predictors: the ratings
+/// then fall apart so that the likelihood has no maximum (Albert and Anderson 1984).
+Result<OrdinalFit> fit_cumulative_link(std::span<const double> ratings, std::span<const Predictor> predictors,
+                                       Link link = Link::Logit);
+
+/// With location x beta + s_p, s_p ~ N(0, sd^2) drawn once for each participant.
+struct MixedOrdinalFit : OrdinalFit {
+  double sd_participant = 0;  ///< >= 0; 0 = the likelihood is largest without differences between people
+  int participants = 0;
+  int points = 1;  ///< nodes of the quadrature; 1 is Laplace's approximation
+};
+
+/// Maximum likelihood by adaptive Gauss-Hermite quadrature with `points` nodes over each participant's effect
+/// (Pinheiro and Bates 1995; 1 = Laplace), 1 to 101 (std::invalid_argument). Refused besides: fewer than two
+/// participants; one rating from each, which cannot tell sd_participant from the rating's own scatter; an
+/// sd_participant without bound.
+Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> ratings,
+                                                  std::span<const Predictor> predictors,
+                                                  std::span<const int> participants, Link link = Link::Logit,
+                                                  int points = 15);
+
+/// Likelihood-ratio test of nested fits of the same rows.
+struct LikelihoodRatio {
+  double chi2 = 0;  ///< 2 (log L full - log L reduced), at least 0
+  int df = 0;
+  double p = 1;
+};
+/// std::invalid_argument unless df >= 1.
+LikelihoodRatio likelihood_ratio(double log_likelihood_full, double log_likelihood_reduced, int df);
+
+}  // namespace stats

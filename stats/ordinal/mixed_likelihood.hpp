@@ -1,0 +1,46 @@
+#pragma once
+/// The marginal likelihood of ratings whose locations share a normal effect of the participant.
+
+#include <span>
+#include <vector>
+
+#include "stats/ordinal/link.hpp"
+
+namespace stats {
+
+/// Derivatives of the log-likelihood.
+struct MixedGradient {
+  std::vector<double> thresholds, location;  ///< by threshold; by row
+  double sd = 0;
+};
+
+/// Adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995, section 2.4) about each participant's mode,
+/// scaled by the curvature there; one node is Laplace's approximation. The gradient is that of the
+/// approximation itself: it follows the moving nodes.
+class MixedLikelihood {
+ public:
+  /// category in [0, levels), participant in [0, participants) for each row; points >= 1.
+  MixedLikelihood(std::span<const int> category, std::span<const int> participant, Link link, int points);
+
+  /// Log-likelihood and its gradient; -infinity where a rating has no probability or the thresholds do not
+  /// ascend, and the gradient is then void. Effects are sd u with u ~ N(0, 1); the likelihood is even in sd.
+  /// Not thread-safe: the modes found are the next call's start.
+  double evaluate(std::span<const double> thresholds, std::span<const double> location, double sd,
+                  MixedGradient& gradient);
+
+ private:
+  struct Group {
+    std::vector<std::size_t> rows;
+    double mode = 0;
+  };
+  struct Place;  ///< thresholds, locations and sd of one evaluation
+  double add_group(Group& group, const Place& place, MixedGradient& gradient);
+  bool find_mode(Group& group, const Place& place) const;
+
+  std::vector<int> category_;
+  std::vector<Group> groups_;
+  Link link_;
+  std::vector<double> nodes_, log_weights_;  ///< sqrt(2) z and log(w exp(z^2) / sqrt(pi))
+};
+
+}  // namespace stats
