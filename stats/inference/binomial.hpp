@@ -20,8 +20,8 @@ struct BinomialTest {
   /// 1e-7 of it), as Fisher's method has it, not the doubled tail. A p below the range of double is given as
   /// the smallest positive double, because it is not zero.
   double p = 0;
-  /// Mid-p: half of the observed point's own probability (of all equally likely ones, two-sided) is left out
-  /// (Lancaster 1961).
+  /// Mid-p: half of the observed point's own probability is left out; two-sided it is twice the smaller tail
+  /// (Lancaster 1961; Berry and Armitage 1995).
   double p_mid = 0;
   std::array<double, 2> clopper_pearson{};  ///< exact (Clopper and Pearson 1934)
   std::array<double, 2> wilson{};           ///< score interval (Wilson 1927)

@@ -20,6 +20,7 @@ struct BcaInterval {
   double z0 = 0;                          ///< bias correction
   std::array<double, 2> probabilities{};  ///< quantiles of the resamples that make the interval
   std::array<double, 2> ci{};             ///< linear between order statistics (type 7)
+  std::array<double, 2> ci_normal{};      ///< between order statistics on the normal scale, as R's boot.ci
 };
 
 struct BootstrapInterval {
@@ -29,13 +30,13 @@ struct BootstrapInterval {
   double estimate = 0;      ///< of the sample
   double mean = 0, se = 0;  ///< of the resamples (divisor N - 1)
   double acceleration = 0;  ///< from the jackknife
-  BcaInterval bca;          ///< the interval to report; ties count half, which is right for coarse statistics
+  BcaInterval bca{};        ///< the interval to report; ties count half, which is right for coarse statistics
   /// Only resamples strictly below the estimate count, as in R's boot. Empty when there are none, or only
   /// such.
-  std::optional<BcaInterval> bca_strict;
+  std::optional<BcaInterval> bca_strict{};
   std::array<double, 2> percentile{};        ///< type 7 quantiles
   std::array<double, 2> percentile_type6{};  ///< type 6 quantiles (p (N + 1))
-  std::array<double, 2> basic{};             ///< 2 estimate - percentile_type6, turned round
+  std::array<double, 2> basic{};             ///< 2 estimate - quantiles on the normal scale
 };
 
 /// Resamples the values (seeded; equal on every machine). The statistic must be defined for any sample of n

@@ -21,7 +21,7 @@ struct Friedman {
   double iman_davenport_f = 0;
   double df1 = 0, df2 = 0;
   double iman_davenport_p = 0;
-  std::vector<double> mean_ranks;  ///< of each condition, 1 = smallest value; ties share their mean rank
+  std::vector<double> mean_ranks{};  ///< of each condition, 1 = smallest value; ties share their mean rank
 };
 
 /// `rows`: participants by conditions, row after row, each of k values; NaN = missing.

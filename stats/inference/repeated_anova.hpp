@@ -19,12 +19,12 @@ struct RepeatedAnova {
   double p = 0;             ///< if the differences between conditions have equal variances (sphericity)
   double epsilon_gg = 0;    ///< Greenhouse and Geisser 1959, 1 / (k-1) to 1; 1 means sphericity
   /// Huynh and Feldt 1976, not capped: may exceed 1. Empty where its denominator is 0 (n = 2).
-  std::optional<double> epsilon_hf;
-  double p_gg = 0;              ///< with both df times epsilon_gg
-  std::optional<double> p_hf;   ///< with both df times min(1, epsilon_hf)
-  double partial_eta2 = 0;      ///< ss_conditions / (ss_conditions + ss_error)
-  double generalized_eta2 = 0;  ///< ss_conditions / total (Olejnik and Algina 2003)
-  std::vector<double> means;    ///< of each condition
+  std::optional<double> epsilon_hf{};
+  double p_gg = 0;               ///< with both df times epsilon_gg
+  std::optional<double> p_hf{};  ///< with both df times min(1, epsilon_hf)
+  double partial_eta2 = 0;       ///< ss_conditions / (ss_conditions + ss_error)
+  double generalized_eta2 = 0;   ///< ss_conditions / total (Olejnik and Algina 2003)
+  std::vector<double> means{};   ///< of each condition
 };
 
 /// `rows`: participants by conditions, row after row, each of k values; NaN = missing.
