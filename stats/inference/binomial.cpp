@@ -143,4 +143,9 @@ Result<BinomialTest> binomial_test(double k, double n, double p0, Alternative al
   return out;
 }
 
+double binomial_p(double k, double n, double p0, Alternative alternative) {
+  if (const std::string reason = why_not(k, n, p0); !reason.empty()) throw std::invalid_argument(reason);
+  return exact_p({k, n, p0, 1 - p0}, alternative);
+}
+
 }  // namespace stats

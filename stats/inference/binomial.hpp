@@ -37,4 +37,7 @@ struct BinomialTest {
 Result<BinomialTest> binomial_test(double k, double n, double p0 = 0.5,
                                    Alternative alternative = Alternative::TwoSided, double confidence = 0.95);
 
+/// The p-value alone. std::invalid_argument where binomial_test refuses.
+double binomial_p(double k, double n, double p0 = 0.5, Alternative alternative = Alternative::TwoSided);
+
 }  // namespace stats

@@ -52,7 +52,7 @@ struct BinomialPower {
   double power = 0;         ///< when the true proportion is p1
   double actual_alpha = 0;  ///< the same when it is p0: at most alpha
   /// Smallest k above n p0 and largest k below it that are significant; empty where none is.
-  std::optional<int> k_critical_upper, k_critical_lower;
+  std::optional<int> k_critical_upper{}, k_critical_lower{};
 };
 
 /// The exact binomial test's power by enumeration. Refused: n < 1 or not whole, p0 or p1 outside [0, 1],

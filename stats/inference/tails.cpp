@@ -17,6 +17,7 @@ namespace stats {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double smallest = std::numeric_limits<double>::denorm_min();
 const double log_2pi = std::log(2 * std::numbers::pi);
 
 /// ln x! less Stirling's formula for it.
@@ -29,19 +30,6 @@ double stirling_error(double x) {
   return (1.0 / 12 -
           w * (1.0 / 360 - w * (1.0 / 1260 - w * (1.0 / 1680 - w * (1.0 / 1188 - w * 691 / 360360))))) /
          x;
-}
-
-/// x ln(x / m) + m - x without cancellation.
-double deviance_part(double x, double m) {
-  if (!(std::abs(x - m) < 0.1 * (x + m))) return x * std::log(x / m) + m - x;
-  const double v = (x - m) / (x + m);
-  double sum = (x - m) * v, power = 2 * x * v;
-  for (int j = 3;; j += 2) {
-    power *= v * v;
-    const double next = sum + power / j;
-    if (next == sum) return sum;
-    sum = next;
-  }
 }
 
 /// ln of the smaller of p and 1 - p keeps its digits in itself, that of the larger in the other.
@@ -72,6 +60,19 @@ double log_beta_near(double a, double b, double x, double y) {
 }
 
 }  // namespace
+
+double deviance_part(double x, double m) {
+  if (x == 0) return m;
+  if (!(std::abs(x - m) < 0.1 * (x + m))) return x * std::log(x / m) + m - x;
+  const double v = (x - m) / (x + m);
+  double sum = (x - m) * v, power = 2 * x * v;
+  for (int j = 3;; j += 2) {
+    power *= v * v;
+    const double next = sum + power / j;
+    if (next == sum) return sum;
+    sum = next;
+  }
+}
 
 double log_binomial_mass(double k, double n, double p, double q) {
   const double other = n - k;
@@ -115,14 +116,17 @@ double log_binomial_upper(double k, double n, double p, double q) {
 
 double chi2_upper(double x, double df) {
   use_gsl_codes();
-  return x <= 0 ? 1 : gsl_cdf_chisq_Q(x, df);
+  if (x <= 0) return 1;
+  return std::isinf(x) ? 0 : std::max(smallest, gsl_cdf_chisq_Q(x, df));
 }
 
-double normal_two_sided(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
+double normal_two_sided(double z) {
+  return std::isinf(z) ? 0 : std::max(smallest, std::erfc(std::abs(z) / std::numbers::sqrt2));
+}
 
 double probability(double log_p) {
   if (log_p == -infinite) return 0;
-  return std::clamp(std::exp(log_p), std::numeric_limits<double>::denorm_min(), 1.0);
+  return std::clamp(std::exp(log_p), smallest, 1.0);
 }
 
 }  // namespace stats

@@ -3,6 +3,10 @@
 
 namespace stats {
 
+/// x ln(x / m) + m - x without cancellation, the deviance of a count x whose expectation is m > 0; m at x =
+/// 0.
+double deviance_part(double x, double m);
+
 /// ln of the probability of k successes in n trials, p + q = 1, by Loader's saddle-point expansion (Loader
 /// 2000): about 1e-14 absolute for any n. k and n may be fractions, 0 <= k <= n. -infinity where impossible.
 double log_binomial_mass(double k, double n, double p, double q);
@@ -20,9 +24,9 @@ double beta_quantile(double probability, double a, double b);
 double log_binomial_lower(double k, double n, double p, double q);
 double log_binomial_upper(double k, double n, double p, double q);
 
-/// P(X > x) of chi-square; df > 0.
+/// P(X > x) of chi-square; df > 0. As probability(): never 0 for a finite x.
 double chi2_upper(double x, double df);
-/// P(|Z| > |z|) of the standard normal.
+/// P(|Z| > |z|) of the standard normal; never 0 for a finite z.
 double normal_two_sided(double z);
 
 /// exp(log_p), but the smallest positive double instead of 0 when log_p is finite: a probability too small

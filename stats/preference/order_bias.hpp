@@ -36,11 +36,12 @@ struct OrderBias {
   std::array<double, 2> first_probability_ci{};
   /// Change of that pull with position, per unit, about the mean position; empty when all positions are
   /// equal or the fit is separated with it.
-  std::optional<OrderTerm> drift;
+  std::optional<OrderTerm> drift{};
 };
 
 /// Trials of one participant are correlated; the tests treat them as independent and are approximate then.
-/// Refused: no trial, fewer than two items, items never compared, no pair shown in both orders, separation
+/// Refused: no trial, fewer than two items, items never compared, orders that leave
+/// the interval's pull undetermined, separation
 /// (the reason says of what). std::invalid_argument for an item outside [0, items), equal items, a position
 /// that is not finite, or a confidence outside (0, 1).
 Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, double confidence = 0.95);

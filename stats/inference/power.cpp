@@ -1,0 +1,216 @@
+#include "stats/inference/power.hpp"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_integration.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <new>
+#include <numbers>
+#include <string>
+
+#include "stats/gsl_errors.hpp"
+#include "stats/inference/binomial.hpp"
+#include "stats/inference/distributions.hpp"
+#include "stats/inference/tails.hpp"
+#include "stats/quantiles.hpp"
+#include "stats/root.hpp"
+
+namespace stats {
+
+namespace {
+
+constexpr double most_participants = 1e7;
+
+bool open_unit(double p) { return p > 0 && p < 1; }
+
+double degrees_of_freedom(double n, Design design) {
+  return design == Design::TwoSample ? 2 * (n - 1) : n - 1;
+}
+
+/// Standard error of the estimated difference, in units of the SD.
+double error_per_sd(double n, Design design) { return std::sqrt((design == Design::TwoSample ? 2 : 1) / n); }
+
+double t_power_of(double n, double d, double alpha, Design design, Alternative alternative) {
+  const double df = degrees_of_freedom(n, design), ncp = d / error_per_sd(n, design);
+  if (alternative == Alternative::Greater)
+    return noncentral_t_upper(student_upper_quantile(alpha, df), df, ncp);
+  if (alternative == Alternative::Less)
+    return noncentral_t_lower(-student_upper_quantile(alpha, df), df, ncp);
+  const double critical = student_upper_quantile(alpha / 2, df);
+  return noncentral_t_upper(critical, df, ncp) + noncentral_t_lower(-critical, df, ncp);
+}
+
+std::string why_no_t_power(double d, double alpha) {
+  if (!std::isfinite(d)) return "an effect that is not finite";
+  return open_unit(alpha) ? "" : "alpha must lie between 0 and 1";
+}
+
+/// The n at which a power that rises with n is met, from 2 on.
+Result<SampleSize> sample_size(double wanted, const std::function<double(double)>& power) {
+  double high = 2;
+  while (power(high) < wanted) {
+    if (high >= most_participants) return Refusal{"more than 1e7 participants would be needed"};
+    high = std::min(2 * high, most_participants);
+  }
+  if (high == 2) return SampleSize{2, 2, power(2)};
+  const double n = find_root([&](double x) { return power(x) - wanted; }, high / 2, high);
+  // The root may fall short of a whole number that meets the power exactly.
+  double whole = std::ceil(n);
+  if (whole - 1 >= 2 && power(whole - 1) >= wanted) --whole;
+  return SampleSize{n, static_cast<int>(whole), power(whole)};
+}
+
+/// ln of the density of chi(df) / sqrt(df).
+double log_chi_density(double s, double df) {
+  return std::numbers::ln2 + df / 2 * std::log(df / 2) - std::lgamma(df / 2) + (df - 1) * std::log(s) -
+         df * s * s / 2;
+}
+
+double integral(const std::function<double(double)>& f, double low, double high) {
+  use_gsl_codes();
+  constexpr std::size_t pieces = 1000;
+  const std::unique_ptr<gsl_integration_workspace, decltype(&gsl_integration_workspace_free)> space(
+      gsl_integration_workspace_alloc(pieces), &gsl_integration_workspace_free);
+  if (!space) throw std::bad_alloc();
+  gsl_function wrapped;
+  wrapped.function = [](double x, void* user) {
+    return (*static_cast<const std::function<double(double)>*>(user))(x);
+  };
+  wrapped.params = const_cast<std::function<double(double)>*>(&f);
+  double value = 0, error = 0;
+  gsl_integration_qag(&wrapped, low, high, 1e-13, 1e-11, pieces, GSL_INTEG_GAUSS61, space.get(), &value,
+                      &error);
+  return value;
+}
+
+double tost_power_of(double n, const Equivalence& e) {
+  const double df = degrees_of_freedom(n, e.design), error = e.sd * error_per_sd(n, e.design);
+  const double low = (e.low - e.difference) / error, high = (e.high - e.difference) / error;
+  const double critical = student_upper_quantile(e.alpha, df);
+  // The estimate must lie between the margins, each drawn in by the critical value times the sample's SD
+  // (s times the true one). No room is left for s above `widest`.
+  const double widest = (high - low) / (2 * critical), spread = 12 / std::sqrt(2 * df);
+  const double from = std::max(0.0, 1 - spread), to = std::min(widest, 1 + spread);
+  if (from >= to) return 0;
+  return integral(
+      [&](double s) {
+        if (s <= 0) return 0.0;
+        const double a = low + critical * s, b = high - critical * s;
+        // In the tail that has the digits.
+        const double inside = a > 0 ? normal_probability(-a) - normal_probability(-b)
+                                    : normal_probability(b) - normal_probability(a);
+        return std::exp(log_chi_density(s, df)) * inside;
+      },
+      from, to);
+}
+
+std::string why_no_tost(const Equivalence& e) {
+  if (!std::isfinite(e.low) || !std::isfinite(e.high) || !std::isfinite(e.difference))
+    return "margins and difference must be finite";
+  if (!(e.low < e.high)) return "the lower margin must lie below the upper";
+  if (!(e.sd > 0) || std::isinf(e.sd)) return "the SD must be positive and finite";
+  return e.alpha > 0 && e.alpha <= 0.5 ? "" : "alpha must lie between 0 and 0.5";
+}
+
+/// The significant counts: at most `lower`, or at least `upper`. p falls with the distance from n p0 on
+/// either side, so each end is found by bisection.
+struct Rejection {
+  double lower = -1, upper = 0;
+};
+
+Rejection rejection(double n, double p0, double alpha, Alternative alternative) {
+  const auto significant = [&](double k) { return binomial_p(k, n, p0, alternative) <= alpha; };
+  Rejection out{-1, n + 1};
+  if (alternative != Alternative::Less) {
+    double low = std::floor(n * p0);  // not significant
+    while (out.upper - low > 1) {
+      const double middle = std::floor((low + out.upper) / 2);
+      (significant(middle) ? out.upper : low) = middle;
+    }
+  }
+  if (alternative != Alternative::Greater) {
+    double high = std::ceil(n * p0);
+    while (high - out.lower > 1) {
+      const double middle = std::floor((high + out.lower) / 2);
+      (significant(middle) ? out.lower : high) = middle;
+    }
+  }
+  return out;
+}
+
+double rejected(const Rejection& region, double n, double p) {
+  return std::exp(log_binomial_lower(region.lower, n, p, 1 - p)) +
+         std::exp(log_binomial_upper(region.upper, n, p, 1 - p));
+}
+
+std::string why_no_binomial(double p1, double p0, double alpha) {
+  if (!(p0 >= 0 && p0 <= 1 && p1 >= 0 && p1 <= 1)) return "proportions must lie in [0, 1]";
+  return open_unit(alpha) ? "" : "alpha must lie between 0 and 1";
+}
+
+}  // namespace
+
+Result<double> t_power(double n, double d, double alpha, Design design, Alternative alternative) {
+  if (!(n > 1) || n > most_participants) return Refusal{"n must be above 1 and at most 1e7"};
+  if (const auto reason = why_no_t_power(d, alpha); !reason.empty()) return Refusal{reason};
+  return t_power_of(n, d, alpha, design, alternative);
+}
+
+Result<SampleSize> t_sample_size(double d, double power, double alpha, Design design,
+                                 Alternative alternative) {
+  if (const auto reason = why_no_t_power(d, alpha); !reason.empty()) return Refusal{reason};
+  if (d == 0 || (d < 0 && alternative == Alternative::Greater) || (d > 0 && alternative == Alternative::Less))
+    return Refusal{"no number of participants finds an effect that is not there"};
+  if (!(power > alpha && power < 1)) return Refusal{"the power must lie between alpha and 1"};
+  return sample_size(power, [&](double n) { return t_power_of(n, d, alpha, design, alternative); });
+}
+
+Result<double> tost_power(double n, const Equivalence& equivalence) {
+  if (!(n > 1) || n > most_participants) return Refusal{"n must be above 1 and at most 1e7"};
+  if (const auto reason = why_no_tost(equivalence); !reason.empty()) return Refusal{reason};
+  return tost_power_of(n, equivalence);
+}
+
+Result<SampleSize> tost_sample_size(double power, const Equivalence& e) {
+  if (const auto reason = why_no_tost(e); !reason.empty()) return Refusal{reason};
+  if (!(e.difference > e.low && e.difference < e.high))
+    return Refusal{"the true difference is not inside the margins"};
+  if (!open_unit(power)) return Refusal{"the power must lie between 0 and 1"};
+  return sample_size(power, [&](double n) { return tost_power_of(n, e); });
+}
+
+Result<BinomialPower> binomial_power(double n, double p1, double p0, double alpha, Alternative alternative) {
+  if (!(n >= 1 && n <= 1e9) || n != std::floor(n)) return Refusal{"n must be a whole number from 1 to 1e9"};
+  if (const auto reason = why_no_binomial(p1, p0, alpha); !reason.empty()) return Refusal{reason};
+  const Rejection region = rejection(n, p0, alpha, alternative);
+  BinomialPower out{.power = rejected(region, n, p1), .actual_alpha = rejected(region, n, p0)};
+  if (region.upper <= n) out.k_critical_upper = static_cast<int>(region.upper);
+  if (region.lower >= 0) out.k_critical_lower = static_cast<int>(region.lower);
+  return out;
+}
+
+Result<BinomialSampleSize> binomial_sample_size(double p1, double power, double p0, double alpha,
+                                                Alternative alternative) {
+  if (const auto reason = why_no_binomial(p1, p0, alpha); !reason.empty()) return Refusal{reason};
+  if (p1 == p0 || (p1 < p0 && alternative == Alternative::Greater) ||
+      (p1 > p0 && alternative == Alternative::Less))
+    return Refusal{"no number of participants finds an effect that is not there"};
+  if (!(power > alpha && power < 1)) return Refusal{"the power must lie between alpha and 1"};
+  const auto at = [&](int n) { return rejected(rejection(n, p0, alpha, alternative), n, p1); };
+  constexpr int most = 20'000;
+  BinomialSampleSize out{.n = 1};
+  while (at(out.n) < power) {
+    if (++out.n > most) return Refusal{"more than 20,000 participants would be needed"};
+  }
+  out.power = at(out.n);
+  out.n_lasting = out.n;
+  for (int n = out.n; n <= 3 * out.n_lasting; ++n) {
+    if (at(n) < power) out.n_lasting = n + 1;
+  }
+  return out;
+}
+
+}  // namespace stats

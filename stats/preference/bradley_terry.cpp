@@ -1,0 +1,216 @@
+#include "stats/preference/bradley_terry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "stats/inference/tails.hpp"
+#include "stats/preference/logit_fit.hpp"
+#include "stats/quantiles.hpp"
+
+namespace stats {
+
+namespace {
+
+using Values = std::vector<double>;
+
+struct Wins {
+  std::span<const double> counts;
+  int items;
+  double operator()(int i, int j) const {
+    return counts[static_cast<std::size_t>(i) * static_cast<std::size_t>(items) +
+                  static_cast<std::size_t>(j)];
+  }
+};
+
+Wins checked(std::span<const double> wins, int items) {
+  const auto n = static_cast<std::size_t>(std::max(items, 0));
+  if (items < 1 || wins.size() != n * n) throw std::invalid_argument("wins must be items by items");
+  for (std::size_t i = 0; i < wins.size(); ++i) {
+    if (!(wins[i] >= 0) || std::isinf(wins[i]))
+      throw std::invalid_argument("wins must be finite and not negative");
+    if (i % (n + 1) == 0 && wins[i] > 0) throw std::invalid_argument("an item was compared with itself");
+  }
+  return {wins, items};
+}
+
+/// Items that can be reached from `start` by steps for which `edge` holds.
+template <class Edge>
+std::vector<bool> reachable(int items, int start, const Edge& edge) {
+  std::vector<bool> seen(static_cast<std::size_t>(items), false);
+  std::vector<int> todo{start};
+  seen[static_cast<std::size_t>(start)] = true;
+  while (!todo.empty()) {
+    const int from = todo.back();
+    todo.pop_back();
+    for (int to = 0; to < items; ++to) {
+      if (seen[static_cast<std::size_t>(to)] || !edge(from, to)) continue;
+      seen[static_cast<std::size_t>(to)] = true;
+      todo.push_back(to);
+    }
+  }
+  return seen;
+}
+
+std::string names(const std::vector<bool>& members) {
+  std::string list;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (members[i]) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
+  }
+  return (std::count(members.begin(), members.end(), true) == 1 ? "item " : "items ") + list;
+}
+
+bool all(const std::vector<bool>& members) {
+  return std::find(members.begin(), members.end(), false) == members.end();
+}
+
+/// The smallest set of items that no other item ever beat (or, for `worst`, that beat no other).
+std::vector<bool> unbeaten(const Wins& wins, bool worst) {
+  std::vector<bool> best(static_cast<std::size_t>(wins.items), true);
+  for (int i = 0; i < wins.items; ++i) {
+    auto set = reachable(wins.items, i, [&](int a, int b) { return (worst ? wins(a, b) : wins(b, a)) > 0; });
+    if (std::count(set.begin(), set.end(), true) < std::count(best.begin(), best.end(), true)) best = set;
+  }
+  return best;
+}
+
+std::vector<LogitRow> pair_rows(const Wins& wins) {
+  std::vector<LogitRow> rows;
+  for (int i = 0; i < wins.items; ++i) {
+    for (int j = i + 1; j < wins.items; ++j) {
+      const double trials = wins(i, j) + wins(j, i);
+      if (!(trials > 0)) continue;
+      LogitRow row{Values(static_cast<std::size_t>(wins.items - 1), 0.0), wins(i, j), trials};
+      if (i > 0) row.design[static_cast<std::size_t>(i - 1)] = 1;
+      row.design[static_cast<std::size_t>(j - 1)] = -1;
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+double logistic(double x) { return 1 / (1 + std::exp(-x)); }
+
+/// Strengths and covariance with the first item at 0.
+void set_reference(BradleyTerry& out, const LogitFit& fit) {
+  const auto n = static_cast<std::size_t>(out.items);
+  out.lambda_ref1.assign(n, 0.0);
+  out.se_ref1.assign(n, 0.0);
+  out.covariance_ref1.assign(n * n, 0.0);
+  for (std::size_t i = 1; i < n; ++i) {
+    out.lambda_ref1[i] = fit.coefficients[i - 1];
+    out.se_ref1[i] = std::sqrt(fit.variance(i - 1, i - 1));
+    for (std::size_t j = 1; j < n; ++j) out.covariance_ref1[i * n + j] = fit.variance(i - 1, j - 1);
+  }
+}
+
+/// The same with sum 0, and the worths.
+void set_centred(BradleyTerry& out, double z) {
+  const auto n = static_cast<std::size_t>(out.items);
+  const auto items = static_cast<double>(out.items);
+  double mean = 0, mean_covariance = 0;
+  Values row_means(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    mean += out.lambda_ref1[i] / items;
+    for (std::size_t j = 0; j < n; ++j) row_means[i] += out.covariance_ref1[i * n + j] / items;
+    mean_covariance += row_means[i] / items;
+  }
+  double total = 0;
+  for (const double lambda : out.lambda_ref1) total += std::exp(lambda - mean);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double lambda = out.lambda_ref1[i] - mean;
+    const double variance = out.covariance_ref1[i * n + i] - 2 * row_means[i] + mean_covariance;
+    const double se = std::sqrt(std::max(0.0, variance));
+    out.lambda_sum0.push_back(lambda);
+    out.se_sum0.push_back(se);
+    out.ci_sum0.push_back({lambda - z * se, lambda + z * se});
+    out.worth.push_back(std::exp(lambda) / total);
+  }
+}
+
+void set_pairs(BradleyTerry& out, double z) {
+  const auto n = static_cast<std::size_t>(out.items);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      PairDifference pair{.i = static_cast<int>(i), .j = static_cast<int>(j)};
+      pair.difference = out.lambda_ref1[i] - out.lambda_ref1[j];
+      pair.se = std::sqrt(out.covariance_ref1[i * n + i] + out.covariance_ref1[j * n + j] -
+                          2 * out.covariance_ref1[i * n + j]);
+      pair.ci = {pair.difference - z * pair.se, pair.difference + z * pair.se};
+      pair.p = normal_two_sided(pair.difference / pair.se);
+      pair.probability = logistic(pair.difference);
+      pair.probability_ci = {logistic(pair.ci[0]), logistic(pair.ci[1])};
+      out.pairs.push_back(pair);
+    }
+  }
+}
+
+void set_tests(BradleyTerry& out, const LogitFit& fit, std::span<const LogitRow> rows) {
+  out.log_likelihood = fit.log_likelihood;
+  out.gof_deviance = fit.deviance;
+  out.gof_df = static_cast<int>(rows.size()) - (out.items - 1);
+  if (out.gof_df > 0) out.gof_p = chi2_upper(out.gof_deviance, out.gof_df);
+  // Deviances rather than likelihoods: small differences of large sums keep their digits.
+  double equal = 0;
+  for (const auto& row : rows) {
+    equal += 2 * (deviance_part(row.successes, row.trials / 2) +
+                  deviance_part(row.trials - row.successes, row.trials / 2));
+  }
+  out.lrt_chi2 = std::max(0.0, equal - fit.deviance);
+  out.lrt_df = out.items - 1;
+  out.lrt_p = chi2_upper(out.lrt_chi2, out.lrt_df);
+}
+
+}  // namespace
+
+ConnectionReport connection(std::span<const double> counts, int items) {
+  const Wins wins = checked(counts, items);
+  const auto group = reachable(items, 0, [&](int a, int b) { return wins(a, b) + wins(b, a) > 0; });
+  if (!all(group)) return {Connection::None, names(group) + " and the others were never compared"};
+  const auto best = unbeaten(wins, false);
+  if (all(best)) return {};
+  const auto worst = unbeaten(wins, true);
+  const bool many = std::count(best.begin(), best.end(), true) > std::count(worst.begin(), worst.end(), true);
+  const auto& set = many ? worst : best;
+  const bool one = std::count(set.begin(), set.end(), true) == 1;
+  return {Connection::Separated, names(set) + (one ? "" : " together") +
+                                     (one    ? many ? " loses" : " wins"
+                                      : many ? " lose"
+                                             : " win") +
+                                     " every comparison with the others"};
+}
+
+Result<BradleyTerry> bradley_terry(std::span<const double> counts, int items, BradleyTerryMethod method,
+                                   double confidence) {
+  if (!(confidence > 0 && confidence < 1))
+    throw std::invalid_argument("a confidence must lie between 0 and 1");
+  const Wins wins = checked(counts, items);
+  if (items < 2) return Refusal{"fewer than two items"};
+  const auto rows = pair_rows(wins);
+  if (rows.empty()) return Refusal{"no comparison"};
+  const ConnectionReport connected = connection(counts, items);
+  if (connected.connection == Connection::None) return Refusal{connected.reason};
+
+  const bool separated = connected.connection == Connection::Separated;
+  if (separated && method == BradleyTerryMethod::MaximumLikelihood)
+    return Refusal{"infinite estimates: " + connected.reason};
+  BradleyTerry out;
+  out.items = items;
+  out.confidence = confidence;
+  out.bias_reduced = separated || method == BradleyTerryMethod::BiasReduced;
+  if (separated && method == BradleyTerryMethod::Automatic) out.why_bias_reduced = connected.reason;
+  for (const auto& row : rows) out.comparisons += row.trials;
+
+  const auto fit = fit_logit(rows, out.bias_reduced ? LogitBias::Reduced : LogitBias::AsIs);
+  if (!fit) return Refusal{fit.reason()};
+  const double z = normal_quantile(0.5 + confidence / 2);
+  set_reference(out, *fit);
+  set_centred(out, z);
+  set_pairs(out, z);
+  set_tests(out, *fit, rows);
+  return out;
+}
+
+}  // namespace stats

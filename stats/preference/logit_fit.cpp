@@ -1,0 +1,166 @@
+#include "stats/preference/logit_fit.hpp"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "stats/gsl_errors.hpp"
+#include "stats/inference/tails.hpp"
+
+namespace stats {
+
+namespace {
+
+using Values = std::vector<double>;
+
+double logistic(double x) { return 1 / (1 + std::exp(-x)); }
+double log_logistic(double x) { return x < 0 ? x - std::log1p(std::exp(x)) : -std::log1p(std::exp(-x)); }
+
+double predictor(const LogitRow& row, const Values& beta) {
+  double sum = 0;
+  for (std::size_t j = 0; j < beta.size(); ++j) sum += row.design[j] * beta[j];
+  return sum;
+}
+
+double log_likelihood(std::span<const LogitRow> rows, const Values& beta) {
+  double sum = 0;
+  for (const auto& row : rows) {
+    const double eta = predictor(row, beta), failures = row.trials - row.successes;
+    // 0 times -infinity is none.
+    if (row.successes > 0) sum += row.successes * log_logistic(eta);
+    if (failures > 0) sum += failures * log_logistic(-eta);
+  }
+  return sum;
+}
+
+double deviance(std::span<const LogitRow> rows, const Values& beta) {
+  double sum = 0;
+  for (const auto& row : rows) {
+    const double eta = predictor(row, beta);
+    sum += deviance_part(row.successes, row.trials * logistic(eta)) +
+           deviance_part(row.trials - row.successes, row.trials * logistic(-eta));
+  }
+  return 2 * sum;
+}
+
+/// Inverse of the information matrix and its log determinant; empty when it is singular.
+struct Information {
+  Values inverse;
+  double log_determinant = 0;
+};
+
+std::optional<Information> information(std::span<const LogitRow> rows, const Values& beta) {
+  const std::size_t k = beta.size();
+  Information out{Values(k * k, 0.0)};
+  for (const auto& row : rows) {
+    const double eta = predictor(row, beta);
+    const double weight = row.trials * logistic(eta) * logistic(-eta);
+    for (std::size_t i = 0; i < k; ++i)
+      for (std::size_t j = 0; j < k; ++j) out.inverse[i * k + j] += weight * row.design[i] * row.design[j];
+  }
+  Values diagonal(k);
+  for (std::size_t i = 0; i < k; ++i) diagonal[i] = out.inverse[i * k + i];
+  auto view = gsl_matrix_view_array(out.inverse.data(), k, k);
+  if (gsl_linalg_cholesky_decomp1(&view.matrix) != GSL_SUCCESS) return std::nullopt;
+  for (std::size_t i = 0; i < k; ++i) {
+    const double pivot = out.inverse[i * k + i];
+    // What a column has of its own is rounding.
+    if (!(pivot * pivot > 1e-12 * diagonal[i])) return std::nullopt;
+    out.log_determinant += 2 * std::log(pivot);
+  }
+  if (gsl_linalg_cholesky_invert(&view.matrix) != GSL_SUCCESS) return std::nullopt;
+  return out;
+}
+
+/// The score, with Firth's term: trials of a row weigh its leverage times (1/2 - probability).
+Values score(std::span<const LogitRow> rows, const Values& beta, const Values& inverse, LogitBias bias) {
+  const std::size_t k = beta.size();
+  Values out(k, 0.0);
+  for (const auto& row : rows) {
+    const double eta = predictor(row, beta), p = logistic(eta);
+    double residual = row.successes - row.trials * p;
+    if (bias == LogitBias::Reduced) {
+      double leverage = 0;
+      for (std::size_t i = 0; i < k; ++i)
+        for (std::size_t j = 0; j < k; ++j) leverage += row.design[i] * inverse[i * k + j] * row.design[j];
+      residual += leverage * row.trials * p * logistic(-eta) * (0.5 - p);
+    }
+    for (std::size_t j = 0; j < k; ++j) out[j] += residual * row.design[j];
+  }
+  return out;
+}
+
+/// What Newton's method climbs.
+double objective(std::span<const LogitRow> rows, const Values& beta, const Information& at, LogitBias bias) {
+  return log_likelihood(rows, beta) + (bias == LogitBias::Reduced ? at.log_determinant / 2 : 0);
+}
+
+struct Step {
+  Values beta;
+  Information information;
+  double objective = 0;
+};
+
+/// beta + step, or with the step halved until the objective does not fall; empty when it always does.
+std::optional<Step> climb(std::span<const LogitRow> rows, const Step& from, const Values& step,
+                          LogitBias bias) {
+  const double rounding = 1e-13 * (1 + std::abs(from.objective));
+  double part = 1;
+  for (int halving = 0; halving < 40; ++halving, part /= 2) {
+    Values beta = from.beta;
+    for (std::size_t j = 0; j < beta.size(); ++j) beta[j] += part * step[j];
+    auto at = information(rows, beta);
+    if (!at) continue;
+    const double value = objective(rows, beta, *at, bias);
+    if (value >= from.objective - rounding) return Step{std::move(beta), std::move(*at), value};
+  }
+  return std::nullopt;
+}
+
+double largest(const Values& values) {
+  double out = 0;
+  for (const double v : values) out = std::max(out, std::abs(v));
+  return out;
+}
+
+}  // namespace
+
+Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias) {
+  use_gsl_codes();
+  if (rows.empty()) return Refusal{"no observations"};
+  const std::size_t k = rows.front().design.size();
+  Step at{.beta = Values(k, 0.0), .information = {}};
+  const auto start = information(rows, at.beta);
+  if (!start) return Refusal{"the comparisons do not determine every coefficient"};
+  at.information = *start;
+  at.objective = objective(rows, at.beta, at.information, bias);
+
+  // A separated likelihood rises for ever, in steps of about 1.
+  constexpr int most_steps = 200;
+  constexpr double farthest = 30;
+  for (int i = 0; i < most_steps; ++i) {
+    const Values slope = score(rows, at.beta, at.information.inverse, bias);
+    Values step(k, 0.0);
+    for (std::size_t r = 0; r < k; ++r)
+      for (std::size_t c = 0; c < k; ++c) step[r] += at.information.inverse[r * k + c] * slope[c];
+    auto next = climb(rows, at, step, bias);
+    double reach = 0;
+    for (const auto& row : rows)
+      reach = std::max(reach, std::abs(predictor(row, next ? next->beta : at.beta)));
+    if (!next || reach > farthest) {
+      return Refusal{bias == LogitBias::AsIs ? "the choices are separated: an estimate is infinite"
+                                             : "the fit did not converge"};
+    }
+    at = std::move(*next);
+    if (largest(step) < 1e-11 * (1 + largest(at.beta))) {
+      return LogitFit{at.beta, at.information.inverse, log_likelihood(rows, at.beta),
+                      deviance(rows, at.beta)};
+    }
+  }
+  return Refusal{"the fit did not converge"};
+}
+
+}  // namespace stats
