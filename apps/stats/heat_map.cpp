@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/stats/contour_lines.hpp"
+#include "apps/stats/pilot_fit.hpp"
 
 namespace apps {
 
@@ -14,17 +15,13 @@ namespace {
 
 using stats::ScoreGrid;
 
-std::string number(double value, int decimals) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-struct Point {
-  double x = 0, y = 0;
-};
-
-std::string pair(Point p) { return number(p.x, 2) + "," + number(p.y, 2); }
+using svg::circle;
+using svg::line;
+using svg::number;
+using svg::path;
+using svg::Point;
+using svg::rectangle;
+using svg::text;
 
 /// Borders of the cells around ascending axis values: half way to the neighbour.
 std::vector<double> borders(const std::vector<double>& axis) {
@@ -80,38 +77,24 @@ std::string hex(const Colour& c) {
 
 bool is_dark(const Colour& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b < 128; }
 
-std::string text(Point at, const std::string& words, const std::string& attributes) {
-  return "<text x=\"" + number(at.x, 2) + "\" y=\"" + number(at.y, 2) + "\" " + attributes + ">" + words +
-         "</text>\n";
-}
-
-std::string line(Point p, Point q, const std::string& attributes) {
-  return "<path d=\"M" + pair(p) + " L" + pair(q) + "\" " + attributes + "/>\n";
-}
-
-std::string rectangle(Point p, Point q, const std::string& attributes) {
-  return "<rect x=\"" + number(p.x, 2) + "\" y=\"" + number(p.y, 2) + "\" width=\"" + number(q.x - p.x, 2) +
-         "\" height=\"" + number(q.y - p.y, 2) + "\" " + attributes + "/>\n";
-}
-
 std::string contour_path(const ScoreGrid& grid, const Frame& frame, double level) {
-  std::string path;
+  std::string moves;
   for (const auto& polyline : contour_polylines(grid, level)) {
     for (std::size_t i = 0; i < polyline.size(); ++i) {
-      path += (i ? "L" : "M") + pair(frame.at(polyline[i].delta, polyline[i].mu));
+      moves += svg::move(i ? 'L' : 'M', frame.at(polyline[i].delta, polyline[i].mu));
     }
   }
-  return path;
+  return moves;
 }
 
-std::string curve_path(const stats::ExponentialFit& fit, const Frame& frame) {
+std::string curve_path(const HeatMap& map, const Frame& frame) {
   constexpr int steps = 200;
-  std::string path;
+  std::string moves;
   for (int i = 0; i <= steps; ++i) {
     const double delta = std::lerp(frame.x_edges.front(), frame.x_edges.back(), i / double{steps});
-    path += (i ? "L" : "M") + pair(frame.at(delta, fit.value(delta)));
+    moves += svg::move(i ? 'L' : 'M', frame.at(delta, map.a * std::exp(map.b * delta)));
   }
-  return path;
+  return moves;
 }
 
 constexpr const char* fit_style = "fill=\"none\" stroke=\"#c04000\" stroke-width=\"3\"";
@@ -123,32 +106,38 @@ std::string contour_style(double level) {
   return "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.8\"" + dash;
 }
 
-/// Share of the rating scale that a score takes.
-double share_of(const PilotFit& fit, double score) {
-  return (score - fit.data.scale_min) / (fit.data.scale_max - fit.data.scale_min);
+/// Names the number that a text shows, where the results have it.
+std::string field(const std::string& pointer, const std::string& member) {
+  return pointer.empty() ? "" : svg::attribute("data-field", pointer + member);
 }
 
-std::string cells(const PilotFit& fit, const Frame& frame) {
+/// Share of the rating scale that a score takes.
+double share_of(const HeatMap& map, double score) {
+  return (score - map.scale_min) / (map.scale_max - map.scale_min);
+}
+
+std::string cells(const HeatMap& map, const Frame& frame) {
   std::string out;
-  for (std::size_t row = 0; row < fit.grid.mu.size(); ++row) {
-    for (std::size_t column = 0; column < fit.grid.delta.size(); ++column) {
-      const auto& node = fit.grid.at(row, column);
+  for (std::size_t row = 0; row < map.grid.mu.size(); ++row) {
+    for (std::size_t column = 0; column < map.grid.delta.size(); ++column) {
+      const auto& node = map.grid.at(row, column);
       out += rectangle(frame.at(frame.x_edges[column], frame.y_edges[row + 1]),
                        frame.at(frame.x_edges[column + 1], frame.y_edges[row]),
-                       "fill=\"" + (node ? hex(colour_of(share_of(fit, node->score))) : "url(#none)") +
+                       "fill=\"" + (node ? hex(colour_of(share_of(map, node->score))) : "url(#no-score)") +
                            "\" stroke=\"#ffffff\" stroke-width=\"1\"");
     }
   }
   return out;
 }
 
-std::string cell_values(const PilotFit& fit, const Frame& frame) {
+std::string cell_values(const HeatMap& map, const Frame& frame) {
   std::string out;
-  for (std::size_t row = 0; row < fit.grid.mu.size(); ++row) {
-    for (std::size_t column = 0; column < fit.grid.delta.size(); ++column) {
-      const auto& node = fit.grid.at(row, column);
+  std::size_t index = 0;
+  for (std::size_t row = 0; row < map.grid.mu.size(); ++row) {
+    for (std::size_t column = 0; column < map.grid.delta.size(); ++column) {
+      const auto& node = map.grid.at(row, column);
       if (!node) continue;
-      const auto colour = colour_of(share_of(fit, node->score));
+      const auto colour = colour_of(share_of(map, node->score));
       // In the corner, clear of the curves, which pass near the middles.
       auto at = frame.at(frame.x_edges[column + 1], frame.y_edges[row]);
       at.x -= 8;
@@ -156,21 +145,22 @@ std::string cell_values(const PilotFit& fit, const Frame& frame) {
       out += text(at, number(node->score, 2),
                   "text-anchor=\"end\" font-size=\"15\" stroke-width=\"4\" stroke-linejoin=\"round\" "
                   "paint-order=\"stroke\" stroke=\"" +
-                      hex(colour) + "\" fill=\"" + (is_dark(colour) ? "#ffffff" : "#000000") + "\"");
+                      hex(colour) + "\" fill=\"" + (is_dark(colour) ? "#ffffff" : "#000000") + "\"" +
+                      field(map.cells_field, "/" + std::to_string(index++) + "/score"));
     }
   }
   return out;
 }
 
-std::string axes(const PilotFit& fit, const Frame& frame) {
+std::string axes(const HeatMap& map, const Frame& frame) {
   std::string out = rectangle({frame.left, frame.top}, {frame.right(), frame.bottom()},
                               "fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"");
-  for (const double delta : fit.grid.delta) {
+  for (const double delta : map.grid.delta) {
     const Point at{frame.at(delta, 0).x, frame.bottom()};
     out += line(at, {at.x, at.y + 6}, "stroke=\"#000000\"");
     out += text({at.x, at.y + 22}, number(delta, 0), "text-anchor=\"middle\" font-size=\"14\"");
   }
-  for (const double mu : fit.grid.mu) {
+  for (const double mu : map.grid.mu) {
     const Point at{frame.left, frame.at(0, mu).y};
     out += line(at, {at.x - 6, at.y}, "stroke=\"#000000\"");
     out += text({at.x - 10, at.y + 5}, number(mu, 0), "text-anchor=\"end\" font-size=\"14\"");
@@ -185,9 +175,9 @@ std::string axes(const PilotFit& fit, const Frame& frame) {
   return out;
 }
 
-std::string colour_bar(const PilotFit& fit, const Frame& frame) {
+std::string colour_bar(const HeatMap& map, const Frame& frame) {
   const double x = frame.right() + 34, height = 210;
-  const int scores = static_cast<int>(fit.data.scale_max - fit.data.scale_min);
+  const int scores = static_cast<int>(map.scale_max - map.scale_min);
   const int bands = 12 * scores;
   std::string out = text({x, frame.top - 10}, "mean score", "font-size=\"14\"");
   for (int i = 0; i < bands; ++i) {
@@ -198,80 +188,94 @@ std::string colour_bar(const PilotFit& fit, const Frame& frame) {
   for (int i = 0; i <= scores; ++i) {
     const double y = frame.top + height * (scores - i) / scores;
     out += line({x + 22, y}, {x + 27, y}, "stroke=\"#000000\"");
-    out += text({x + 32, y + 5}, number(fit.data.scale_min + i, 0), "font-size=\"14\"");
+    out += text({x + 32, y + 5}, number(map.scale_min + i, 0), "font-size=\"14\"");
   }
   return out;
 }
 
-std::string legend(const PilotFit& fit, const Frame& frame) {
+std::string interval(const char* name, double value, const std::array<double, 2>& ci, int decimals) {
+  return std::string(name) + " = " + number(value, decimals) + " [" + number(ci[0], decimals) + ", " +
+         number(ci[1], decimals) + "]";
+}
+
+std::string legend(const HeatMap& map, const Frame& frame) {
   const double x = frame.right() + 34;
   double y = frame.top + 252;
   std::string out;
-  for (const auto& [level, estimate] : fit.harmonic) {
+  for (const double level : map.levels) {
     out += line({x, y}, {x + 34, y}, contour_style(level));
     out += text({x + 42, y + 5}, "contour at " + number(level, level == std::round(10 * level) / 10 ? 1 : 2),
                 "font-size=\"14\"");
     y += 26;
   }
-  out += "<circle cx=\"" + number(x + 17, 2) + "\" cy=\"" + number(y, 2) + "\" r=\"3\" fill=\"#000000\"/>\n";
-  out += text({x + 42, y + 5}, "points fitted", "font-size=\"14\"");
-  y += 26;
-  const auto& fitted = *fit.main().fit;
+  if (!map.points.empty()) {
+    out += circle({x + 17, y}, 3, "fill=\"#000000\"");
+    out += text({x + 42, y + 5}, "points fitted", "font-size=\"14\"");
+    y += 26;
+  }
   out += line({x, y}, {x + 34, y}, fit_style);
   out += text({x + 42, y + 5}, "\xCE\xBC = a exp(b \xCE\xB4)", "font-size=\"14\"");
-  const auto& spread = *fit.main().spread;
-  const auto interval = [](const char* name, double value, const std::array<double, 2>& ci, int decimals) {
-    return std::string(name) + " = " + number(value, decimals) + " [" + number(ci[0], decimals) + ", " +
-           number(ci[1], decimals) + "]";
-  };
-  out += text({x, y + 30}, interval("a", fitted.a, spread.a_ci, 2), "font-size=\"14\"");
-  out += text({x, y + 50}, interval("b", fitted.b, spread.b_ci, 4), "font-size=\"14\"");
-  out += text({x, y + 70}, number(100 * fit.bootstrap.confidence, 0) + " % intervals", "font-size=\"12\"");
+  out += text({x, y + 30}, interval("a", map.a, map.a_ci, 2),
+              "font-size=\"14\"" + field(map.estimate_field, "/a"));
+  out += text({x, y + 50}, interval("b", map.b, map.b_ci, 4),
+              "font-size=\"14\"" + field(map.estimate_field, "/b"));
+  out += text({x, y + 70}, number(100 * map.confidence, 0) + " % intervals", "font-size=\"12\"");
   return out;
 }
 
-std::string curves(const PilotFit& fit, const Frame& frame) {
-  std::string out = "<g clip-path=\"url(#plot)\">\n";
-  for (const auto& [level, estimate] : fit.harmonic) {
-    const auto path = contour_path(fit.grid, frame, level);
-    if (!path.empty()) out += "<path d=\"" + path + "\" " + contour_style(level) + "/>\n";
+std::string curves(const HeatMap& map, const Frame& frame) {
+  std::string out = "<g clip-path=\"url(#heat-map-plot)\">\n";
+  for (const double level : map.levels) {
+    const auto moves = contour_path(map.grid, frame, level);
+    if (!moves.empty()) out += path(moves, contour_style(level));
   }
-  const auto curve = curve_path(*fit.main().fit, frame);
-  out += "<path d=\"" + curve + "\" fill=\"none\" stroke=\"#ffffff\" stroke-width=\"6\"/>\n";
-  out += "<path d=\"" + curve + "\" " + fit_style + "/>\n";
-  for (const auto& point : fit.main().contour.points) {
-    const auto at = frame.at(point.delta, point.mu);
-    out +=
-        "<circle cx=\"" + number(at.x, 2) + "\" cy=\"" + number(at.y, 2) + "\" r=\"3\" fill=\"#000000\"/>\n";
-  }
+  const auto curve = curve_path(map, frame);
+  out += path(curve, "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"6\"");
+  out += path(curve, fit_style);
+  for (const auto& point : map.points) out += circle(frame.at(point.delta, point.mu), 3, "fill=\"#000000\"");
   return out + "</g>\n";
 }
 
+constexpr const char* no_score_pattern =
+    "<pattern id=\"no-score\" width=\"8\" height=\"8\" patternUnits=\"userSpaceOnUse\"><rect width=\"8\" "
+    "height=\"8\" fill=\"#ffffff\"/><path d=\"M0,8 L8,0\" stroke=\"#c8c8c8\"/></pattern>\n";
+
 }  // namespace
 
-std::string heat_map_svg(const PilotFit& fit) {
-  const Frame frame{borders(fit.grid.delta), borders(fit.grid.mu)};
+HeatMap heat_map_of(const PilotFit& fit) {
   const std::string data = fit.data.test_data                    ? " (test data)"
                            : fit.data.simulated_participants > 0 ? " (simulated)"
                                                                  : "";
-  const std::string title =
-      "PTPE pilot: mean scores of " + std::to_string(fit.participants) + " participants" + data;
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 850 545\" width=\"850\" height=\"545\" "
-         "role=\"img\" "
-         "font-family=\"DejaVu Sans, Arial, sans-serif\">\n<title>" +
-         title +
-         "</title>\n<desc>Heat map of mean scores over the standard deviation and the mean of the frame "
-         "rate, with "
-         "contours of the scores and the fitted curve.</desc>\n<defs>\n"
-         "<pattern id=\"none\" width=\"8\" height=\"8\" patternUnits=\"userSpaceOnUse\"><rect width=\"8\" "
-         "height=\"8\" "
-         "fill=\"#ffffff\"/><path d=\"M0,8 L8,0\" stroke=\"#c8c8c8\"/></pattern>\n<clipPath id=\"plot\">" +
-         rectangle({frame.left, frame.top}, {frame.right(), frame.bottom()}, "") + "</clipPath>\n</defs>\n" +
-         rectangle({0, 0}, {850, 545}, "fill=\"#ffffff\"") +
-         text({frame.left, 30}, title, "font-size=\"17\" font-weight=\"bold\"") + cells(fit, frame) +
-         curves(fit, frame) + cell_values(fit, frame) + axes(fit, frame) + colour_bar(fit, frame) +
-         legend(fit, frame) + "</svg>\n";
+  HeatMap map;
+  map.title = "PTPE pilot: mean scores of " + std::to_string(fit.participants) + " participants" + data;
+  map.grid = fit.grid;
+  map.scale_min = fit.data.scale_min;
+  map.scale_max = fit.data.scale_max;
+  for (const auto& [level, estimate] : fit.harmonic) map.levels.push_back(level);
+  map.points = fit.main().contour.points;
+  map.a = fit.main().fit->a;
+  map.b = fit.main().fit->b;
+  map.a_ci = fit.main().spread->a_ci;
+  map.b_ci = fit.main().spread->b_ci;
+  map.confidence = fit.bootstrap.confidence;
+  return map;
 }
+
+svg::Picture heat_map(const HeatMap& map) {
+  const Frame frame{borders(map.grid.delta), borders(map.grid.mu)};
+  svg::Picture picture{.width = 850, .height = 545, .id = "heat-map", .title = map.title};
+  picture.description =
+      "Heat map of mean scores over the standard deviation and the mean of the frame rate, with contours of "
+      "the scores and the fitted curve.";
+  picture.definitions = no_score_pattern + std::string("<clipPath id=\"heat-map-plot\">") +
+                        rectangle({frame.left, frame.top}, {frame.right(), frame.bottom()}, "") +
+                        "</clipPath>\n";
+  picture.body = text({frame.left, 30}, map.title, "font-size=\"17\" font-weight=\"bold\"") +
+                 cells(map, frame) + curves(map, frame) + cell_values(map, frame) + axes(map, frame) +
+                 colour_bar(map, frame) + legend(map, frame);
+  return picture;
+}
+
+std::string heat_map_svg(const PilotFit& fit) { return svg::document(heat_map(heat_map_of(fit))); }
 
 }  // namespace apps
