@@ -1,5 +1,5 @@
 #pragma once
-/// EquivalenceTest and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
+/// Equivalence and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
 /// values, refusals and errors as in t_test.hpp.
 
 #include <array>

@@ -21,6 +21,9 @@ struct TTestOptions {
   Alternative alternative = Alternative::TwoSided;
   double confidence = 0.95;  ///< of `ci` and of the interval of the effect size
   double null_value = 0;     ///< mean (one sample) or difference of means under the null hypothesis
+  /// False leaves out the intervals of effect sizes (they become infinite): they cost a thousand times what
+  /// the test does, which a simulation feels.
+  bool effect_intervals = true;
 };
 
 /// What all t-tests have.

@@ -1,0 +1,211 @@
+#include "stats/inference/distributions.hpp"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_sf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "stats/gsl_errors.hpp"
+#include "stats/quantiles.hpp"
+#include "stats/root.hpp"
+
+namespace stats {
+
+namespace {
+
+void require(bool ok, const char* message) {
+  if (!ok) throw std::invalid_argument(message);
+}
+
+void require_df(double df) { require(df > 0, "degrees of freedom must be positive"); }
+
+/// log P(Z <= x) for any x.
+double log_normal_lower(double x) { return gsl_sf_log_erfc(-x / std::numbers::sqrt2) - std::numbers::ln2; }
+
+/// d log P(Z <= x) / dx.
+double normal_lower_slope(double x) { return gsl_sf_hazard(-x); }
+
+/// The integrand of P(t U - ncp >= Z), U = sqrt(chi2(df) / df), over y = log U; `sign` is -1 for the
+/// opposite tail. Its logarithm has one maximum: the slope over U falls strictly.
+class ChiMixture {
+ public:
+  ChiMixture(double t, double df, double ncp, double sign)
+      : t_(t), df_(df), ncp_(ncp), sign_(sign), log_scale_(log_density_scale(df)) {}
+
+  double log_value(double y) const {
+    const double u = std::exp(y);
+    return log_scale_ + df_ * (y - std::expm1(2 * y) / 2) + log_normal_lower(sign_ * (t_ * u - ncp_));
+  }
+
+  double mode() const {
+    const auto slope = [this](double y) {
+      const double u = std::exp(y);
+      const double edge = sign_ * (t_ * u - ncp_);
+      return df_ * (1 - u * u) + sign_ * t_ * u * normal_lower_slope(edge);
+    };
+    double low = -1, high = 1;
+    while (slope(low) < 0) low *= 2;
+    while (slope(high) > 0) high *= 2;
+    return find_root(slope, low, high);
+  }
+
+  /// The trapezoidal rule out from the mode. The step resolves both the chi density (width 1/sqrt(2 df) in y)
+  /// and the normal edge (width 1/ncp).
+  double integral() const {
+    const double centre = mode();
+    const double top = log_value(centre);
+    if (!(top > -1e4)) return 0;
+    const double step = 0.4 / std::sqrt(2 * df_ + ncp_ * ncp_ + 16);
+    double sum = 1;
+    for (const double direction : {-1.0, 1.0}) {
+      for (int i = 1;; ++i) {
+        const double drop = log_value(centre + direction * i * step) - top;
+        if (drop < -44) break;
+        sum += std::exp(drop);
+      }
+    }
+    return std::exp(top) * sum * step;
+  }
+
+ private:
+  /// Log of the density of y at 0: log 2 + (df/2) log(df/2) - df/2 - log G(df/2), with Stirling's part of the
+  /// gamma function cancelled by hand.
+  static double log_density_scale(double df) {
+    return std::numbers::ln2 + 0.5 * std::log(df / 2) - 0.5 * std::log(2 * std::numbers::pi) -
+           std::log(gsl_sf_gammastar(df / 2));
+  }
+
+  double t_, df_, ncp_, sign_, log_scale_;
+};
+
+/// P(T <= t) for ncp >> 1: the trapezoidal rule over the normal variate instead, in which the edge is wide.
+double large_ncp_lower(double t, double df, double ncp) {
+  if (t <= 0) return 0;
+  constexpr double step = 0.25;
+  double sum = 0;
+  for (int i = -160; i <= 160; ++i) {
+    const double z = step * i, u = (z + ncp) / t;
+    sum += step * gsl_ran_ugaussian_pdf(z) * gsl_cdf_gamma_Q(df / 2 * u * u, df / 2, 1);
+  }
+  return sum;
+}
+
+double large_ncp_upper(double t, double df, double ncp) {
+  if (t <= 0) return 1;
+  constexpr double step = 0.25;
+  double sum = 0;
+  for (int i = -160; i <= 160; ++i) {
+    const double z = step * i, u = (z + ncp) / t;
+    sum += step * gsl_ran_ugaussian_pdf(z) * gsl_cdf_gamma_P(df / 2 * u * u, df / 2, 1);
+  }
+  return sum;
+}
+
+/// log of p / reference, held finite for the root finder where p is zero.
+double log_ratio(double p, double reference) { return std::max(std::log(p / reference), -1e6); }
+
+/// P(T >= |t|). The incomplete beta function of GSL turns to an approximation for large df.
+double student_tail(double t, double df) {
+  constexpr double largest_for_beta = 5e4;
+  t = std::abs(t);
+  if (std::isinf(t)) return 0;
+  if (df > largest_for_beta) return t == 0 ? 0.5 : ChiMixture(t, df, 0, -1).integral();
+  const double ratio = t * t / df;
+  if (ratio < 1) return 0.5 * gsl_cdf_beta_Q(ratio / (1 + ratio), 0.5, df / 2);
+  return 0.5 * gsl_cdf_beta_P(1 / (1 + ratio), df / 2, 0.5);
+}
+
+}  // namespace
+
+double student_upper(double t, double df) {
+  use_gsl_codes();
+  require_df(df);
+  require(!std::isnan(t), "t is not a number");
+  const double tail = student_tail(t, df);
+  return t > 0 ? tail : 1 - tail;
+}
+
+double student_lower(double t, double df) { return student_upper(-t, df); }
+
+double student_p(double t, double df, Alternative alternative) {
+  if (alternative == Alternative::Less) return student_lower(t, df);
+  if (alternative == Alternative::Greater) return student_upper(t, df);
+  return 2 * student_upper(std::abs(t), df);
+}
+
+double student_upper_quantile(double p, double df) {
+  use_gsl_codes();
+  require_df(df);
+  require(p > 0 && p < 1, "a probability must lie between 0 and 1");
+  if (p > 0.5) return -student_upper_quantile(1 - p, df);
+  if (p == 0.5) return 0;
+  // On the logarithm of t the logarithm of the tail is nearly straight far out, and smooth everywhere.
+  const auto excess = [&](double log_t) { return log_ratio(student_tail(std::exp(log_t), df), p); };
+  double low = -1, high = 1;
+  while (excess(low) < 0) low *= 2;
+  while (excess(high) > 0) high *= 2;
+  return std::exp(find_root(excess, low, high));
+}
+
+double noncentral_t_lower(double t, double df, double ncp) {
+  use_gsl_codes();
+  require_df(df);
+  require(!std::isnan(t) && std::isfinite(ncp), "t is not a number or the noncentrality is not finite");
+  if (std::isinf(t)) return t > 0 ? 1 : 0;
+  constexpr double large = 60;
+  if (ncp > large) return large_ncp_lower(t, df, ncp);
+  if (ncp < -large) return large_ncp_upper(-t, df, -ncp);
+  return ChiMixture(t, df, ncp, 1).integral();
+}
+
+double noncentral_t_upper(double t, double df, double ncp) { return noncentral_t_lower(-t, df, -ncp); }
+
+std::array<double, 2> noncentrality_interval(double t, double df, double confidence) {
+  use_gsl_codes();
+  require_df(df);
+  require(std::isfinite(t), "t is not finite");
+  require(confidence > 0 && confidence < 1, "a confidence must lie between 0 and 1");
+  const double tail = (1 - confidence) / 2;
+  // P(T >= t) rises with the noncentrality, from nothing to 1.
+  const auto bound = [&](auto probability, double direction) {
+    const auto excess = [&](double ncp) { return log_ratio(probability(t, df, ncp), tail); };
+    double reach = 2 + std::abs(t) / std::sqrt(df);
+    double inner = t, outer = t + direction * reach;
+    const double inside = excess(inner);
+    if (inside < 0) {
+      // With few degrees of freedom t itself may lie outside its own interval.
+      for (outer = t - direction * reach; excess(outer) < 0; outer = t - direction * reach) reach *= 2;
+    } else {
+      for (; excess(outer) > 0; outer = t + direction * reach) reach *= 2;
+    }
+    return find_root(excess, std::min(inner, outer), std::max(inner, outer));
+  };
+  return {bound([](double a, double b, double c) { return noncentral_t_upper(a, b, c); }, -1),
+          bound([](double a, double b, double c) { return noncentral_t_lower(a, b, c); }, 1)};
+}
+
+double hedges_factor(double df) {
+  use_gsl_codes();
+  require(df > 1, "Hedges' factor needs more than one degree of freedom");
+  // G(x) / (sqrt(x) G(x - 1/2)), with Stirling's parts of both gamma functions cancelled by hand.
+  const double x = df / 2, below = x - 0.5;
+  return std::exp((x - 1) * std::log1p(0.5 / below) - 0.5) * gsl_sf_gammastar(x) / gsl_sf_gammastar(below);
+}
+
+double fisher_upper(double x, double df1, double df2) {
+  use_gsl_codes();
+  require_df(df1);
+  require_df(df2);
+  require(x >= 0, "F must not be negative");
+  if (std::isinf(x)) return 0;
+  const double ratio = df1 * x / df2;
+  if (ratio < 1) return gsl_cdf_beta_Q(ratio / (1 + ratio), df1 / 2, df2 / 2);
+  return gsl_cdf_beta_P(1 / (1 + ratio), df2 / 2, df1 / 2);
+}
+
+}  // namespace stats

@@ -1,0 +1,94 @@
+#include "stats/inference/equivalence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "stats/inference/distributions.hpp"
+#include "stats/inference/t_test.hpp"
+
+namespace stats {
+
+namespace {
+
+TTestOptions options(double alpha, double null_value = 0) {
+  if (!(alpha > 0 && alpha < 0.5)) throw std::invalid_argument("alpha must lie between 0 and 1/2");
+  return {.confidence = 1 - 2 * alpha, .null_value = null_value, .effect_intervals = false};
+}
+
+void require_order(const Margins& margins) {
+  if (!std::isfinite(margins.low) || !std::isfinite(margins.high) || !(margins.low < margins.high))
+    throw std::invalid_argument("the low margin must lie below the high one");
+}
+
+/// Both one-sided tests from the t against a difference of zero.
+EquivalenceTest against(const TTest& test, const Margins& margins, double alpha, std::size_t n) {
+  EquivalenceTest out;
+  out.stderr_estimate = test.stderr_estimate;
+  out.estimate = test.t * test.stderr_estimate;
+  out.df = test.df;
+  out.t_lower = test.t - margins.low / test.stderr_estimate;
+  out.t_upper = test.t - margins.high / test.stderr_estimate;
+  out.p_lower = student_upper(out.t_lower, out.df);
+  out.p_upper = student_lower(out.t_upper, out.df);
+  out.p = std::max(out.p_lower, out.p_upper);
+  const double reach = student_upper_quantile(alpha, out.df);
+  out.ci = {(test.t - reach) * test.stderr_estimate, (test.t + reach) * test.stderr_estimate};
+  out.n = n;
+  out.n_missing = test.n_missing;
+  return out;
+}
+
+}  // namespace
+
+Result<EquivalenceTest> equivalence_one(std::span<const double> x, double reference, Margins margins,
+                                        double alpha) {
+  require_order(margins);
+  const auto test = t_test_one(x, options(alpha, reference));
+  if (!test) return Refusal{test.reason()};
+  return against(*test, margins, alpha, test->n);
+}
+
+Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
+                                           Margins margins, double alpha) {
+  require_order(margins);
+  const auto test = t_test_paired(x, y, options(alpha));
+  if (!test) return Refusal{test.reason()};
+  return against(*test, margins, alpha, test->n);
+}
+
+Result<EquivalenceTest> equivalence_independent(std::span<const double> x, std::span<const double> y,
+                                                Margins margins, double alpha) {
+  require_order(margins);
+  const auto test = t_test_independent(x, y, options(alpha));
+  if (!test) return Refusal{test.reason()};
+  return against(*test, margins, alpha, test->n_x + test->n_y);
+}
+
+Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<const double> y,
+                                          Margins margins, double alpha) {
+  require_order(margins);
+  const auto test = t_test_welch(x, y, options(alpha));
+  if (!test) return Refusal{test.reason()};
+  return against(*test, margins, alpha, test->n_x + test->n_y);
+}
+
+Result<NonInferiorityTest> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
+                                                  double margin, Better better, double alpha) {
+  if (!(margin > 0) || !std::isfinite(margin)) throw std::invalid_argument("a margin must be positive");
+  const auto test = t_test_paired(x, y, options(alpha));
+  if (!test) return Refusal{test.reason()};
+  const double sign = better == Better::Higher ? 1 : -1;
+  NonInferiorityTest out;
+  out.estimate = test->estimate;
+  out.stderr_estimate = test->stderr_estimate;
+  out.df = test->df;
+  out.t = (test->estimate + sign * margin) / test->stderr_estimate;
+  out.p = student_upper(sign * out.t, out.df);
+  out.bound = test->estimate - sign * student_upper_quantile(alpha, out.df) * test->stderr_estimate;
+  out.n = test->n;
+  out.n_missing = test->n_missing;
+  return out;
+}
+
+}  // namespace stats

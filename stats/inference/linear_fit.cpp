@@ -1,0 +1,215 @@
+#include "stats/inference/linear_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stats/inference/distributions.hpp"
+#include "stats/inference/sample.hpp"
+
+namespace stats {
+
+namespace {
+
+using Column = std::vector<Wide>;
+
+Wide dot(const Column& a, const Column& b, std::size_t from) {
+  Wide sum;
+  for (std::size_t i = from; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// Reflects `column` at the plane whose normal is `mirror`, both from row `from` on.
+void reflect(Column& column, const Column& mirror, Wide mirror_square, std::size_t from) {
+  const Wide factor = Wide(2) * dot(column, mirror, from) / mirror_square;
+  for (std::size_t i = from; i < column.size(); ++i) column[i] -= factor * mirror[i];
+}
+
+/// Columns whose part beyond the columns before is less than this share of their length depend on them.
+struct Precision {
+  double dependence;
+};
+constexpr Precision of_double{1e-14};  // the columns themselves are rounded
+constexpr Precision of_wide{1e-25};
+
+/// Householder's QR: the columns become R, y becomes Q^T y. False when columns depend on each other.
+bool triangulate(std::vector<Column>& columns, Column& y, Precision precision) {
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const double length = std::sqrt(dot(columns[j], columns[j], 0).value());
+    const Wide below = dot(columns[j], columns[j], j);
+    if (!(std::sqrt(below.value()) > precision.dependence * length)) return false;
+    Column mirror = columns[j];
+    const Wide norm = sqrt(below);
+    mirror[j] += mirror[j] < Wide(0) ? -norm : norm;
+    const Wide square = dot(mirror, mirror, j);
+    for (std::size_t k = j; k < columns.size(); ++k) reflect(columns[k], mirror, square, j);
+    reflect(y, mirror, square, j);
+  }
+  return true;
+}
+
+/// R^-1, upper triangular, as columns.
+std::vector<Column> inverse(const std::vector<Column>& r) {
+  const auto p = r.size();
+  std::vector<Column> out(p, Column(p));
+  for (std::size_t j = 0; j < p; ++j) {
+    for (std::size_t i = j + 1; i-- > 0;) {
+      Wide sum = i == j ? 1 : 0;
+      for (std::size_t k = i + 1; k <= j; ++k) sum -= r[k][i] * out[j][k];
+      out[j][i] = sum / r[i][i];
+    }
+  }
+  return out;
+}
+
+double residual_f(double explained, double rss, double slopes, double df) {
+  return explained / slopes / (rss / df);
+}
+
+/// Fits scaled columns; exponents bring the results back.
+Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& exponents, Column y,
+                      int y_exponent, bool intercept, Precision precision) {
+  const auto n = y.size(), p = columns.size();
+  if (n < p || p == 0) return Refusal{"fewer rows than coefficients"};
+  const auto of_y = moments(y);
+  const Wide total = intercept ? of_y.squares : dot(y, y, 0);
+  if (!triangulate(columns, y, precision)) return Refusal{"the columns depend on each other"};
+  const auto inverted = inverse(columns);
+
+  LinearFit out;
+  out.n = n;
+  out.df = static_cast<double>(n - p);
+  const double rss = dot(y, y, p).value();
+  out.rss = std::ldexp(rss, 2 * y_exponent);
+  if (out.df > 0) out.residual_sd = std::ldexp(std::sqrt(rss / out.df), y_exponent);
+  for (std::size_t i = 0; i < p; ++i) {
+    Wide coefficient, square;
+    for (std::size_t j = i; j < p; ++j) {
+      coefficient += inverted[j][i] * y[j];
+      square += inverted[j][i] * inverted[j][i];
+    }
+    const int back = y_exponent - exponents[i];
+    out.coefficients.push_back(std::ldexp(coefficient.value(), back));
+    if (out.df > 0) out.standard_errors.push_back(std::ldexp(std::sqrt(rss / out.df * square.value()), back));
+  }
+  const double slopes = static_cast<double>(p) - (intercept ? 1 : 0);
+  if (!(total.high > 0)) return out;
+  out.r2 = (Wide(1) - dot(y, y, p) / total).value();
+  if (slopes > 0 && out.df > 0 && rss > 0) {
+    out.f = residual_f((total - dot(y, y, p)).value(), rss, slopes, out.df);
+    out.f_p = fisher_upper(std::max(*out.f, 0.0), slopes, out.df);
+  }
+  return out;
+}
+
+/// Rows that lack nothing.
+struct Rows {
+  std::vector<std::vector<double>> columns;
+  std::vector<double> y;
+  std::size_t n_missing = 0;
+};
+
+Result<Rows> complete(const std::vector<std::vector<double>>& columns, std::span<const double> y) {
+  for (const auto& column : columns) {
+    if (column.size() != y.size()) throw std::invalid_argument("columns and y differ in length");
+  }
+  Rows out;
+  out.columns.resize(columns.size());
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const auto any = [&](auto test) {
+      return test(y[i]) ||
+             std::any_of(columns.begin(), columns.end(), [&](const auto& c) { return test(c[i]); });
+    };
+    if (any([](double v) { return std::isnan(v); })) {
+      ++out.n_missing;
+      continue;
+    }
+    if (any([](double v) { return std::isinf(v); })) return Refusal{"a value is infinite"};
+    for (std::size_t j = 0; j < columns.size(); ++j) out.columns[j].push_back(columns[j][i]);
+    out.y.push_back(y[i]);
+  }
+  return out;
+}
+
+Result<LinearFit> with_missing(Result<LinearFit> result, std::size_t n_missing) {
+  if (!result) return result;
+  LinearFit out = *result;
+  out.n_missing = n_missing;
+  return out;
+}
+
+}  // namespace
+
+Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
+                             bool intercept) {
+  const auto rows = complete(columns, y);
+  if (!rows) return Refusal{rows.reason()};
+  std::vector<Column> design;
+  std::vector<int> exponents;
+  if (intercept) {
+    design.emplace_back(rows->y.size(), Wide(1));
+    exponents.push_back(0);
+  }
+  for (const auto& column : rows->columns) {
+    exponents.push_back(common_exponent(column));
+    design.push_back(scaled(column, exponents.back()));
+  }
+  const int y_exponent = common_exponent(rows->y);
+  return with_missing(
+      fit(std::move(design), exponents, scaled(rows->y, y_exponent), y_exponent, intercept, of_double),
+      rows->n_missing);
+}
+
+Result<LinearFit> fit_polynomial(std::span<const double> x, std::span<const double> y, std::size_t degree) {
+  const auto pairs = present_pairs(x, y);
+  if (!pairs) return Refusal{pairs.reason()};
+  const int exponent = common_exponent(pairs->x), y_exponent = common_exponent(pairs->y);
+  const auto base = scaled(pairs->x, exponent);
+  std::vector<Column> design{Column(base.size(), Wide(1))};
+  std::vector<int> exponents{0};
+  for (std::size_t k = 1; k <= degree; ++k) {
+    design.push_back(design.back());
+    for (std::size_t i = 0; i < base.size(); ++i) design[k][i] = design[k][i] * base[i];
+    exponents.push_back(exponent * static_cast<int>(k));
+  }
+  return with_missing(
+      fit(std::move(design), exponents, scaled(pairs->y, y_exponent), y_exponent, true, of_wide),
+      pairs->n_missing);
+}
+
+Result<OneWayAnova> anova_one_way(const std::vector<std::vector<double>>& groups) {
+  OneWayAnova out;
+  std::vector<double> all;
+  std::vector<std::vector<double>> kept;
+  for (const auto& group : groups) {
+    const auto sample = present(group);
+    if (!sample) return Refusal{sample.reason()};
+    out.n_missing += sample->n_missing;
+    if (sample->values.empty()) continue;
+    kept.push_back(sample->values);
+    all.insert(all.end(), sample->values.begin(), sample->values.end());
+  }
+  out.n = all.size();
+  if (kept.size() < 2) return Refusal{"fewer than two groups with values"};
+  if (all.size() <= kept.size()) return Refusal{"no degree of freedom within the groups"};
+  const int exponent = common_exponent(all);
+  const auto grand = moments(scaled(all, exponent));
+  Wide within, between;
+  for (const auto& group : kept) {
+    const auto m = moments(scaled(group, exponent));
+    within += m.squares;
+    between += (m.mean - grand.mean) * (m.mean - grand.mean) * Wide(static_cast<double>(m.n));
+  }
+  if (!(within.high > 0)) return Refusal{"all values within the groups are equal"};
+  out.df_between = static_cast<double>(kept.size() - 1);
+  out.df_within = static_cast<double>(all.size() - kept.size());
+  out.ss_between = std::ldexp(between.value(), 2 * exponent);
+  out.ss_within = std::ldexp(within.value(), 2 * exponent);
+  out.f = residual_f(between.value(), within.value(), out.df_between, out.df_within);
+  out.p = fisher_upper(out.f, out.df_between, out.df_within);
+  out.eta_squared = (between / (between + within)).value();
+  return out;
+}
+
+}  // namespace stats

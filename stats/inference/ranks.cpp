@@ -1,0 +1,104 @@
+#include "stats/inference/ranks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stats {
+
+namespace {
+
+/// Twice a midrank is whole.
+std::vector<std::size_t> doubled(std::span<const double> ranks) {
+  std::vector<std::size_t> out;
+  for (const double r : ranks) out.push_back(static_cast<std::size_t>(std::lround(2 * r)));
+  return out;
+}
+
+RankSumTails tails(std::span<const double> weights, double sum) {
+  const auto at = static_cast<std::size_t>(std::lround(2 * sum));
+  RankSumTails out;
+  double total = 0;
+  // Rare sums first, from both ends, so that small tails keep their digits.
+  for (std::size_t s = 0; s < weights.size(); ++s) {
+    if (s <= at) out.lower += weights[s];
+  }
+  for (std::size_t s = weights.size(); s-- > at;) out.upper += weights[s];
+  total = out.lower + out.upper - weights[at];
+  return {std::min(out.lower / total, 1.0), std::min(out.upper / total, 1.0)};
+}
+
+}  // namespace
+
+Midranks midranks(std::span<const double> values, double resolution) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+  Midranks out;
+  out.ranks.resize(values.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first + 1;
+    while (end < order.size() && values[order[end]] - values[order[end - 1]] <= resolution) ++end;
+    const auto size = static_cast<double>(end - first);
+    out.tie_sum += size * (size * size - 1);
+    for (std::size_t i = first; i < end; ++i) out.ranks[order[i]] = static_cast<double>(first + 1 + end) / 2;
+    first = end;
+  }
+  return out;
+}
+
+RankSumTails signed_rank_tails(std::span<const double> ranks, double sum) {
+  const auto steps = doubled(ranks);
+  const auto largest = std::accumulate(steps.begin(), steps.end(), std::size_t{0});
+  std::vector<double> weights(largest + 1, 0.0);
+  weights[0] = 1;
+  std::size_t reached = 0;
+  for (const auto step : steps) {
+    reached += step;
+    // Halved at each step, so the weights are probabilities at any n.
+    for (std::size_t s = reached + 1; s-- > 0;) {
+      weights[s] = (weights[s] + (s >= step ? weights[s - step] : 0)) / 2;
+    }
+  }
+  return tails(weights, sum);
+}
+
+double rank_sum_work(std::span<const double> ranks, std::size_t chosen) {
+  const double total = std::accumulate(ranks.begin(), ranks.end(), 0.0);
+  return static_cast<double>(ranks.size()) * static_cast<double>(std::min(chosen, ranks.size() - chosen)) *
+         2 * total;
+}
+
+RankSumTails rank_sum_tails(std::span<const double> ranks, std::size_t chosen, double sum) {
+  if (2 * chosen > ranks.size()) {
+    const double total = std::accumulate(ranks.begin(), ranks.end(), 0.0);
+    const auto other = rank_sum_tails(ranks, ranks.size() - chosen, total - sum);
+    return {other.upper, other.lower};
+  }
+  auto steps = doubled(ranks);
+  std::sort(steps.begin(), steps.end());
+  // At most the largest `chosen` ranks add up.
+  const auto largest =
+      std::accumulate(steps.end() - static_cast<std::ptrdiff_t>(chosen), steps.end(), std::size_t{0});
+  const std::size_t width = largest + 1;
+  // weights[m][s]: choices of m ranks so far that add up to s, as probabilities of the draw.
+  std::vector<double> weights((chosen + 1) * width, 0.0);
+  weights[0] = 1;
+  std::size_t seen = 0;
+  for (const auto step : steps) {
+    ++seen;
+    for (std::size_t m = std::min(seen, chosen); m > 0; --m) {
+      double* to = &weights[m * width];
+      const double* from = &weights[(m - 1) * width];
+      for (std::size_t s = width; s-- > step;) to[s] += from[s - step];
+    }
+    // The number of choices grows like a binomial coefficient; keep it in range.
+    const double scale = *std::max_element(weights.begin(), weights.end());
+    if (scale > 1e200) {
+      for (auto& w : weights) w /= 1e200;
+    }
+  }
+  return tails(std::span(weights).subspan(chosen * width, width), sum);
+}
+
+}  // namespace stats

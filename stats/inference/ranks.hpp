@@ -1,0 +1,33 @@
+#pragma once
+/// Midranks, and exact distributions of sums of ranks. For the rank tests in this folder.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace stats {
+
+struct Midranks {
+  std::vector<double> ranks;  ///< in the order of the values, from 1; ties share the mean of theirs
+  double tie_sum = 0;         ///< sum over ties of (t^3 - t)
+  bool has_ties() const { return tie_sum > 0; }
+};
+
+/// Neighbours in order that differ by `resolution` or less share their rank.
+Midranks midranks(std::span<const double> values, double resolution = 0);
+
+/// P(S <= s) and P(S >= s) for a sum S of midranks.
+struct RankSumTails {
+  double lower = 0, upper = 0;
+};
+
+/// S adds each rank with probability 1/2: the signed-rank test's null distribution given the ranks.
+RankSumTails signed_rank_tails(std::span<const double> ranks, double sum);
+
+/// S adds `chosen` of the ranks, every choice equally likely: the rank-sum test's.
+RankSumTails rank_sum_tails(std::span<const double> ranks, std::size_t chosen, double sum);
+
+/// Steps that rank_sum_tails takes.
+double rank_sum_work(std::span<const double> ranks, std::size_t chosen);
+
+}  // namespace stats

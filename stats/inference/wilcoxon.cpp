@@ -1,0 +1,202 @@
+#include "stats/inference/wilcoxon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "stats/inference/ranks.hpp"
+#include "stats/inference/sample.hpp"
+#include "stats/quantiles.hpp"
+
+namespace stats {
+
+namespace {
+
+constexpr std::size_t largest_exact_n = 1000;
+constexpr double largest_exact_work = 1e9;
+
+double two_sided(const RankSumTails& tails) { return std::min(1.0, 2 * std::min(tails.lower, tails.upper)); }
+
+/// Two-sided p of a statistic `distance` from its mean, moved towards it by `correction`.
+double normal_p(double distance, double variance, double correction) {
+  const double z = std::max(std::abs(distance) - correction, 0.0) / std::sqrt(variance);
+  return 2 * normal_probability(-z);
+}
+
+double median_in_place(std::vector<double>& values) {
+  const auto half = values.size() / 2;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(half);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2) return *middle;
+  return std::midpoint(*std::max_element(values.begin(), middle), *middle);
+}
+
+/// Sums of the ranks of positive and of negative differences, zeros left out.
+struct SignedRanks {
+  std::vector<double> ranks;  ///< of the differences that are not zero
+  double plus = 0, minus = 0, squares = 0;
+  double mean() const { return (plus + minus) / 2; }
+  double variance() const { return squares / 4; }
+};
+
+SignedRanks by_sign(std::span<const double> differences, std::span<const double> ranks, double resolution) {
+  SignedRanks out;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (std::abs(differences[i]) <= resolution) continue;
+    (differences[i] > 0 ? out.plus : out.minus) += ranks[i];
+    out.squares += ranks[i] * ranks[i];
+    out.ranks.push_back(ranks[i]);
+  }
+  return out;
+}
+
+std::vector<double> magnitudes(std::span<const double> values) {
+  std::vector<double> out;
+  for (const double v : values) out.push_back(std::abs(v));
+  return out;
+}
+
+std::vector<double> walsh_averages(std::span<const double> values) {
+  std::vector<double> out;
+  out.reserve(values.size() * (values.size() + 1) / 2);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t j = i; j < values.size(); ++j) out.push_back(std::midpoint(values[i], values[j]));
+  }
+  return out;
+}
+
+/// Largest count of Walsh averages that may be cut off each end: one less than the smallest sum w of
+/// ranks 1..n with P(W <= w) >= tail, and none where even w = 0 is too likely.
+std::size_t averages_to_cut(std::size_t n, double tail) {
+  std::vector<double> weights(n * (n + 1) / 2 + 1, 0.0);
+  weights[0] = 1;
+  for (std::size_t rank = 1; rank <= n; ++rank) {
+    for (std::size_t s = rank * (rank + 1) / 2 + 1; s-- > 0;)
+      weights[s] = (weights[s] + (s >= rank ? weights[s - rank] : 0)) / 2;
+  }
+  double sum = 0;
+  std::size_t w = 0;
+  // The quantile forgives rounding of a sum that equals the tail.
+  while ((sum += weights[w]) < tail * (1 - 1e-14)) ++w;
+  return w == 0 ? 0 : w - 1;
+}
+
+void fill_location(SignedRank& out, std::span<const double> differences, double confidence) {
+  auto walsh = walsh_averages(differences);
+  const bool plain = !out.has_ties && out.n == out.n_nonzero && out.n <= largest_exact_n;
+  if (plain) {
+    std::sort(walsh.begin(), walsh.end());
+    const auto cut = averages_to_cut(out.n, (1 - confidence) / 2);
+    out.hodges_lehmann_ci = {walsh[cut], walsh[walsh.size() - 1 - cut]};
+  }
+  out.hodges_lehmann = median_in_place(walsh);
+}
+
+void fill_pratt(SignedRank& out, std::span<const double> differences, double resolution) {
+  const auto all = midranks(magnitudes(differences), resolution);
+  const auto s = by_sign(differences, all.ranks, resolution);
+  out.pratt_w_plus = s.plus;
+  out.pratt_z = (s.plus - s.mean()) / std::sqrt(s.variance());
+  out.pratt_p_normal = normal_p(s.plus - s.mean(), s.variance(), 0);
+  if (out.n <= largest_exact_n) out.pratt_p_exact = two_sided(signed_rank_tails(s.ranks, s.plus));
+}
+
+}  // namespace
+
+Result<SignedRank> signed_rank(std::span<const double> differences, double confidence, double resolution) {
+  if (!(confidence > 0 && confidence < 1))
+    throw std::invalid_argument("a confidence must lie between 0 and 1");
+  if (!(resolution >= 0)) throw std::invalid_argument("a resolution must not be negative");
+  const auto sample = present(differences);
+  if (!sample) return Refusal{sample.reason()};
+  if (sample->values.empty()) return Refusal{"no values"};
+  std::vector<double> nonzero;
+  for (const double d : sample->values) {
+    if (std::abs(d) > resolution) nonzero.push_back(d);
+  }
+  if (nonzero.empty()) return Refusal{"no difference that is not zero"};
+
+  const auto ranked = midranks(magnitudes(nonzero), resolution);
+  const auto s = by_sign(nonzero, ranked.ranks, resolution);
+  SignedRank out;
+  out.n = sample->values.size();
+  out.n_missing = sample->n_missing;
+  out.n_nonzero = nonzero.size();
+  out.has_ties = ranked.has_ties();
+  out.w_plus = s.plus;
+  out.w_minus = s.minus;
+  out.rank_biserial = (s.plus - s.minus) / (s.plus + s.minus);
+  if (out.n_nonzero <= largest_exact_n) {
+    const auto tails = signed_rank_tails(s.ranks, s.plus);
+    out.p_exact = two_sided(tails);
+    out.p_exact_less = tails.lower;
+    out.p_exact_greater = tails.upper;
+  }
+  out.p_normal = normal_p(s.plus - s.mean(), s.variance(), 0.5);
+  out.p_normal_uncorrected = normal_p(s.plus - s.mean(), s.variance(), 0);
+  out.default_is_exact = out.n_nonzero < 50 && !out.has_ties && out.n_nonzero == out.n;
+  out.p_default = out.default_is_exact ? *out.p_exact : out.p_normal;
+  fill_pratt(out, sample->values, resolution);
+  fill_location(out, sample->values, confidence);
+  return out;
+}
+
+Result<SignedRank> signed_rank(std::span<const double> x, std::span<const double> y, double confidence) {
+  const auto pairs = present_pairs(x, y);
+  if (!pairs) return Refusal{pairs.reason()};
+  std::vector<double> differences;
+  double largest = 0;
+  for (std::size_t i = 0; i < pairs->x.size(); ++i) {
+    differences.push_back(pairs->x[i] - pairs->y[i]);
+    largest = std::max({largest, std::abs(pairs->x[i]), std::abs(pairs->y[i])});
+  }
+  const double resolution = 8 * std::numeric_limits<double>::epsilon() * largest;
+  auto result = signed_rank(std::span<const double>(differences), confidence, resolution);
+  if (!result) return result;
+  SignedRank out = *result;
+  out.n_missing = pairs->n_missing;
+  return out;
+}
+
+Result<MannWhitney> mann_whitney(std::span<const double> x, std::span<const double> y) {
+  const auto a = present(x), b = present(y);
+  if (!a) return Refusal{a.reason()};
+  if (!b) return Refusal{b.reason()};
+  if (a->values.empty() || b->values.empty()) return Refusal{"a group without values"};
+  std::vector<double> all = a->values;
+  all.insert(all.end(), b->values.begin(), b->values.end());
+  const auto ranked = midranks(all);
+  MannWhitney out;
+  out.n_x = a->values.size();
+  out.n_y = b->values.size();
+  out.n_missing = a->n_missing + b->n_missing;
+  out.has_ties = ranked.has_ties();
+  double rank_sum = 0;
+  for (std::size_t i = 0; i < out.n_x; ++i) rank_sum += ranked.ranks[i];
+  const auto n_x = static_cast<double>(out.n_x), n_y = static_cast<double>(out.n_y), n = n_x + n_y;
+  out.u = rank_sum - n_x * (n_x + 1) / 2;
+  out.probability_of_superiority = out.u / (n_x * n_y);
+  out.rank_biserial = 2 * out.probability_of_superiority - 1;
+  if (rank_sum_work(ranked.ranks, out.n_x) <= largest_exact_work) {
+    const auto tails = rank_sum_tails(ranked.ranks, out.n_x, rank_sum);
+    out.p_exact = two_sided(tails);
+    out.p_exact_less = tails.lower;
+    out.p_exact_greater = tails.upper;
+  }
+  const double variance = n_x * n_y / 12 * (n + 1 - ranked.tie_sum / (n * (n - 1)));
+  if (variance > 1e-9 * n_x * n_y) {
+    out.p_normal = normal_p(out.u - n_x * n_y / 2, variance, 0.5);
+    out.p_normal_uncorrected = normal_p(out.u - n_x * n_y / 2, variance, 0);
+  }
+  std::vector<double> differences;
+  for (const double u : a->values) {
+    for (const double v : b->values) differences.push_back(u - v);
+  }
+  out.hodges_lehmann = median_in_place(differences);
+  return out;
+}
+
+}  // namespace stats

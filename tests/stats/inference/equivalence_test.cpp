@@ -1,0 +1,131 @@
+#include "stats/inference/equivalence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stats/inference/t_test.hpp"
+#include "tests/stats/inference/sampling.hpp"
+#include "tests/stats/oracle.hpp"
+
+namespace {
+
+using namespace stats;
+using oracle::expect_field;
+using Values = std::vector<double>;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+void expect_case(const nlohmann::json& c, const Result<EquivalenceTest>& got, double reference) {
+  if (oracle::is_undefined(c)) {
+    oracle::expect_refused(c, got);
+    return;
+  }
+  ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
+  expect_field(c, "df", got->df);
+  expect_field(c, "t_lower", got->t_lower);
+  expect_field(c, "p_lower", got->p_lower);
+  expect_field(c, "t_upper", got->t_upper);
+  expect_field(c, "p_upper", got->p_upper);
+  expect_field(c, "p_tost", got->p);
+  if (!oracle::asks(c.at("expect"), "ci90")) return;
+  const auto& ci = c.at("expect").at("ci90");
+  // Packs give the interval of mean - mu, except where the answer was recomputed in 50 digits: there it is
+  // that of the mean. The middle tells which.
+  const double middle = (oracle::number(ci[0]) + oracle::number(ci[1])) / 2;
+  const double moved = std::abs(middle - reference) < std::abs(middle) ? reference : 0;
+  const double of_mean =
+      std::abs(middle - got->estimate - moved) < std::abs(middle - got->estimate) ? moved : 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    oracle::expect_number(c.at("id").get<std::string>() + ": ci90", got->ci[i] + of_mean, ci[i],
+                          c.at("rtol").get<double>(), got->stderr_estimate);
+  }
+}
+
+TEST(EquivalenceTest, Oracle) {
+  if (!oracle::has("tost")) GTEST_SKIP() << "the pack has no tost.json";
+  for (const auto& c : oracle::cases("tost")) {
+    const auto& input = c.at("input");
+    const auto op = c.at("op").get<std::string>();
+    const auto x = oracle::numbers(input.at("x"));
+    const auto y = input.contains("y") ? oracle::numbers(input.at("y")) : Values{};
+    const Margins margins{input.at("low").get<double>(), input.at("high").get<double>()};
+    const double reference = input.value("mu", 0.0);
+    if (op == "tost.one") {
+      expect_case(c, equivalence_one(x, reference, margins), reference);
+    } else if (op == "tost.paired") {
+      expect_case(c, equivalence_paired(x, y, margins), 0);
+    } else if (op == "tost.indep") {
+      expect_case(c, equivalence_independent(x, y, margins), 0);
+    } else if (op == "tost.welch") {
+      expect_case(c, equivalence_welch(x, y, margins), 0);
+    } else {
+      ADD_FAILURE() << c.at("id") << ": unknown operation " << op;
+    }
+  }
+}
+
+TEST(EquivalenceTest, IsTheIntervalInsideTheMargins) {
+  std::mt19937_64 random(2);
+  int shown = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto x = sampling::normal(random, 20, 0.1), y = sampling::normal(random, 20);
+    const auto got = equivalence_paired(x, y, {-0.7, 0.7});
+    ASSERT_TRUE(got);
+    const bool inside = got->ci[0] > -0.7 && got->ci[1] < 0.7;
+    EXPECT_EQ(got->p < 0.05, inside);
+    shown += inside;
+  }
+  EXPECT_GT(shown, 20);
+  EXPECT_LT(shown, 280);
+}
+
+TEST(EquivalenceTest, SwappingGroupsMirrorsTheMargins) {
+  const Values x{4.1, 5, 3.2, 4.8, 4.4, 5.5}, y{4, 5.1, 3.9, 4.2, 4.9, 4.6};
+  const auto a = equivalence_welch(x, y, {-0.3, 0.8}), b = equivalence_welch(y, x, {-0.8, 0.3});
+  ASSERT_TRUE(a && b);
+  EXPECT_DOUBLE_EQ(a->p_lower, b->p_upper);
+  EXPECT_DOUBLE_EQ(a->p_upper, b->p_lower);
+  EXPECT_DOUBLE_EQ(a->ci[0], -b->ci[1]);
+}
+
+TEST(EquivalenceTest, AtTheMarginTheErrorRateIsAlpha) {
+  // One-sided p at the margin is uniform; the other test hardly ever decides with margins this wide.
+  constexpr std::size_t sets = 3000;
+  std::mt19937_64 random(17);
+  std::vector<double> p;
+  for (std::size_t i = 0; i < sets; ++i)
+    p.push_back(equivalence_one(sampling::normal(random, 16, 50), 0, {-50, 50})->p);
+  EXPECT_LT(sampling::uniform_distance(p), sampling::critical_distance(sets));
+}
+
+TEST(EquivalenceTest, RefusesAndRejects) {
+  EXPECT_FALSE(equivalence_one(Values(8, 4.0), 4.0, {}).reason().empty());
+  EXPECT_FALSE(equivalence_paired(Values{1, unknown}, Values{2, 3}, {}).reason().empty());
+  EXPECT_THROW(equivalence_one(Values{1, 2}, 0, {1, 1}), std::invalid_argument);
+  EXPECT_THROW(equivalence_one(Values{1, 2}, 0, {-unknown, 1}), std::invalid_argument);
+  EXPECT_THROW(equivalence_one(Values{1, 2}, 0, {}, 0.5), std::invalid_argument);
+}
+
+TEST(NonInferiorityTest, IsTheOneSidedTestAtTheMargin) {
+  const Values x{4.1, 5, 3.2, 4.8, 4.4, 5.5}, y{4, 5.1, 3.9, 4.2, 4.9, 4.6};
+  const auto higher = non_inferiority_paired(x, y, 0.5, Better::Higher);
+  const auto by_test = t_test_paired(x, y, {.alternative = Alternative::Greater, .null_value = -0.5});
+  ASSERT_TRUE(higher && by_test);
+  EXPECT_NEAR(higher->p, by_test->p, 1e-14);
+  EXPECT_NEAR(higher->t, by_test->t, 1e-13);
+  EXPECT_NEAR(higher->bound, by_test->ci[0], 1e-14);
+  // Sickness: lower is better, so the same data with both signs turned.
+  Values nx, ny;
+  for (const double v : x) nx.push_back(-v);
+  for (const double v : y) ny.push_back(-v);
+  const auto lower = non_inferiority_paired(nx, ny, 0.5, Better::Lower);
+  ASSERT_TRUE(lower);
+  EXPECT_DOUBLE_EQ(lower->p, higher->p);
+  EXPECT_DOUBLE_EQ(lower->bound, -higher->bound);
+  EXPECT_THROW(non_inferiority_paired(x, y, 0, Better::Higher), std::invalid_argument);
+  EXPECT_FALSE(non_inferiority_paired(x, x, 0.5, Better::Higher));
+}
+
+}  // namespace
