@@ -28,11 +28,11 @@ struct TrialRecord {
   int repeats = -1;                            ///< of a repeated showing: position of its original
 };
 
-/// One catch page.
+/// One catch page that was answered.
 struct CatchRecord {
   std::string participant;
   int visit = 1;
-  bool correct = false;  ///< false also when it was left unanswered
+  bool correct = false;
 };
 
 struct Exclusion {

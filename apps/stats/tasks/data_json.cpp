@@ -1,0 +1,181 @@
+#include "apps/stats/tasks/data_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace apps {
+
+namespace {
+
+std::string counted(std::size_t n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+Json protocol_json(const TaskData& data) {
+  return {{"task", task_name(data.task)},
+          {"name", data.protocol.name},
+          {"version", data.protocol.version},
+          {"sha256", data.protocol.sha256},
+          {"participants_planned", data.protocol.participants}};
+}
+
+std::vector<std::string> notes_of(const TaskData& data) {
+  const std::string task = data.task == TaskKind::Task1 ? "Task 1: " : "Task 2: ";
+  std::vector<std::string> notes;
+  if (data.test_data) notes.push_back(task + "these are test data, not a study.");
+  if (!data.simulated.empty())
+    notes.push_back(task + counted(data.simulated.size(), "participant") +
+                    " simulated by an observer model.");
+  if (data.flow.test_left_out > 0)
+    notes.push_back(task + counted(static_cast<std::size_t>(data.flow.test_left_out), "session") +
+                    " of test data left out.");
+  if (data.flow.simulated_left_out > 0)
+    notes.push_back(task + counted(static_cast<std::size_t>(data.flow.simulated_left_out), "session") +
+                    " of simulated observers left out beside those of people.");
+  const std::string gaze = data.gaze_problem();
+  if (!gaze.empty()) notes.push_back(task + gaze + ".");
+  return notes;
+}
+
+/// One line of the certificates.
+struct TimedCell {
+  int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
+  std::map<std::string, int> grades;
+  study::FpsSetting nominal;
+  double mean = 0, sd = 0, longest_ms = 0;
+  std::int64_t late = 0;
+
+  void add(const study::TaskShowing& shown) {
+    ++showings;
+    nominal = shown.nominal;
+    if (!shown.verdict) {
+      ++unjudged;
+    } else {
+      ++(*shown.verdict == study::Verdict::Pass       ? pass
+         : *shown.verdict == study::Verdict::Degraded ? degraded
+                                                      : fail);
+    }
+    ++grades[std::string(1, static_cast<char>(shown.grade))];
+    mean += shown.realised.mean;
+    sd += shown.realised.sd;
+    longest_ms = std::max(longest_ms, shown.longest_ms);
+    late += shown.late;
+  }
+};
+
+Json timed_json(const TimedCell& cell) {
+  const bool scheduled = cell.nominal.mean > 0;
+  return {{"showings", cell.showings},
+          {"pass", cell.pass},
+          {"degraded", cell.degraded},
+          {"fail", cell.fail},
+          {"unjudged", cell.unjudged},
+          {"grades", cell.grades},
+          {"nominal_mean_fps", scheduled ? Json(cell.nominal.mean) : Json()},
+          {"nominal_sd_fps", scheduled ? Json(cell.nominal.sd) : Json()},
+          {"realised_mean_fps", cell.mean / cell.showings},
+          {"realised_sd_fps", cell.sd / cell.showings},
+          {"longest_ms", cell.longest_ms},
+          {"late_frames", cell.late}};
+}
+
+int place(const std::vector<std::string>& list, const std::string& item) {
+  return static_cast<int>(std::find(list.begin(), list.end(), item) - list.begin());
+}
+
+}  // namespace
+
+Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks) {
+  std::set<std::string> observers, simulated;
+  std::map<std::string, int> gaze, stations, displays;
+  bool test_data = true, tracked = true;
+  Json protocols = Json::array(), notes = Json::array();
+  for (const TaskData* data : tasks) {
+    observers.insert(data->observers.begin(), data->observers.end());
+    simulated.insert(data->simulated.begin(), data->simulated.end());
+    for (const auto& [source, n] : data->gaze) gaze[source] += n;
+    for (const auto& [station, n] : data->stations) stations[station] += n;
+    for (const auto& [display, n] : data->displays) displays[display] += n;
+    test_data = test_data && data->test_data;
+    tracked = tracked && data->gaze_problem().empty();
+    protocols.push_back(protocol_json(*data));
+    for (const std::string& note : notes_of(*data)) notes.push_back(note);
+  }
+  return {{"database", database},
+          {"test_data", test_data && !tasks.empty()},
+          {"simulated", simulated.size()},
+          {"observers", observers},
+          {"gaze", gaze},
+          {"tracked_gaze", tracked && !tasks.empty()},
+          {"stations", stations},
+          {"displays", displays},
+          {"protocols", protocols},
+          {"notes", notes}};
+}
+
+Json flow_json(const TaskFlow& flow) {
+  const auto in_state = [&](const char* state) {
+    const auto found = flow.by_state.find(state);
+    return found == flow.by_state.end() ? 0 : found->second;
+  };
+  return {{"started", flow.started},
+          {"not_eligible", in_state("not eligible")},
+          {"stopped", in_state("stopped")},
+          {"dropped_out", in_state("dropped out")},
+          {"open", in_state("open")},
+          {"done", in_state("done")},
+          {"withdrawn", flow.withdrawn},
+          {"set_aside", {{"test_data", flow.test_left_out}, {"simulated", flow.simulated_left_out}}},
+          {"excluded_visits", flow.excluded_visits},
+          {"excluded_participants", flow.excluded_participants},
+          {"analysed", flow.analysed},
+          {"trials_planned", flow.trials_planned},
+          {"trials_answered", flow.trials_answered},
+          {"trials_excluded", flow.trials_excluded},
+          {"trials_analysed", flow.trials_analysed},
+          {"practice", flow.practice},
+          {"repeat", flow.repeat}};
+}
+
+Json exclusions_json(const TaskData& data) {
+  Json list = Json::array();
+  for (const auto& one : data.exclusions) {
+    list.push_back({{"task", task_name(data.task)},
+                    {"participant", one.participant},
+                    {"visit", one.visit},
+                    {"position", one.position < 0 ? Json() : Json(one.position)},
+                    {"rule", one.rule},
+                    {"reason", one.reason},
+                    {"actor", one.by_hand() ? "experimenter" : "rule"},
+                    {"answers", one.answers}});
+  }
+  return list;
+}
+
+Json timing_json(const TaskData& data) {
+  std::map<std::tuple<int, int, int>, TimedCell> cells;
+  const auto& protocol = data.protocol;
+  for (const TimedShowing& one : data.showings) {
+    if (!one.shown.played) continue;
+    const auto& what = one.shown.what;
+    cells[{place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
+           place(protocol.methods, what.method)}]
+        .add(one.shown);
+  }
+  Json list = Json::array();
+  for (const auto& [key, cell] : cells) {
+    const auto& [scene, n_star, method] = key;
+    Json json{{"task", task_name(data.task)},
+              {"scene", data.scenes[static_cast<std::size_t>(scene)]},
+              {"n_star", protocol.n_stars[static_cast<std::size_t>(n_star)]},
+              {"method", protocol.methods[static_cast<std::size_t>(method)]}};
+    json.update(timed_json(cell));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace apps

@@ -1,0 +1,19 @@
+#pragma once
+/// What was analysed and what was not (docs/results.md: study, flow, exclusions, timing).
+
+#include <string>
+#include <vector>
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+
+namespace apps {
+
+/// "study" of one or two tasks; `database`: name to show.
+Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
+Json flow_json(const TaskFlow& flow);
+/// Lists.
+Json exclusions_json(const TaskData& data);
+Json timing_json(const TaskData& data);
+
+}  // namespace apps

@@ -1,0 +1,77 @@
+#include "apps/stats/tasks/hypotheses_json.hpp"
+
+namespace apps {
+
+namespace {
+
+Json test_json(const stats::HypothesisTest& test) {
+  Json json{{"label", test.label}};
+  if (!test.score.empty()) {
+    json["score"] = test.score;
+    json["n_star"] = test.n_star;
+  }
+  json["a"] = test.a;
+  json["b"] = test.b;
+  json["n"] = test.n;
+  if (test.k) json["k"] = *test.k;
+  json["estimate"] = json_number(test.estimate);
+  json["ci"] = json_interval(test.ci);
+  json["ci_confidence"] = test.ci_confidence;
+  json["margin"] = json_number(test.margin);
+  json["p"] = json_number(test.p);
+  json["p_holm"] = json_number(test.p_holm);
+  json["stars"] = json_stars(test.p);
+  json["stars_holm"] = json_stars(test.p_holm);
+  json["holds"] = test.holds;
+  json["against"] = test.against;
+  json["reason"] = test.reason;
+  json["paper_p"] = json_number(test.paper_p);
+  json["paper_holds"] = test.paper_holds;
+  if (test.p_holm_of_five) json["p_holm_of_five"] = *test.p_holm_of_five;
+  if (test.p_holm_of_ten) json["p_holm_of_ten"] = *test.p_holm_of_ten;
+  return json;
+}
+
+}  // namespace
+
+Json hypothesis_json(const stats::Hypothesis& one) {
+  Json tests = Json::array();
+  for (const auto& test : one.tests) tests.push_back(test_json(test));
+  Json json{{"id", one.id},
+            {"title", one.title},
+            {"task", one.task == 1 ? "task1" : "task2"},
+            {"kind", stats::kind_name(one.kind)},
+            {"family", one.tests.size()},
+            {"alpha", one.alpha},
+            {"rule", one.rule},
+            {"status", stats::status_name(one.status)},
+            {"status_text", one.status_text},
+            {"confirmed", one.confirmed},
+            {"tests", tests},
+            {"paper",
+             {{"rule", one.paper_rule},
+              {"status", one.paper_supported ? "supported" : "not supported"},
+              {"text", one.paper_text},
+              {"published", one.paper_published}}}};
+  if (one.status == stats::HypothesisStatus::NotTestable)
+    json["status_if_testable"] = stats::status_name(one.status_if_testable);
+  return json;
+}
+
+Json hypothesis_outline_json(const stats::Hypothesis& one) {
+  Json tests = Json::array();
+  for (const auto& test : one.tests) {
+    tests.push_back({{"label", test.label},
+                     {"n", test.n},
+                     {"estimate", json_number(test.estimate)},
+                     {"p_holm", json_number(test.p_holm)},
+                     {"holds", test.holds}});
+  }
+  return {{"id", one.id},
+          {"status", stats::status_name(one.status)},
+          {"status_if_testable", stats::status_name(one.status_if_testable)},
+          {"confirmed", one.confirmed},
+          {"tests", tests}};
+}
+
+}  // namespace apps

@@ -1,0 +1,15 @@
+#pragma once
+/// H1 to H6 in the results (docs/results.md).
+
+#include <vector>
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps {
+
+Json hypothesis_json(const stats::Hypothesis& hypothesis);
+/// As much as a sensitivity analysis shows.
+Json hypothesis_outline_json(const stats::Hypothesis& hypothesis);
+
+}  // namespace apps

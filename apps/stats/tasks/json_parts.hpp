@@ -1,0 +1,31 @@
+#pragma once
+/// How numbers, intervals and refusals stand in the results (docs/results.md).
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "stats/result.hpp"
+
+namespace apps {
+
+using Json = nlohmann::ordered_json;
+
+/// A finite number, "Inf" or "-Inf", or null when it is none.
+Json json_number(double value);
+Json json_number(const std::optional<double>& value);
+Json json_interval(const std::array<double, 2>& interval);
+Json json_interval(const std::optional<std::array<double, 2>>& interval);
+/// {"refused": reason}.
+Json json_refused(const std::string& reason);
+/// "***", "**", "*" or ""; "" without p.
+std::string json_stars(const std::optional<double>& p);
+
+/// What `write` makes of the value, or the refusal.
+template <class T, class Write>
+Json json_result(const stats::Result<T>& result, Write write) {
+  return result ? Json(write(*result)) : json_refused(result.reason());
+}
+
+}  // namespace apps

@@ -1,0 +1,14 @@
+#pragma once
+/// How alike repeated showings were answered.
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+
+namespace apps {
+
+/// Task 1: a list, one entry for each question that repeated showings were asked; empty without any.
+Json rating_retest_json(const TaskData& data);
+/// Task 2: pairs and the share of equal choices; null without any.
+Json choice_retest_json(const TaskData& data);
+
+}  // namespace apps

@@ -1,0 +1,11 @@
+#pragma once
+/// Task 1's part of the results (docs/results.md).
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task1_results.hpp"
+
+namespace apps {
+
+Json task1_json(const TaskData& data, const Task1Results& results, const stats::AnalysisPlan& plan);
+
+}  // namespace apps

@@ -1,0 +1,128 @@
+#include "apps/stats/tasks/task1_results.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace apps {
+
+namespace {
+
+using stats::ScoreScale;
+
+const std::vector<std::string> sickness_items{"disorientation", "unrealism", "dizziness", "confusion"};
+const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
+
+std::vector<ScoreScale> score_scales(const stats::AnalysisPlan& plan) {
+  return {{"realism", "Realism", true, 1, 7, true, {"realism"}, plan.margin_realism},
+          {"sickness", "Cybersickness (mean of four items)", true, 0, 3, false, sickness_items,
+           plan.margin_sickness},
+          {"sickness_without_unrealism", "Cybersickness without unrealism (mean of three items)", false, 0, 3,
+           false, items_without_unrealism, plan.margin_sickness}};
+}
+
+const study::Question* find_question(const TaskData& data, const std::string& id) {
+  for (const auto& question : data.protocol.questions) {
+    if (question.id == id) return &question;
+  }
+  return nullptr;
+}
+
+/// False when an item is not asked; else the range of the answers is that of the questions.
+bool fit_scale(ScoreScale& scale, const TaskData& data) {
+  for (const std::string& item : scale.items) {
+    const study::Question* question = find_question(data, item);
+    if (!question) return false;
+    scale.min = question->scale_min;
+    scale.max = question->scale_max;
+  }
+  return true;
+}
+
+double mean_of_items(const Report& report, const std::vector<std::string>& items) {
+  double sum = 0;
+  for (const std::string& item : items) {
+    const auto answer = report.answers.find(item);
+    if (answer == report.answers.end()) return std::numeric_limits<double>::quiet_NaN();
+    sum += answer->second;
+  }
+  return sum / static_cast<double>(items.size());
+}
+
+std::vector<OrdinalModel> fit_ordinal(const TaskData& data, const stats::AnalysisPlan& plan) {
+  std::vector<OrdinalModel> out;
+  const auto& methods = data.protocol.methods;
+  const auto hi_res = static_cast<int>(std::find(methods.begin(), methods.end(), "HiRes") - methods.begin());
+  const int reference = hi_res < static_cast<int>(methods.size()) ? hi_res : 0;
+  std::vector<std::string> questions{"realism"};
+  questions.insert(questions.end(), sickness_items.begin(), sickness_items.end());
+  for (const std::string& question : questions) {
+    if (!find_question(data, question)) continue;
+    const auto scores = report_scores(data, {question});
+    for (int n_star = 0; n_star < static_cast<int>(data.protocol.n_stars.size()); ++n_star) {
+      std::vector<stats::MethodScore> block;
+      std::copy_if(scores.begin(), scores.end(), std::back_inserter(block),
+                   [&](const stats::MethodScore& score) { return score.n_star == n_star; });
+      out.push_back({question, n_star, stats::ordinal_effects(block, reference, plan.confidence)});
+    }
+  }
+  return out;
+}
+
+const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables, const std::string& code) {
+  for (const auto& table : tables) {
+    if (table.scale().code == code) return &table;
+  }
+  return nullptr;
+}
+
+stats::Result<std::vector<stats::Hypothesis>> verdicts(const std::vector<stats::ScoreTable>& tables,
+                                                       const TaskData& data,
+                                                       const stats::AnalysisPlan& plan) {
+  const auto* realism = find_table(tables, "realism");
+  const auto* sickness = find_table(tables, "sickness");
+  if (!realism || !sickness) {
+    return stats::Refusal{"protocol " + data.protocol.name +
+                          " does not ask for realism and the four items of cybersickness (disorientation, "
+                          "unrealism, dizziness, confusion)"};
+  }
+  return stats::task1_hypotheses(*realism, *sickness, plan, data.gaze_problem());
+}
+
+}  // namespace
+
+std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items) {
+  std::vector<stats::MethodScore> out;
+  for (const Report& report : data.reports)
+    out.push_back(
+        {report.participant, report.scene, report.n_star, report.method, mean_of_items(report, items)});
+  return out;
+}
+
+std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan) {
+  std::vector<stats::ScoreTable> out;
+  for (ScoreScale scale : score_scales(plan)) {
+    if (!fit_scale(scale, data)) continue;
+    const auto scores = report_scores(data, scale.items);
+    out.emplace_back(scale, scores, static_cast<int>(data.participants.size()), data.protocol.n_stars,
+                     data.protocol.methods);
+  }
+  return out;
+}
+
+stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
+                                                             const stats::AnalysisPlan& plan) {
+  return verdicts(score_tables(data, plan), data, plan);
+}
+
+stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
+  Task1Results out;
+  out.tables = score_tables(data, plan);
+  const auto hypotheses = verdicts(out.tables, data, plan);
+  if (!hypotheses) return stats::Refusal{hypotheses.reason()};
+  out.hypotheses = *hypotheses;
+  for (const auto& table : out.tables) out.analyses.push_back(stats::analyse_scores(table, plan));
+  out.ordinal = fit_ordinal(data, plan);
+  return out;
+}
+
+}  // namespace apps

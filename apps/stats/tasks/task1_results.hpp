@@ -1,0 +1,42 @@
+#pragma once
+/// Task 1 from its answers to its results.
+
+#include <string>
+#include <vector>
+
+#include "apps/stats/tasks/task_data.hpp"
+#include "stats/analysis/hypotheses.hpp"
+#include "stats/analysis/ordinal_effects.hpp"
+#include "stats/analysis/task1.hpp"
+
+namespace apps {
+
+/// A cumulative-link model of one question at one n_*.
+struct OrdinalModel {
+  std::string question;
+  int n_star = 0;
+  stats::Result<stats::OrdinalEffects> effects = stats::Refusal{"not computed"};
+};
+
+struct Task1Results {
+  std::vector<stats::ScoreTable> tables;  ///< realism, sickness, sickness without unrealism
+  std::vector<stats::ScoreAnalysis> analyses;
+  std::vector<OrdinalModel> ordinal;
+  std::vector<stats::Hypothesis> hypotheses;
+};
+
+/// Realism and the cybersickness scores. A score is the mean of its items; a report that lacks one has none.
+/// Scores of which an item is not asked are left out.
+std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan);
+
+/// A table's scores before scenes are averaged: one for each report.
+std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
+
+/// Refused: no cybersickness items, so that the hypotheses have no second score.
+stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
+
+/// H1 to H3 alone: for sensitivity and power.
+stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
+                                                             const stats::AnalysisPlan& plan);
+
+}  // namespace apps

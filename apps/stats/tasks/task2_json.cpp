@@ -1,0 +1,208 @@
+#include "apps/stats/tasks/task2_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "apps/stats/tasks/retest.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+const std::string& name(const Names& methods, int index) { return methods[static_cast<std::size_t>(index)]; }
+
+Json rules_json(const stats::AnalysisPlan& plan) {
+  return {
+      {"tests",
+       "Exact binomial test for each pair against one half, two-sided; Clopper-Pearson and Wilson intervals; "
+       "Holm "
+       "and Benjamini-Hochberg over all pairs. Stars mark uncorrected p as in the paper."},
+      {"more_than_one_trial",
+       plan.repeated_pairs == stats::RepeatedPairs::Refuse
+           ? "A pair that a participant answered more than once is not tested: answers of one person are not "
+             "independent."
+           : "A pair that a participant answered more than once is tested with a warning: answers of one "
+             "person "
+             "are not independent."},
+      {"missing",
+       "A pair counts those who answered it; circular triads those who answered every pair once."}};
+}
+
+Json pair_json(const stats::PairPreference& pair, const Names& methods) {
+  const bool ok = static_cast<bool>(pair.test);
+  const std::optional<double> p = ok ? std::optional(pair.test->p) : std::nullopt;
+  return {{"a", name(methods, pair.a)},
+          {"b", name(methods, pair.b)},
+          {"n", pair.n},
+          {"participants", pair.participants},
+          {"k", pair.k},
+          {"share", pair.n > 0 ? Json(1.0 * pair.k / pair.n) : Json()},
+          {"p", json_number(p)},
+          {"stars", json_stars(p)},
+          {"p_holm", json_number(pair.p_holm)},
+          {"p_bh", json_number(pair.p_bh)},
+          {"stars_holm", json_stars(pair.p_holm)},
+          {"p_mid", ok ? Json(pair.test->p_mid) : Json()},
+          {"clopper_pearson", ok ? json_interval(pair.test->clopper_pearson) : Json()},
+          {"wilson", ok ? json_interval(pair.test->wilson) : Json()},
+          {"cohen_g", ok ? Json(pair.test->cohen_g) : Json()},
+          {"a_first", pair.a_first},
+          {"first_chosen", pair.first_chosen},
+          {"max_per_participant", pair.max_per_participant},
+          {"reason", pair.test.reason()},
+          {"warning", pair.warning},
+          {"paper", stats::in_paper_figure_10(name(methods, pair.a), name(methods, pair.b))}};
+}
+
+Json order_term_json(const stats::OrderTerm& term) {
+  return {{"estimate", term.estimate}, {"se", term.se}, {"ci", json_interval(term.ci)}, {"p", term.lrt_p},
+          {"chi2", term.lrt_chi2},     {"df", 1},       {"p_wald", term.p_wald}};
+}
+
+Json interval_json(const stats::IntervalBias& bias) {
+  const bool ok = static_cast<bool>(bias.test);
+  return {{"n", bias.n},
+          {"first_chosen", bias.first_chosen},
+          {"share", bias.n > 0 ? Json(1.0 * bias.first_chosen / bias.n) : Json()},
+          {"p", ok ? Json(bias.test->p) : Json()},
+          {"clopper_pearson", ok ? json_interval(bias.test->clopper_pearson) : Json()},
+          {"wilson", ok ? json_interval(bias.test->wilson) : Json()},
+          {"warning",
+           "this test takes all answers as independent; by_participant holds whatever the answers of one "
+           "person have "
+           "in common"},
+          {"by_participant", json_result(bias.by_participant, [](const stats::OneSampleTTest& test) {
+             return Json{{"mean_share", test.mean},
+                         {"ci", json_interval(test.ci)},
+                         {"n", test.n},
+                         {"t", test.t},
+                         {"df", test.df},
+                         {"p", test.p}};
+           })}};
+}
+
+/// The interval's pull on the choice and its drift over the session, within the Bradley-Terry model.
+Json order_json(const stats::Result<stats::OrderBias>& model) {
+  return json_result(model, [](const stats::OrderBias& bias) {
+    Json json = order_term_json(bias.interval);
+    json["first_probability"] = bias.first_probability;
+    json["first_probability_ci"] = json_interval(bias.first_probability_ci);
+    json["drift"] = bias.drift ? order_term_json(*bias.drift) : Json();
+    return json;
+  });
+}
+
+Json abilities_json(const stats::BradleyTerry& model, const Names& methods) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    list.push_back({{"method", methods[i]},
+                    {"estimate", model.lambda_sum0[i]},
+                    {"se", model.se_sum0[i]},
+                    {"ci", json_interval(model.ci_sum0[i])},
+                    {"worth", model.worth[i]}});
+  }
+  return list;
+}
+
+Json differences_json(const stats::BradleyTerry& model, const Names& methods) {
+  Json list = Json::array();
+  for (const auto& pair : model.pairs) {
+    list.push_back({{"a", name(methods, pair.i)},
+                    {"b", name(methods, pair.j)},
+                    {"estimate", pair.difference},
+                    {"se", pair.se},
+                    {"ci", json_interval(pair.ci)},
+                    {"p", pair.p},
+                    {"probability", pair.probability},
+                    {"probability_ci", json_interval(pair.probability_ci)}});
+  }
+  return list;
+}
+
+Json bradley_terry_json(const stats::PreferenceAnalysis& analysis, const Names& methods) {
+  Json json = json_result(analysis.bradley_terry, [&](const stats::BradleyTerry& model) {
+    return Json{
+        {"penalised", model.bias_reduced},
+        {"why_penalised", model.why_bias_reduced},
+        {"abilities", abilities_json(model, methods)},
+        {"differences", differences_json(model, methods)},
+        {"overall", {{"chi2", model.lrt_chi2}, {"df", model.lrt_df}, {"p", model.lrt_p}}},
+        {"fit", {{"chi2", model.gof_deviance}, {"df", model.gof_df}, {"p", json_number(model.gof_p)}}}};
+  });
+  json["order"] = order_json(analysis.interval.model);
+  return json;
+}
+
+Json triads_json(const TaskData& data, const stats::PreferenceAnalysis& analysis) {
+  Json people = Json::array();
+  int incomplete = 0;
+  for (const auto& one : analysis.triads) {
+    if (!one.triads) {
+      ++incomplete;
+      continue;
+    }
+    people.push_back({{"participant", data.participants[static_cast<std::size_t>(one.participant)]},
+                      {"circular", one.triads->triads},
+                      {"consistency", one.triads->zeta},
+                      {"p", one.triads->p}});
+  }
+  Json json{{"participants", people}, {"incomplete", incomplete}, {"n", people.size()}};
+  if (!analysis.group_triads) {
+    json["refused"] = analysis.group_triads.reason();
+    return json;
+  }
+  const auto& group = *analysis.group_triads;
+  json["mean"] = 1.0 * group.triads / group.participants;
+  json["mean_consistency"] = group.mean_zeta;
+  json["expected"] = group.expected / group.participants;
+  json["p"] = group.p;
+  return json;
+}
+
+Json by_scene_json(const TaskData& data) {
+  std::map<std::tuple<int, int, int>, std::pair<int, int>> cells;  // answers, a chosen
+  for (const auto& choice : data.choices) {
+    const int a = std::min(choice.first, choice.second), b = std::max(choice.first, choice.second);
+    auto& [n, k] = cells[{choice.scene, a, b}];
+    ++n;
+    k += choice.first_chosen == (choice.first == a) ? 1 : 0;
+  }
+  Json list = Json::array();
+  for (const auto& [key, counts] : cells) {
+    const auto& [scene, a, b] = key;
+    list.push_back({{"scene", data.scenes[static_cast<std::size_t>(scene)]},
+                    {"a", name(data.protocol.methods, a)},
+                    {"b", name(data.protocol.methods, b)},
+                    {"n", counts.first},
+                    {"k", counts.second}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
+                const stats::AnalysisPlan& plan) {
+  const Names& methods = data.protocol.methods;
+  Json pairs = Json::array();
+  for (const auto& pair : analysis.pairs) pairs.push_back(pair_json(pair, methods));
+  return {{"participants", data.participants.size()},
+          {"answers", data.choices.size()},
+          {"question", data.question},
+          {"methods", methods},
+          {"n_stars", data.protocol.n_stars},
+          {"scenes", data.scenes},
+          {"rules", rules_json(plan)},
+          {"pairs", pairs},
+          {"interval_bias", interval_json(analysis.interval)},
+          {"bradley_terry", bradley_terry_json(analysis, methods)},
+          {"triads", triads_json(data, analysis)},
+          {"by_scene", by_scene_json(data)},
+          {"retest", choice_retest_json(data)}};
+}
+
+}  // namespace apps

@@ -1,0 +1,13 @@
+#pragma once
+/// Task 2's part of the results (docs/results.md).
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+#include "stats/analysis/task2.hpp"
+
+namespace apps {
+
+Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
+                const stats::AnalysisPlan& plan);
+
+}  // namespace apps

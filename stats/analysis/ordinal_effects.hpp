@@ -1,0 +1,37 @@
+#pragma once
+/// Single answers of Task 1 as what they are, ordered categories: a cumulative-link model of the method with
+/// a random effect of the participant, within one n_*.
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/analysis/score_table.hpp"
+#include "stats/ordinal/cumulative_link.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// A method against the reference; larger = higher answers.
+struct MethodEffect {
+  int method = 0;
+  double estimate = 0, se = 0;  ///< logits
+  std::array<double, 2> ci{};   ///< Wald
+  double z = 0, p = 0;
+};
+
+struct OrdinalEffects {
+  MixedOrdinalFit fit;
+  int reference = 0;
+  std::vector<MethodEffect> effects;  ///< of the methods that occur, without the reference
+  /// Against the same model without methods. Refused when that model cannot be fitted.
+  Result<LikelihoodRatio> overall = Refusal{"not computed"};
+};
+
+/// Logit link, adaptive quadrature. `scores`: single answers, all of one n_*.
+/// Refused: no answer about the reference or about another method, separation (the reason names the columns
+/// as "method" + index), and what fit_cumulative_link_mixed refuses. confidence in (0, 1).
+Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, double confidence);
+
+}  // namespace stats
