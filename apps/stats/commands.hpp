@@ -6,5 +6,7 @@
 namespace apps {
 
 void add_fit_ptpe_command(CLI::App& app);
+/// task1 and task2.
+void add_task_commands(CLI::App& app);
 
 }  // namespace apps

@@ -6,5 +6,6 @@
 int main(int argc, char** argv) {
   CLI::App app("Statistics of ViP-Lab studies", "vip-stats");
   apps::add_fit_ptpe_command(app);
+  apps::add_task_commands(app);
   return apps::run_program(app, argc, argv);
 }

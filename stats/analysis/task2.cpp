@@ -97,17 +97,24 @@ std::vector<double> win_table(std::span<const PairChoice> choices, int methods) 
   return wins;
 }
 
+std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
+                                              const AnalysisPlan& plan) {
+  std::vector<PairPreference> pairs;
+  for (int a = 0; a < methods; ++a) {
+    for (int b = a + 1; b < methods; ++b) {
+      pairs.push_back(count_pair(choices, a, b));
+      test_pair(pairs.back(), plan);
+    }
+  }
+  correct(pairs);
+  return pairs;
+}
+
 PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
                                        const AnalysisPlan& plan) {
   PreferenceAnalysis out;
   const auto wins = win_table(choices, methods);
-  for (int a = 0; a < methods; ++a) {
-    for (int b = a + 1; b < methods; ++b) {
-      out.pairs.push_back(count_pair(choices, a, b));
-      test_pair(out.pairs.back(), plan);
-    }
-  }
-  correct(out.pairs);
+  out.pairs = count_preferences(choices, methods, plan);
   out.interval = test_intervals(choices, methods, plan);
   out.bradley_terry = bradley_terry(wins, methods, BradleyTerryMethod::Automatic, plan.confidence);
   count_triads(out, choices, methods);

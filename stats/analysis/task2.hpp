@@ -66,6 +66,10 @@ struct PreferenceAnalysis {
 PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
                                        const AnalysisPlan& plan);
 
+/// Its pairs alone.
+std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
+                                              const AnalysisPlan& plan);
+
 /// Wins as bradley_terry() takes them: methods by methods, row after row.
 std::vector<double> win_table(std::span<const PairChoice> choices, int methods);
 

@@ -181,6 +181,28 @@ Json by_scene_json(const TaskData& data, const ScoreTable& table) {
   return list;
 }
 
+/// One line for each participant, n_* and method that has a score.
+Json participant_means_json(const TaskData& data, const std::vector<ScoreTable>& tables) {
+  Json list = Json::array();
+  for (std::size_t person = 0; person < data.participants.size(); ++person) {
+    for (int n_star = 0; n_star < static_cast<int>(data.protocol.n_stars.size()); ++n_star) {
+      for (int method = 0; method < static_cast<int>(data.protocol.methods.size()); ++method) {
+        Json line{{"participant", data.participants[person]},
+                  {"n_star", data.protocol.n_stars[static_cast<std::size_t>(n_star)]},
+                  {"method", data.protocol.methods[static_cast<std::size_t>(method)]}};
+        bool any = false;
+        for (const ScoreTable& table : tables) {
+          const double value = table.column(n_star, method)[person];
+          line[table.scale().code] = json_number(value);
+          any = any || !std::isnan(value);
+        }
+        if (any) list.push_back(std::move(line));
+      }
+    }
+  }
+  return list;
+}
+
 Json effects_json(const stats::OrdinalEffects& effects, const std::vector<std::string>& methods) {
   Json list = Json::array();
   for (const auto& effect : effects.effects) {
@@ -239,6 +261,7 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
     for (const auto& one : analysis.omnibus) json["omnibus"].push_back(omnibus_json(table, one));
   }
   for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_json(data, model));
+  json["participant_means"] = participant_means_json(data, results.tables);
   json["retest"] = rating_retest_json(data);
   return json;
 }

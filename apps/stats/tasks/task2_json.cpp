@@ -183,6 +183,20 @@ Json by_scene_json(const TaskData& data) {
   return list;
 }
 
+Json choices_json(const TaskData& data) {
+  Json list = Json::array();
+  for (const auto& choice : data.choices) {
+    list.push_back(
+        {{"participant", data.participants[static_cast<std::size_t>(choice.participant)]},
+         {"scene", data.scenes[static_cast<std::size_t>(choice.scene)]},
+         {"position", choice.position},
+         {"first", name(data.protocol.methods, choice.first)},
+         {"second", name(data.protocol.methods, choice.second)},
+         {"chosen", name(data.protocol.methods, choice.first_chosen ? choice.first : choice.second)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
@@ -202,6 +216,7 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
           {"bradley_terry", bradley_terry_json(analysis, methods)},
           {"triads", triads_json(data, analysis)},
           {"by_scene", by_scene_json(data)},
+          {"choices", choices_json(data)},
           {"retest", choice_retest_json(data)}};
 }
 

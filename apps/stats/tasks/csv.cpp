@@ -1,0 +1,176 @@
+#include "apps/stats/tasks/csv.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "apps/common/program.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+std::string csv_quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string scalar(const Json& value) {
+  if (value.is_null()) return {};
+  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+  return csv_quoted(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+bool all_texts(const Json& list) {
+  return std::all_of(list.begin(), list.end(), [](const Json& one) { return one.is_string(); });
+}
+
+/// An interval may have open ends, which are texts.
+bool is_interval(const std::string& name, const Json& list) {
+  return list.size() == 2 &&
+         (name.ends_with("ci") || name == "bca" || name == "clopper_pearson" || name == "wilson");
+}
+
+void flatten(const std::string& name, const Json& value, Fields& fields) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items())
+      flatten(name.empty() ? key : name + "_" + key, inner, fields);
+  } else if (!value.is_array()) {
+    fields.emplace_back(name, scalar(value));
+  } else if (is_interval(name, value)) {
+    fields.emplace_back(name + "_low", scalar(value[0]));
+    fields.emplace_back(name + "_high", scalar(value[1]));
+  } else if (!value.empty() && all_texts(value)) {
+    std::string joined;
+    for (const auto& one : value) joined += (joined.empty() ? "" : " ") + one.get<std::string>();
+    fields.emplace_back(name, csv_quoted(joined));
+  }
+}
+
+/// An interval that is null in this line has its two columns in others.
+bool names_interval(const std::vector<std::string>& columns, const std::string& name) {
+  return std::find(columns.begin(), columns.end(), name + "_low") != columns.end();
+}
+
+std::vector<std::string> columns_of(const std::vector<Fields>& lines) {
+  std::vector<std::string> columns;
+  for (const Fields& line : lines) {
+    for (const auto& [name, value] : line) {
+      if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+    }
+  }
+  std::vector<std::string> out;
+  std::copy_if(columns.begin(), columns.end(), std::back_inserter(out),
+               [&](const std::string& name) { return !names_interval(columns, name); });
+  return out;
+}
+
+/// Fields of each hypothesis's tests, with the hypothesis's own before them.
+Json tests_of(const Json& hypotheses) {
+  Json list = Json::array();
+  for (const auto& one : hypotheses) {
+    for (const auto& test : one.at("tests")) {
+      Json line{{"id", one.at("id")},
+                {"kind", one.at("kind")},
+                {"family", one.at("family")},
+                {"status", one.at("status")},
+                {"paper_status", one.at("paper").at("status")}};
+      line.update(test);
+      list.push_back(std::move(line));
+    }
+  }
+  return list;
+}
+
+/// Effects of each ordinal model, one a line.
+Json effects_of(const Json& models) {
+  Json list = Json::array();
+  for (const auto& model : models) {
+    Json head = model;
+    head.erase("effects");
+    if (!model.contains("effects")) {
+      list.push_back(head);
+      continue;
+    }
+    for (const auto& effect : model.at("effects")) {
+      Json line = head;
+      line.update(effect);
+      list.push_back(std::move(line));
+    }
+  }
+  return list;
+}
+
+Json sensitivity_lines(const Json& variants) {
+  Json list = Json::array();
+  for (const auto& variant : variants) {
+    if (!variant.contains("hypotheses")) {
+      list.push_back(variant);
+      continue;
+    }
+    for (const auto& hypothesis : variant.at("hypotheses")) {
+      for (const auto& test : hypothesis.at("tests")) {
+        Json line{{"id", variant.at("id")},
+                  {"task", variant.at("task")},
+                  {"hypothesis", hypothesis.at("id")},
+                  {"status", hypothesis.at("status")}};
+        line.update(test);
+        list.push_back(std::move(line));
+      }
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string csv_text(const Json& list) {
+  std::vector<Fields> lines;
+  for (const auto& object : list) flatten("", object, lines.emplace_back());
+  const auto columns = columns_of(lines);
+  std::string out;
+  for (const auto& column : columns) out += (out.empty() ? "" : ",") + csv_quoted(column);
+  out += "\r\n";
+  for (const Fields& line : lines) {
+    std::string text;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto field =
+          std::find_if(line.begin(), line.end(), [&](const auto& one) { return one.first == columns[i]; });
+      text += (i > 0 ? "," : "") + (field == line.end() ? std::string() : field->second);
+    }
+    out += text + "\r\n";
+  }
+  return out;
+}
+
+void write_csv_folder(const Json& results, const std::filesystem::path& folder) {
+  std::vector<std::pair<std::string, Json>> files{
+      {"exclusions", results.at("exclusions")},
+      {"timing", results.at("timing")},
+      {"hypotheses", tests_of(results.at("hypotheses"))},
+      {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
+  if (results.contains("task1")) {
+    const Json& task = results.at("task1");
+    for (const char* list : {"participant_means", "cells", "by_scene", "comparisons", "omnibus", "retest"})
+      files.emplace_back(std::string("task1_") + list, task.at(list));
+    files.emplace_back("task1_ordinal", effects_of(task.at("ordinal")));
+  }
+  if (results.contains("task2")) {
+    const Json& task = results.at("task2");
+    for (const char* list : {"choices", "pairs", "by_scene"})
+      files.emplace_back(std::string("task2_") + list, task.at(list));
+    if (task.at("bradley_terry").contains("abilities"))
+      files.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
+    files.emplace_back("task2_triads", task.at("triads").at("participants"));
+  }
+  make_folder(folder);
+  for (const auto& [name, list] : files)
+    base::write_file_atomically(folder / (name + ".csv"), csv_text(list));
+}
+
+}  // namespace apps

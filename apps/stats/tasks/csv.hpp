@@ -1,0 +1,21 @@
+#pragma once
+/// Lists of the results as CSV: the same fields under the same names, so that both agree.
+
+#include <filesystem>
+#include <string>
+
+#include "apps/stats/tasks/json_parts.hpp"
+
+namespace apps {
+
+/// One line for each object of a list, RFC 4180. A nested object's fields are named outer_inner, an
+/// interval's ends name_low and name_high; other lists are left out unless of texts, which are joined by
+/// spaces. Null is an empty field; nothing is rounded. Columns are those that any line has, in the order of
+/// first appearance.
+std::string csv_text(const Json& list);
+
+/// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Parts that
+/// the results lack make no file.
+void write_csv_folder(const Json& results, const std::filesystem::path& folder);
+
+}  // namespace apps

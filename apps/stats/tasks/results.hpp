@@ -1,0 +1,36 @@
+#pragma once
+/// A study's results as one JSON document (docs/results.md).
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/plan_file.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+
+namespace apps {
+
+struct ResultsRequest {
+  std::filesystem::path database;
+  std::vector<TaskKind> tasks;  ///< those without a protocol in the database are left out
+  std::string protocol;  ///< leading digits of a SHA-256, of one task; empty when one protocol fits each task
+  PlanInForce plan;
+};
+
+/// A task of the request that has no results.
+struct MissingTask {
+  TaskKind task = TaskKind::Task1;
+  std::string reason;
+};
+
+struct Results {
+  Json json;  ///< complete but for "pilot"
+  std::vector<MissingTask> missing;
+};
+
+/// base::Error when the database cannot be read.
+Results study_results(const ResultsRequest& request);
+
+}  // namespace apps

@@ -1,0 +1,16 @@
+#pragma once
+/// The hypotheses again under other rules: do the verdicts hang on an exclusion?
+
+#include <vector>
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps {
+
+/// "sensitivity" of one task (docs/results.md); `planned`: the verdicts of `data`.
+Json sensitivity_json(const study::TaskStudy& study, const TaskSelection& selection, const TaskData& data,
+                      const std::vector<stats::Hypothesis>& planned);
+
+}  // namespace apps

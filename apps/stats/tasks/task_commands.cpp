@@ -1,0 +1,135 @@
+/// vip-stats task1, task2: tables, tests and verdicts.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "apps/stats/commands.hpp"
+#include "apps/stats/tasks/csv.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct TaskCommand {
+  TaskKind task = TaskKind::Task1;
+  std::string database, json, csv, plan, protocol;
+};
+
+std::string number_text(const Json& value, const char* format) {
+  if (!value.is_number()) return value.is_string() ? value.get<std::string>() : "-";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value.get<double>());
+  return text;
+}
+
+std::string word(const Json& value) { return value.get<std::string>(); }
+
+void print_cells(const Json& task) {
+  std::printf("\n%-28s %-5s %-9s %4s %7s %6s  95 %% interval\n", "score", "n_*", "method", "n", "mean", "sd");
+  for (const auto& cell : task.at("cells")) {
+    const Json& ci = cell.at("ci");
+    std::printf("%-28s %-5s %-9s %4d %7s %6s  [%s, %s]\n", word(cell.at("score")).c_str(),
+                word(cell.at("n_star")).c_str(), word(cell.at("method")).c_str(), cell.at("n").get<int>(),
+                number_text(cell.at("mean"), "%.2f").c_str(), number_text(cell.at("sd"), "%.2f").c_str(),
+                number_text(ci.is_array() ? ci[0] : Json(), "%.2f").c_str(),
+                number_text(ci.is_array() ? ci[1] : Json(), "%.2f").c_str());
+  }
+}
+
+void print_pairs(const Json& task) {
+  std::printf("\n%-22s %4s %4s %6s %9s %9s  95 %% interval\n", "chosen", "k", "n", "share", "p", "Holm");
+  for (const auto& pair : task.at("pairs")) {
+    const Json& ci = pair.at("clopper_pearson");
+    std::printf("%-22s %4d %4d %6s %9s %9s  [%s, %s]%s\n",
+                (word(pair.at("a")) + " over " + word(pair.at("b"))).c_str(), pair.at("k").get<int>(),
+                pair.at("n").get<int>(), number_text(pair.at("share"), "%.2f").c_str(),
+                number_text(pair.at("p"), "%.4f").c_str(), number_text(pair.at("p_holm"), "%.4f").c_str(),
+                number_text(ci.is_array() ? ci[0] : Json(), "%.2f").c_str(),
+                number_text(ci.is_array() ? ci[1] : Json(), "%.2f").c_str(),
+                word(pair.at("warning")).empty() ? "" : " (see warning)");
+  }
+}
+
+void print_hypotheses(const Json& json) {
+  for (const auto& one : json.at("hypotheses")) {
+    std::printf("\n%s %s\n  %s: %s\n  The paper's procedure: %s\n", word(one.at("id")).c_str(),
+                word(one.at("title")).c_str(), word(one.at("status")).c_str(),
+                word(one.at("status_text")).c_str(), word(one.at("paper").at("text")).c_str());
+    for (const auto& test : one.at("tests")) {
+      std::printf("    %-36s %8s  p = %-9s Holm %-9s %s\n", word(test.at("label")).c_str(),
+                  number_text(test.at("estimate"), "%.3f").c_str(), number_text(test.at("p"), "%.4f").c_str(),
+                  number_text(test.at("p_holm"), "%.4f").c_str(),
+                  test.at("holds").get<bool>() ? "holds" : word(test.at("reason")).c_str());
+    }
+  }
+}
+
+void print_results(const Json& json, TaskKind task) {
+  const Json& flow = json.at("flow").at(task_name(task));
+  std::printf("%d participants, %d of %d answered trials analysed, %zu exclusions\n",
+              flow.at("analysed").get<int>(), flow.at("trials_analysed").get<int>(),
+              flow.at("trials_answered").get<int>(), json.at("exclusions").size());
+  for (const auto& note : json.at("study").at("notes")) std::printf("note: %s\n", word(note).c_str());
+  const Json& part = json.at(task_name(task));
+  task == TaskKind::Task1 ? print_cells(part) : print_pairs(part);
+  print_hypotheses(json);
+  for (const auto& variant : json.at("sensitivity")) {
+    std::string changes;
+    if (variant.contains("changed")) {
+      for (const auto& id : variant.at("changed")) changes += " " + word(id);
+    }
+    if (word(variant.at("id")) == "planned") continue;
+    std::printf("\n%s: %s", word(variant.at("label")).c_str(),
+                variant.contains("refused") ? word(variant.at("refused")).c_str()
+                : changes.empty()           ? "same verdicts"
+                                            : ("other verdicts on" + changes).c_str());
+  }
+  std::printf("\n");
+}
+
+void run(const TaskCommand& command) {
+  if (!command.json.empty() &&
+      std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
+    throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
+  ResultsRequest request{command.database, {command.task}, command.protocol, {}};
+  if (!command.plan.empty()) request.plan = read_plan(command.plan);
+  const Results results = study_results(request);
+  if (!results.missing.empty()) {
+    throw base::Error(command.database, results.missing.front().reason,
+                      "collect answers, or choose another --protocol or --plan; nothing was written");
+  }
+  if (!command.json.empty()) base::write_file_atomically(command.json, results.json.dump(2) + "\n");
+  if (!command.csv.empty()) write_csv_folder(results.json, command.csv);
+  print_results(results.json, command.task);
+}
+
+void add_command(CLI::App& app, TaskKind task, const char* what) {
+  auto command = std::make_shared<TaskCommand>();
+  command->task = task;
+  auto* sub = app.add_subcommand(task_name(task), what);
+  auto* positional = sub->add_option("database", command->database, "The study's database");
+  sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
+  sub->add_option("--json", command->json, "File for every number (docs/results.md)");
+  sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML): margins, level, exclusion rules, seed; without: the defaults");
+  sub->add_option("--protocol", command->protocol, "First digits of the protocol's SHA-256");
+  sub->callback([command] {
+    if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    run(*command);
+  });
+}
+
+}  // namespace
+
+void add_task_commands(CLI::App& app) {
+  add_command(app, TaskKind::Task1, "Realism and cybersickness of the methods, H1 to H3");
+  add_command(app, TaskKind::Task2, "Which of two methods is preferred, H4 to H6");
+}
+
+}  // namespace apps
