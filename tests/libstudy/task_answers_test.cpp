@@ -1,0 +1,207 @@
+#include "libstudy/store/task_answers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "libstudy/store/store.hpp"
+#include "stats/base/error.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/version_1.hpp"
+
+namespace study {
+namespace {
+
+using sqlite::Open;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* lab = "protocols/task1_lab.toml";
+
+/// Answers of one page: question and score.
+using Page = std::vector<std::pair<std::string, int>>;
+
+void keep(Store& store, const OpenSession& session, const OpenUnit& unit, int attempt, const Page& page,
+          bool last) {
+  std::vector<KeptAnswer> answers;
+  for (const auto& [question, score] : page) answers.push_back({question, {test::score(score), 1}});
+  store.answer(session.id, unit, attempt, answers, last, 900);
+}
+
+OpenSession open_session(Store& store) { return store.open_runs().at(0).sessions.at(0); }
+
+std::string question_of(const TaskTrial& trial, std::size_t i) { return trial.answers.at(i).question; }
+
+TEST(TaskAnswers, PairsSayWhichIntervalHeldWhat) {
+  const test::TemporaryFolder folder;
+  const Protocol protocol = test::pairs();
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(protocol, {"P01"}));
+  const OpenSession session = open_session(store);
+  int choice = 1;
+  std::map<int, int> given;  // by trial's position
+  for (const OpenUnit& unit : session.units) {
+    if (!unit.trial) continue;
+    keep(store, session, unit, test::show(store, session, unit), {{"preference", choice}, {"ease", 5}}, true);
+    given[*unit.plan.trial] = choice;
+    choice = 3 - choice;
+  }
+  const TaskStudy study = read_tasks(folder / "study.db");
+  ASSERT_THAT(study.protocols, SizeIs(1));
+  const TaskProtocol& task = study.protocols[0];
+  EXPECT_TRUE(task.pairs);
+  EXPECT_EQ(task.sha256, protocol.sha256);
+  EXPECT_EQ(task.participants, 4);
+  EXPECT_THAT(task.methods, ElementsAre("LoRes", "Ours", "HiRes"));
+  EXPECT_THAT(task.n_stars, ElementsAre("16k"));
+  ASSERT_THAT(task.questions, SizeIs(2));
+  ASSERT_THAT(task.sessions, SizeIs(1));
+  const TaskSession& read = task.sessions[0];
+  EXPECT_EQ(read.participant, "P01");
+  EXPECT_EQ(read.observer, "ptpe:a=31,b=0.035");
+  EXPECT_EQ(read.station, "north");
+  EXPECT_FALSE(read.test_data);
+  ASSERT_THAT(read.trials, SizeIs(4));
+  const Plan plan = make_plan(protocol, "P01", 7, 0);
+  EXPECT_EQ(read.trials[0].kind, "practice");
+  for (const TaskTrial& trial : read.trials) {
+    const PlannedTrial& planned = plan.trials.at(static_cast<std::size_t>(trial.position));
+    EXPECT_EQ(trial.first.what, protocol.design.cells.at(static_cast<std::size_t>(planned.first)).stimulus);
+    EXPECT_EQ(trial.second->what,
+              protocol.design.cells.at(static_cast<std::size_t>(*planned.second)).stimulus);
+    ASSERT_THAT(trial.answers, SizeIs(2));
+    EXPECT_EQ(question_of(trial, 0), "preference");
+    EXPECT_EQ(trial.answers[0].score, given.at(trial.position));
+    EXPECT_TRUE(trial.second->played);
+    EXPECT_EQ(trial.first.realised.mean, test::verdict().realised.mean);
+  }
+}
+
+TEST(TaskAnswers, NativeTimingHasNoVerdict) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pairs(), {"P01"}));
+  const OpenSession session = open_session(store);
+  for (const OpenUnit& unit : session.units) {
+    if (!unit.trial) continue;
+    const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
+    TimingVerdict verdict = test::verdict();
+    verdict.nominal = {0, 0, 1};
+    store.end_presentation(id, 0, 1, {}, verdict);
+    break;
+  }
+  const auto study = read_tasks(folder / "study.db");
+  const TaskTrial& trial = study.protocols.at(0).sessions.at(0).trials.at(0);
+  EXPECT_TRUE(trial.first.played);
+  EXPECT_FALSE(trial.first.verdict.has_value());
+  EXPECT_FALSE(trial.second->played);
+}
+
+/// A lab session of Task 1 in which every trial was answered with its position's score.
+class LabSession : public ::testing::Test {
+ protected:
+  LabSession() : protocol_(read_protocol(base::resource(lab))), store_(folder_ / "study.db", Open::Create) {
+    store_.add_run(test::run_plan(protocol_, {"P01"}));
+    for (const OpenUnit& unit : open_session(store_).units) {
+      if (unit.trial) {
+        answer(unit, 1 + unit.trial->position % 7);
+      } else if (protocol_.blocks.at(static_cast<std::size_t>(unit.plan.block)).kind == BlockKind::Catch) {
+        keep(store_, open_session(store_), unit, 0, {{"attention_check", 2 + catches_++}}, true);
+      }
+    }
+  }
+  void answer(const OpenUnit& unit, int realism) {
+    const OpenSession session = open_session(store_);
+    const int attempt = test::show(store_, session, unit, 4);
+    keep(store_, session, unit, attempt,
+         {{"realism", realism},
+          {"disorientation", 0},
+          {"unrealism", 1},
+          {"dizziness", 2},
+          {"confusion", 3},
+          {"fms", 0}},
+         true);
+  }
+  TaskSession read() const { return read_tasks(folder_ / "study.db").protocols.at(0).sessions.at(0); }
+  std::int64_t trial_id(int position) {
+    sqlite::Connection database(folder_ / "study.db", Open::Read);
+    return database.integer("SELECT trial_id FROM trial WHERE position = " + std::to_string(position));
+  }
+
+  test::TemporaryFolder folder_;
+  Protocol protocol_;
+  Store store_;
+  int catches_ = 0;
+};
+
+TEST_F(LabSession, RealismAndSicknessStandUnderTheirQuestions) {
+  const TaskSession session = read();
+  ASSERT_THAT(session.trials, SizeIs(13));  // practice, ten, two repeats
+  const TaskTrial& trial = session.trials.at(3);
+  EXPECT_EQ(trial.kind, "stimulus");
+  EXPECT_FALSE(trial.second.has_value());
+  std::map<std::string, std::optional<int>> scores;
+  for (const TaskAnswer& answer : trial.answers) scores[answer.question] = answer.score;
+  EXPECT_EQ(scores.at("realism"), 4);
+  EXPECT_EQ(scores.at("disorientation"), 0);
+  EXPECT_EQ(scores.at("confusion"), 3);
+}
+
+TEST_F(LabSession, RepeatsNameTheirOriginals) {
+  const TaskSession session = read();
+  int repeats = 0;
+  for (const TaskTrial& trial : session.trials) {
+    EXPECT_EQ(trial.repeats.has_value(), trial.kind == "repeat");
+    if (!trial.repeats) continue;
+    ++repeats;
+    const TaskTrial& original = session.trials.at(static_cast<std::size_t>(*trial.repeats));
+    EXPECT_EQ(original.kind, "stimulus");
+    EXPECT_EQ(original.first.what, trial.first.what);
+  }
+  EXPECT_EQ(repeats, 2);
+}
+
+TEST_F(LabSession, CatchPagesTellWhatAttentionGives) {
+  const TaskSession session = read();
+  ASSERT_THAT(session.catches, SizeIs(2));
+  EXPECT_EQ(session.catches[0].expected, 2);
+  EXPECT_EQ(session.catches[0].score, 2);
+  EXPECT_EQ(session.catches[1].score, 3);
+}
+
+TEST_F(LabSession, AnAnswerThatWasSetAsideDoesNotCount) {
+  const std::int64_t id = trial_id(3);
+  store_.repeat_trial(open_session(store_).id, id, "the phone rang");
+  EXPECT_FALSE(read().trials.at(3).answers.at(0).score.has_value());
+  EXPECT_FALSE(read().trials.at(3).first.played);
+  for (const OpenUnit& unit : open_session(store_).units) {
+    if (unit.trial && unit.trial_id == id) answer(unit, 7);
+  }
+  EXPECT_EQ(read().trials.at(3).answers.at(0).score, 7);
+  EXPECT_TRUE(read().trials.at(3).first.played);
+}
+
+TEST_F(LabSession, ExclusionsCarryTheExperimentersReason) {
+  store_.exclude_trial(open_session(store_).id, trial_id(5), "looked away");
+  const TaskSession session = read();
+  EXPECT_EQ(session.trials.at(5).excluded, "looked away");
+  EXPECT_FALSE(session.trials.at(4).excluded.has_value());
+}
+
+TEST(TaskAnswers, APilotOfFrameRatesIsNoTask) {
+  const test::TemporaryFolder folder;
+  Store(folder / "study.db", Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
+  EXPECT_THAT(read_tasks(folder / "study.db").protocols, IsEmpty());
+  EXPECT_THROW(read_tasks(folder / "none.db"), base::Error);
+}
+
+TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsNone) {
+  const test::TemporaryFolder folder;
+  test::write_version_1(folder / "old.db");
+  EXPECT_THAT(read_tasks(folder / "old.db").protocols, IsEmpty());
+}
+
+}  // namespace
+}  // namespace study

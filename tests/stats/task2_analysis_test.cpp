@@ -1,0 +1,123 @@
+#include "stats/analysis/task2.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/stats/analysis_fixture.hpp"
+
+namespace stats {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const PairPreference& pair_of(const PreferenceAnalysis& analysis, int a, int b) {
+  for (const auto& pair : analysis.pairs) {
+    if (pair.a == a && pair.b == b) return pair;
+  }
+  throw std::logic_error("no such pair");
+}
+
+TEST(Task2, CountsWhoWasChosenWhereverItStood) {
+  // 1 over 0 shown second; 0 over 1 shown first; 1 over 0 shown first.
+  const std::vector<PairChoice> choices{{0, 0, 0, 1, false, 0}, {1, 0, 0, 1, true, 0}, {2, 0, 1, 0, true, 0}};
+  const auto pair = count_preferences(choices, 2, {}).at(0);
+  EXPECT_EQ(pair.n, 3);
+  EXPECT_EQ(pair.k, 1);
+  EXPECT_EQ(pair.a_first, 2);
+  EXPECT_EQ(pair.first_chosen, 2);
+  EXPECT_EQ(pair.participants, 3);
+  EXPECT_EQ(pair.max_per_participant, 1);
+  ASSERT_TRUE(pair.test);
+  EXPECT_NEAR(pair.test->p, 1.0, 1e-15);
+}
+
+TEST(Task2, ThePapersPairsOverFamiliesOfTwoFiveAndTen) {
+  std::vector<PairChoice> choices;
+  for (int a = 0; a < 5; ++a) {
+    for (int b = a + 1; b < 5; ++b) {
+      const bool ours = a == 1 && b == 2, tsp = a == 1 && b == 3;
+      test::add_pair(choices, a, b, ours ? 26 - 19 : tsp ? 26 - 21 : 13, 26);
+    }
+  }
+  const auto analysis = analyse_preferences(choices, 5, {});
+  EXPECT_NEAR(pair_of(analysis, 1, 2).test->p, 0.029, 0.0005);
+  EXPECT_NEAR(pair_of(analysis, 1, 3).test->p, 0.002, 0.0006);
+  EXPECT_NEAR(*pair_of(analysis, 1, 2).p_holm, 0.261, 0.0015);
+  EXPECT_NEAR(*pair_of(analysis, 1, 3).p_holm, 0.025, 0.0006);
+  EXPECT_NEAR(*pair_of(analysis, 0, 1).p_holm, 1, 1e-15);
+}
+
+TEST(Task2, SeveralTrialsOfOnePersonAreRefusedOrWarnedOf) {
+  std::vector<PairChoice> choices;
+  test::add_pair(choices, 0, 1, 9, 10);
+  choices.push_back(choices.back());
+  AnalysisPlan plan;
+  const auto refused = count_preferences(choices, 2, plan).at(0);
+  EXPECT_FALSE(refused.test);
+  EXPECT_THAT(refused.test.reason(), HasSubstr("2 times"));
+  EXPECT_EQ(refused.max_per_participant, 2);
+  EXPECT_EQ(refused.participants, 10);
+  plan.repeated_pairs = RepeatedPairs::Warn;
+  const auto warned = count_preferences(choices, 2, plan).at(0);
+  EXPECT_TRUE(warned.test);
+  EXPECT_THAT(warned.warning, HasSubstr("not independent"));
+  choices.pop_back();
+  EXPECT_THAT(count_preferences(choices, 2, plan).at(0).warning, IsEmpty());
+}
+
+TEST(Task2, PairsWithoutAnswersStandWithAReason) {
+  std::vector<PairChoice> choices;
+  test::add_pair(choices, 0, 1, 5, 10);
+  const auto analysis = analyse_preferences(choices, 3, {});
+  ASSERT_THAT(analysis.pairs, SizeIs(3));
+  EXPECT_EQ(pair_of(analysis, 0, 2).n, 0);
+  EXPECT_FALSE(pair_of(analysis, 0, 2).test);
+  EXPECT_FALSE(analysis.bradley_terry) << "method 3 was never compared";
+  EXPECT_FALSE(analysis.group_triads);
+}
+
+TEST(Task2, IntervalBiasIsSeenWithinParticipants) {
+  // Everybody chooses the first interval in three of four pairs.
+  std::vector<PairChoice> choices;
+  for (int person = 0; person < 12; ++person) {
+    for (int trial = 0; trial < 4; ++trial) {
+      const bool swapped = (person + trial) % 2 == 0;
+      choices.push_back({person, 0, swapped ? 1 : 0, swapped ? 0 : 1, trial != person % 4, trial});
+    }
+  }
+  const auto bias = analyse_preferences(choices, 2, {}).interval;
+  EXPECT_EQ(bias.n, 48);
+  EXPECT_EQ(bias.first_chosen, 36);
+  EXPECT_LT(bias.test->p, 0.001);
+  EXPECT_FALSE(bias.by_participant) << "all shares are equal: no variance to test against";
+  ASSERT_TRUE(bias.model);
+  EXPECT_GT(bias.model->interval.estimate, 0);
+}
+
+TEST(Task2, CircularTriadsNeedEveryPairOnce) {
+  // Person 0: 0 > 1 > 2 > 0, one circle. Person 1 left out a pair.
+  const std::vector<PairChoice> choices{{0, 0, 0, 1, true, 0},
+                                        {0, 0, 1, 2, true, 1},
+                                        {0, 0, 0, 2, false, 2},
+                                        {1, 0, 0, 1, true, 0},
+                                        {1, 0, 1, 2, true, 1}};
+  const auto analysis = analyse_preferences(choices, 3, {});
+  ASSERT_THAT(analysis.triads, SizeIs(2));
+  EXPECT_EQ(analysis.triads[0].triads->triads, 1);
+  EXPECT_EQ(analysis.triads[0].triads->zeta, 0);
+  EXPECT_FALSE(analysis.triads[1].triads);
+  EXPECT_EQ(analysis.group_triads->participants, 1);
+}
+
+TEST(Task2, MethodsOutsideAreProgrammingErrors) {
+  const std::vector<PairChoice> outside{{0, 0, 0, 5, true, 0}}, itself{{0, 0, 1, 1, true, 0}};
+  EXPECT_THROW(analyse_preferences(outside, 5, {}), std::invalid_argument);
+  EXPECT_THROW(analyse_preferences(itself, 5, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stats
