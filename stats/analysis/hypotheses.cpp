@@ -49,6 +49,9 @@ Result<PairedTTest> two_sided_test(Contrast& contrast, const AnalysisPlan& plan)
     return t;
   }
   contrast.test.estimate = t->estimate;
+  contrast.test.t = t->t;
+  contrast.test.df = t->df;
+  contrast.test.d_z = t->cohen_dz;
   contrast.test.paper_p = t->p;
   return t;
 }
@@ -82,7 +85,9 @@ Result<EquivalenceTest> test_margins(Contrast& contrast, const AnalysisPlan& pla
 FamilyTest equivalence(Contrast contrast, const AnalysisPlan& plan) {
   const auto t = two_sided_test(contrast, plan);
   if (!t) return {contrast.test};
-  contrast.test.p = test_margins(contrast, plan)->p;
+  const auto both = test_margins(contrast, plan);
+  contrast.test.p = both->p;
+  contrast.test.t = both->p_lower > both->p_upper ? both->t_lower : both->t_upper;
   contrast.test.paper_holds = t->p >= plan.alpha;
   return {contrast.test};
 }
@@ -95,6 +100,7 @@ FamilyTest non_inferiority(Contrast contrast, const AnalysisPlan& plan) {
       non_inferiority_paired(contrast.pairs.x, contrast.pairs.y, contrast.margin,
                              contrast.higher_is_better ? Better::Higher : Better::Lower, plan.alpha);
   contrast.test.p = one->p;
+  contrast.test.t = one->t;
   contrast.test.paper_holds = t->p >= plan.alpha || is_better(contrast, t->estimate);
   return {contrast.test};
 }

@@ -38,6 +38,9 @@ struct HypothesisTest {
   std::optional<std::array<double, 2>> ci;
   double ci_confidence = 0.95;
   std::optional<double> margin;
+  /// Task 1: statistic to which p belongs (of two one-sided tests the one nearer to zero), and the paired
+  /// effect size.
+  std::optional<double> t, df, d_z;
   std::optional<double> p, p_holm;
   bool holds = false;             ///< p_holm < alpha in the direction claimed
   bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)

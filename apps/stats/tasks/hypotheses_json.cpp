@@ -18,6 +18,11 @@ Json test_json(const stats::HypothesisTest& test) {
   json["ci"] = json_interval(test.ci);
   json["ci_confidence"] = test.ci_confidence;
   json["margin"] = json_number(test.margin);
+  if (test.t) {
+    json["t"] = *test.t;
+    json["df"] = json_number(test.df);
+    json["d_z"] = json_number(test.d_z);
+  }
   json["p"] = json_number(test.p);
   json["p_holm"] = json_number(test.p_holm);
   json["stars"] = json_stars(test.p);
