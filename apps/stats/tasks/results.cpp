@@ -77,7 +77,10 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
 }  // namespace
 
 Results study_results(const ResultsRequest& request) {
-  const auto study = study::read_tasks(request.database);
+  return make_results(study::read_tasks(request.database), request);
+}
+
+Results make_results(const study::TaskStudy& study, const ResultsRequest& request) {
   Results out;
   std::vector<TaskPart> parts;
   for (const TaskKind task : request.tasks) {

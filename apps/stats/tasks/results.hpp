@@ -30,6 +30,8 @@ struct Results {
   std::vector<MissingTask> missing;
 };
 
+/// Of a study that was read already; the request's database only gives its name.
+Results make_results(const study::TaskStudy& study, const ResultsRequest& request);
 /// base::Error when the database cannot be read.
 Results study_results(const ResultsRequest& request);
 

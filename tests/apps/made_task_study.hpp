@@ -1,0 +1,118 @@
+#pragma once
+/// Studies of Task 1 and Task 2 as a database would give them, made up in memory.
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "libstudy/store/task_answers.hpp"
+
+namespace made_study {
+
+inline const std::vector<std::string> methods{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
+inline const std::vector<std::string> scenes{"data/scenes/single_dam.toml", "data/scenes/jet_impact.toml",
+                                             "data/scenes/faucet.toml"};
+inline const std::vector<std::string> items{"disorientation", "unrealism", "dizziness", "confusion"};
+/// How good each method is, points.
+inline const std::vector<double> quality{-1.5, -0.5, 0.5, 0.8, 0.4};
+
+inline study::Question scale(const std::string& id, int min, int max) {
+  study::Question question;
+  question.id = id;
+  question.scale_min = min;
+  question.scale_max = max;
+  return question;
+}
+
+inline study::TaskShowing showing(const std::string& scene, const std::string& method,
+                                  const std::string& n_star) {
+  study::TaskShowing out;
+  out.what = {scene, method, n_star};
+  out.nominal = {30, 9, 30};
+  out.played = true;
+  out.verdict = study::Verdict::Pass;
+  out.realised = {900, 30.01, 33, 9.01};
+  out.longest_ms = 180;
+  return out;
+}
+
+inline study::TaskSession session(const std::string& participant, const std::string& gaze) {
+  study::TaskSession out;
+  out.participant = participant;
+  out.state = "done";
+  out.gaze_source = gaze;
+  out.display = "window";
+  return out;
+}
+
+inline std::string code(int person) { return (person < 9 ? "P0" : "P") + std::to_string(person + 1); }
+
+inline int rounded(double value, int min, int max) {
+  return std::clamp(static_cast<int>(std::lround(value)), min, max);
+}
+
+/// One scene at each n_*, five showings each.
+inline study::TaskProtocol task1(int participants, const std::string& gaze = "tracked", unsigned seed = 1) {
+  study::TaskProtocol out{"task1", "1.0",   std::string(64, '1'), false, participants,
+                          scenes,  methods, {"16k", "32k"},       {},    {}};
+  out.questions.push_back(scale("realism", 1, 7));
+  for (const auto& item : items) out.questions.push_back(scale(item, 0, 3));
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  for (int person = 0; person < participants; ++person) {
+    auto visit = session(code(person), gaze);
+    const double level = 0.5 * normal(generator);
+    for (int position = 0; position < 10; ++position) {
+      const auto block = static_cast<std::size_t>(position / 5),
+                 method = static_cast<std::size_t>(position % 5);
+      study::TaskTrial trial;
+      trial.position = position;
+      trial.kind = "stimulus";
+      trial.first = showing(scenes[(static_cast<std::size_t>(person) + block) % 3], methods[method],
+                            block ? "32k" : "16k");
+      trial.answers.push_back({"realism", rounded(4 + quality[method] + level + normal(generator), 1, 7)});
+      for (const auto& item : items)
+        trial.answers.push_back({item, rounded(0.8 - 0.5 * quality[method] + 0.7 * normal(generator), 0, 3)});
+      visit.trials.push_back(trial);
+    }
+    out.sessions.push_back(visit);
+  }
+  return out;
+}
+
+/// One scene, all ten pairs.
+inline study::TaskProtocol task2(int participants, const std::string& gaze = "tracked", unsigned seed = 2) {
+  study::TaskProtocol out{"task2", "1.0", std::string(64, '2'), true, participants, scenes, methods, {"32k"},
+                          {},      {}};
+  study::Question preference;
+  preference.id = "preference";
+  preference.kind = study::AnswerKind::Choice;
+  preference.anchors = {{1, "first"}, {2, "second"}};
+  out.questions = {preference};
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  for (int person = 0; person < participants; ++person) {
+    auto visit = session(code(person), gaze);
+    for (std::size_t a = 0; a < 5; ++a) {
+      for (std::size_t b = a + 1; b < 5; ++b) {
+        study::TaskTrial trial;
+        trial.position = static_cast<int>(visit.trials.size());
+        trial.kind = "stimulus";
+        const bool swapped = (person + trial.position) % 2 != 0;
+        const std::size_t first = swapped ? b : a, second = swapped ? a : b;
+        const auto& scene = scenes[static_cast<std::size_t>(person) % 3];
+        trial.first = showing(scene, methods[first], "32k");
+        trial.second = showing(scene, methods[second], "32k");
+        const bool chosen = quality[first] - quality[second] + normal(generator) > 0;
+        trial.answers.push_back({"preference", chosen ? 1 : 2});
+        visit.trials.push_back(trial);
+      }
+    }
+    out.sessions.push_back(visit);
+  }
+  return out;
+}
+
+}  // namespace made_study

@@ -1,0 +1,239 @@
+/// What is analysed of Task 1 and Task 2, and what is not.
+
+#include "apps/stats/tasks/task_data.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/stats/tasks/sensitivity.hpp"
+#include "apps/stats/tasks/task1_results.hpp"
+#include "tests/apps/made_task_study.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+study::TaskStudy of(const study::TaskProtocol& protocol) { return {{protocol}, 0}; }
+
+TaskData select(const study::TaskStudy& study, TaskKind task = TaskKind::Task1,
+                const stats::AnalysisPlan& plan = {}) {
+  return select_task(study, {task, "", plan}).value();
+}
+
+TEST(TaskData, EverythingOfAWholeStudy) {
+  const auto data = select(of(made_study::task1(12)));
+  EXPECT_THAT(data.participants, SizeIs(12));
+  EXPECT_THAT(data.reports, SizeIs(120));
+  EXPECT_THAT(data.exclusions, IsEmpty());
+  EXPECT_THAT(data.scenes, ElementsAre("single_dam", "jet_impact", "faucet"));
+  EXPECT_EQ(data.flow.started, 12);
+  EXPECT_EQ(data.flow.analysed, 12);
+  EXPECT_EQ(data.flow.trials_analysed, 120);
+  EXPECT_THAT(data.gaze_problem(), IsEmpty());
+  EXPECT_THAT(select(of(made_study::task2(12)), TaskKind::Task2).choices, SizeIs(120));
+}
+
+TEST(TaskData, TestDataStandBehindRealOnes) {
+  auto protocol = made_study::task1(12);
+  for (int i = 0; i < 3; ++i) protocol.sessions[static_cast<std::size_t>(i)].test_data = true;
+  const auto data = select(of(protocol));
+  EXPECT_EQ(data.flow.test_left_out, 3);
+  EXPECT_EQ(data.flow.analysed, 9);
+  EXPECT_FALSE(data.test_data);
+  for (auto& session : protocol.sessions) session.test_data = true;
+  const auto test = select(of(protocol));
+  EXPECT_TRUE(test.test_data);
+  EXPECT_EQ(test.flow.analysed, 12);
+}
+
+TEST(TaskData, ObserverModelsStandBehindPeople) {
+  auto protocol = made_study::task1(12);
+  for (int i = 0; i < 4; ++i) protocol.sessions[static_cast<std::size_t>(i)].observer = "random";
+  EXPECT_EQ(select(of(protocol)).flow.simulated_left_out, 4);
+  EXPECT_EQ(select(of(protocol)).flow.analysed, 8);
+  for (auto& session : protocol.sessions) session.observer = "random";
+  const auto data = select(of(protocol));
+  EXPECT_THAT(data.simulated, SizeIs(12));
+  EXPECT_THAT(data.observers, ElementsAre("random"));
+}
+
+TEST(TaskData, SeveralProtocolsAreNeverPooled) {
+  auto other = made_study::task1(4);
+  other.sha256 = std::string(64, 'f');
+  const study::TaskStudy study{{made_study::task1(12), other, made_study::task2(3)}, 0};
+  const auto refused = select_task(study, {TaskKind::Task1, "", {}});
+  EXPECT_THAT(refused.reason(), HasSubstr("several protocols are never pooled"));
+  EXPECT_EQ(select_task(study, {TaskKind::Task1, "ff", {}})->flow.analysed, 4);
+  EXPECT_EQ(select_task(study, {TaskKind::Task2, "", {}})->flow.analysed, 3);
+  EXPECT_THAT(select_task(study, {TaskKind::Task1, "aa", {}}).reason(), HasSubstr("aa"));
+}
+
+TEST(TaskData, AProtocolOfTestDataStepsBack) {
+  auto test = made_study::task1(4);
+  test.sha256 = std::string(64, 'f');
+  for (auto& session : test.sessions) session.test_data = true;
+  EXPECT_EQ(select({{test, made_study::task1(12)}, 0}).flow.analysed, 12);
+}
+
+TEST(TaskData, PracticeAndRepeatsAreNoAnswersToTest) {
+  auto protocol = made_study::task1(12);
+  for (auto& session : protocol.sessions) {
+    auto practice = session.trials[2], repeat = session.trials[4];
+    practice.kind = "practice";
+    practice.position = 10;
+    repeat.kind = "repeat";
+    repeat.position = 11;
+    repeat.repeats = 4;
+    session.trials.push_back(practice);
+    session.trials.push_back(repeat);
+  }
+  const auto data = select(of(protocol));
+  EXPECT_THAT(data.reports, SizeIs(120));
+  EXPECT_EQ(data.flow.practice, 12);
+  EXPECT_EQ(data.flow.repeat, 12);
+  EXPECT_THAT(data.repeats.at("realism"), SizeIs(12));
+}
+
+TEST(TaskData, FailedTimingAndTheExperimenterTakeTrialsOut) {
+  auto protocol = made_study::task2(6);
+  protocol.sessions[0].trials[3].second->verdict = study::Verdict::Fail;
+  protocol.sessions[0].trials[3].second->reason = "40 frames late";
+  protocol.sessions[1].trials[7].excluded = "looked away";
+  const auto data = select(of(protocol), TaskKind::Task2);
+  ASSERT_THAT(data.exclusions, SizeIs(2));
+  EXPECT_EQ(data.exclusions[0].reason, "timing verdict fail: 40 frames late");
+  EXPECT_EQ(data.exclusions[1].rule, "experimenter");
+  EXPECT_THAT(data.choices, SizeIs(58));
+  EXPECT_EQ(data.flow.trials_excluded, 2);
+}
+
+TEST(TaskData, NoRuleSeesMethodsOrScenes) {
+  auto protocol = made_study::task1(12);
+  protocol.sessions[0].trials[3].first.verdict = study::Verdict::Fail;
+  for (auto& trial : protocol.sessions[1].trials) trial.answers[0].score = 4;
+  protocol.sessions[2].catches = {{"attention", 2, 5}};
+  const auto list = [](const TaskData& data) {
+    std::vector<std::string> lines;
+    for (const auto& one : data.exclusions)
+      lines.push_back(one.participant + " " + std::to_string(one.position) + " " + one.rule + " " +
+                      one.reason);
+    return lines;
+  };
+  const auto before = list(select(of(protocol)));
+  ASSERT_THAT(before, SizeIs(3));
+  for (auto& session : protocol.sessions) {
+    for (auto& trial : session.trials) {
+      auto& method = trial.first.what.method;
+      const auto at = std::find(made_study::methods.begin(), made_study::methods.end(), method);
+      method = made_study::methods[static_cast<std::size_t>((at - made_study::methods.begin() + 2) % 5)];
+      trial.first.what.n_star = trial.first.what.n_star == "16k" ? "32k" : "16k";
+    }
+  }
+  EXPECT_EQ(list(select(of(protocol))), before);
+}
+
+TEST(TaskData, VisitsOfOnePersonAreOneParticipant) {
+  auto protocol = made_study::task1(6);
+  auto second = made_study::task1(6, "tracked", 9).sessions[0];
+  second.visit = 2;
+  protocol.sessions.push_back(second);
+  const auto data = select(of(protocol));
+  EXPECT_THAT(data.participants, SizeIs(6));
+  EXPECT_THAT(data.reports, SizeIs(70));
+  const auto tables = score_tables(data, {});
+  const auto mean =
+      0.5 * (*protocol.sessions[0].trials[0].answers[0].score + *second.trials[0].answers[0].score);
+  EXPECT_EQ(tables[0].column(0, 0)[0], mean);
+}
+
+TEST(TaskData, TwoVisitsOfTask2AreRefusedInTheTestOnly) {
+  auto protocol = made_study::task2(6);
+  auto second = made_study::task2(6, "tracked", 9).sessions[0];
+  second.visit = 2;
+  protocol.sessions.push_back(second);
+  const auto data = select(of(protocol), TaskKind::Task2);
+  EXPECT_THAT(data.choices, SizeIs(70));
+  EXPECT_FALSE(stats::count_preferences(data.choices, 5, {}).at(0).test);
+}
+
+TEST(TaskData, AScoreThatLacksAnItemIsMissing) {
+  auto protocol = made_study::task1(3);
+  protocol.sessions[0].trials[0].answers[2].score.reset();  // unrealism
+  const auto data = select(of(protocol));
+  const auto tables = score_tables(data, {});
+  ASSERT_THAT(tables, SizeIs(3));
+  EXPECT_TRUE(std::isnan(tables[1].column(0, 0)[0]));
+  EXPECT_FALSE(std::isnan(tables[2].column(0, 0)[0])) << "the score without unrealism does not need it";
+  EXPECT_FALSE(std::isnan(tables[0].column(0, 0)[0]));
+  const auto& answers = protocol.sessions[1].trials[0].answers;
+  EXPECT_EQ(tables[1].column(0, 0)[1],
+            (*answers[1].score + *answers[2].score + *answers[3].score + *answers[4].score) / 4.0);
+}
+
+TEST(TaskData, GazeThatWasNotTrackedIsNamed) {
+  EXPECT_THAT(select(of(made_study::task1(4, "mouse"))).gaze_problem(), HasSubstr("mouse in 4 of 4"));
+  auto mixed = made_study::task1(4);
+  mixed.sessions[1].gaze_source = "none";
+  const auto data = select(of(mixed));
+  EXPECT_THAT(data.gaze_problem(), HasSubstr("none in 1 of 4"));
+}
+
+TEST(TaskData, NothingToAnalyseIsAReason) {
+  EXPECT_THAT(select_task({}, {TaskKind::Task1, "", {}}).reason(), HasSubstr("no protocol"));
+  auto silent = made_study::task1(2);
+  for (auto& session : silent.sessions) {
+    session.state = "not eligible";
+    for (auto& trial : session.trials) {
+      for (auto& answer : trial.answers) answer.score.reset();
+    }
+  }
+  EXPECT_THAT(select_task(of(silent), {TaskKind::Task1, "", {}}).reason(), HasSubstr("no answer counts"));
+  auto other = made_study::task1(2);
+  other.questions.erase(other.questions.begin());
+  EXPECT_THAT(select_task(of(other), {TaskKind::Task1, "", {}}).reason(), HasSubstr("realism"));
+}
+
+/// Entry of a sensitivity analysis by its id; null when there is none.
+Json variant(const Json& list, const std::string& id) {
+  for (const auto& one : list) {
+    if (one.at("id") == id) return one;
+  }
+  return {};
+}
+
+TEST(Sensitivity, TellsWhichVerdictsAnExclusionMakes) {
+  auto protocol = made_study::task1(26);
+  protocol.sessions[3].gaze_source = "none";
+  for (auto& trial : protocol.sessions[0].trials) trial.answers[0].score = 1;
+  const auto study = of(protocol);
+  const TaskSelection selection{TaskKind::Task1, "", {}};
+  const auto data = select_task(study, selection).value();
+  const auto list = sensitivity_json(study, selection, data, *task1_verdicts(data, {}));
+  EXPECT_EQ(variant(list, "planned").at("participants"), 25);
+  EXPECT_THAT(variant(list, "planned").at("changed"), IsEmpty());
+  EXPECT_EQ(variant(list, "no_exclusions").at("participants"), 26);
+  EXPECT_EQ(variant(list, "tracked_gaze_only").at("participants"), 24);
+  EXPECT_EQ(variant(list, "tracked_gaze_only").at("hypotheses")[0].at("status"),
+            variant(list, "planned").at("hypotheses")[0].at("status_if_testable"));
+  EXPECT_TRUE(variant(list, "blocks_pooled").is_null()) << "nobody has two blocks at one n_*";
+}
+
+TEST(Sensitivity, PoolsBlocksWhereAveragingMatters) {
+  auto protocol = made_study::task1(12);
+  for (auto& trial : protocol.sessions[0].trials) trial.first.what.n_star = "16k";
+  const auto study = of(protocol);
+  const TaskSelection selection{TaskKind::Task1, "", {}};
+  const auto data = select_task(study, selection).value();
+  const auto list = sensitivity_json(study, selection, data, *task1_verdicts(data, {}));
+  const auto pooled = variant(list, "blocks_pooled");
+  EXPECT_EQ(pooled.at("participants"), 24);
+  EXPECT_EQ(pooled.at("hypotheses")[0].at("tests")[0].at("n"), 13);
+  EXPECT_EQ(variant(list, "planned").at("hypotheses")[0].at("tests")[0].at("n"), 12);
+}
+
+}  // namespace
+}  // namespace apps
