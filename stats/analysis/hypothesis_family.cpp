@@ -104,7 +104,8 @@ Hypothesis finish(Family family) {
   out.status = family.untestable.empty() ? out.status_if_testable : HypothesisStatus::NotTestable;
   out.status_text = sentence(out);
   if (!family.untestable.empty())
-    out.status_text = "Not testable: " + family.untestable + ". Shown all the same: " + out.status_text;
+    out.status_text =
+        "Here " + family.untestable + "; the figures are shown all the same: " + out.status_text;
   judge_as_the_paper(out);
   return out;
 }

@@ -161,6 +161,15 @@ TEST(TaskCsv, EveryNumberIsTheJsons) {
     EXPECT_TRUE(std::filesystem::exists(folder / "csv" / (std::string(file) + ".csv"))) << file;
 }
 
+TEST(TaskCsv, AnEmptyListOfExclusionsHasItsColumns) {
+  const TemporaryFolder folder;
+  ASSERT_THAT(whole_study().at("exclusions"), IsEmpty());
+  write_csv_folder(whole_study(), folder / "csv");
+  EXPECT_EQ(base::read_file(folder / "csv" / "exclusions.csv", 1 << 20),
+            "task,participant,visit,position,rule,reason,actor,answers\r\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "csv" / "task1_retest.csv"));
+}
+
 TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   const TemporaryFolder folder;
   stats::AnalysisPlan plan;

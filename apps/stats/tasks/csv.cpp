@@ -11,6 +11,9 @@ namespace apps {
 
 namespace {
 
+const std::vector<std::string> exclusion_columns{"task", "participant", "visit", "position",
+                                                 "rule", "reason",      "actor", "answers"};
+
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
 std::string csv_quoted(const std::string& text) {
@@ -129,10 +132,10 @@ Json sensitivity_lines(const Json& variants) {
 
 }  // namespace
 
-std::string csv_text(const Json& list) {
+std::string csv_text(const Json& list, const std::vector<std::string>& if_empty) {
   std::vector<Fields> lines;
   for (const auto& object : list) flatten("", object, lines.emplace_back());
-  const auto columns = columns_of(lines);
+  const auto columns = lines.empty() ? if_empty : columns_of(lines);
   std::string out;
   for (const auto& column : columns) out += (out.empty() ? "" : ",") + csv_quoted(column);
   out += "\r\n";
@@ -150,7 +153,7 @@ std::string csv_text(const Json& list) {
 
 void write_csv_folder(const Json& results, const std::filesystem::path& folder) {
   std::vector<std::pair<std::string, Json>> files{
-      {"exclusions", results.at("exclusions")},
+
       {"timing", results.at("timing")},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
@@ -169,8 +172,11 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder) 
     files.emplace_back("task2_triads", task.at("triads").at("participants"));
   }
   make_folder(folder);
-  for (const auto& [name, list] : files)
-    base::write_file_atomically(folder / (name + ".csv"), csv_text(list));
+  base::write_file_atomically(folder / "exclusions.csv",
+                              csv_text(results.at("exclusions"), exclusion_columns));
+  for (const auto& [name, list] : files) {
+    if (!list.empty()) base::write_file_atomically(folder / (name + ".csv"), csv_text(list));
+  }
 }
 
 }  // namespace apps

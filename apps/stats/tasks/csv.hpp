@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/stats/tasks/json_parts.hpp"
 
@@ -11,11 +12,11 @@ namespace apps {
 /// One line for each object of a list, RFC 4180. A nested object's fields are named outer_inner, an
 /// interval's ends name_low and name_high; other lists are left out unless of texts, which are joined by
 /// spaces. Null is an empty field; nothing is rounded. Columns are those that any line has, in the order of
-/// first appearance.
-std::string csv_text(const Json& list);
+/// first appearance; `if_empty` are those of an empty list.
+std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
-/// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Parts that
-/// the results lack make no file.
+/// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Lists that
+/// are empty or absent make no file; exclusions.csv is always there.
 void write_csv_folder(const Json& results, const std::filesystem::path& folder);
 
 }  // namespace apps

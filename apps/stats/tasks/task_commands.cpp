@@ -29,6 +29,11 @@ std::string number_text(const Json& value, const char* format) {
 
 std::string word(const Json& value) { return value.get<std::string>(); }
 
+std::string p_text(const Json& p) {
+  if (p.is_number() && p.get<double>() < 0.0001) return "< .0001";
+  return number_text(p, "%.4f");
+}
+
 void print_cells(const Json& task) {
   std::printf("\n%-28s %-5s %-9s %4s %7s %6s  95 %% interval\n", "score", "n_*", "method", "n", "mean", "sd");
   for (const auto& cell : task.at("cells")) {
@@ -48,24 +53,31 @@ void print_pairs(const Json& task) {
     std::printf("%-22s %4d %4d %6s %9s %9s  [%s, %s]%s\n",
                 (word(pair.at("a")) + " over " + word(pair.at("b"))).c_str(), pair.at("k").get<int>(),
                 pair.at("n").get<int>(), number_text(pair.at("share"), "%.2f").c_str(),
-                number_text(pair.at("p"), "%.4f").c_str(), number_text(pair.at("p_holm"), "%.4f").c_str(),
+                p_text(pair.at("p")).c_str(), p_text(pair.at("p_holm")).c_str(),
                 number_text(ci.is_array() ? ci[0] : Json(), "%.2f").c_str(),
                 number_text(ci.is_array() ? ci[1] : Json(), "%.2f").c_str(),
                 word(pair.at("warning")).empty() ? "" : " (see warning)");
   }
 }
 
+void print_test(const Json& test) {
+  const bool holds = test.at("holds").get<bool>(), against = test.at("against").get<bool>();
+  std::printf("    %-36s %8s  p %-8s Holm %-8s %s\n", word(test.at("label")).c_str(),
+              number_text(test.at("estimate"), "%.3f").c_str(), p_text(test.at("p")).c_str(),
+              p_text(test.at("p_holm")).c_str(),
+              holds     ? "holds"
+              : against ? "significant in the other direction"
+                        : word(test.at("reason")).c_str());
+}
+
 void print_hypotheses(const Json& json) {
   for (const auto& one : json.at("hypotheses")) {
-    std::printf("\n%s %s\n  %s: %s\n  The paper's procedure: %s\n", word(one.at("id")).c_str(),
+    const Json& paper = one.at("paper");
+    std::printf("\n%s %s\n  %s. %s\n  By the paper's rule (%s): %s\n", word(one.at("id")).c_str(),
                 word(one.at("title")).c_str(), word(one.at("status")).c_str(),
-                word(one.at("status_text")).c_str(), word(one.at("paper").at("text")).c_str());
-    for (const auto& test : one.at("tests")) {
-      std::printf("    %-36s %8s  p = %-9s Holm %-9s %s\n", word(test.at("label")).c_str(),
-                  number_text(test.at("estimate"), "%.3f").c_str(), number_text(test.at("p"), "%.4f").c_str(),
-                  number_text(test.at("p_holm"), "%.4f").c_str(),
-                  test.at("holds").get<bool>() ? "holds" : word(test.at("reason")).c_str());
-    }
+                word(one.at("status_text")).c_str(), word(paper.at("rule")).c_str(),
+                word(paper.at("text")).c_str());
+    for (const auto& test : one.at("tests")) print_test(test);
   }
 }
 
