@@ -17,6 +17,9 @@ namespace {
 
 constexpr std::size_t largest_exact_n = 1000;
 constexpr double largest_exact_work = 1e9;
+/// Walsh averages, or differences between groups, that are held at once (200 MB).
+constexpr double most_pairs = 2.5e7;
+const Refusal too_many{"more pairs of values than 2.5e7"};
 
 double two_sided(const RankSumTails& tails) { return std::min(1.0, 2 * std::min(tails.lower, tails.upper)); }
 
@@ -113,6 +116,8 @@ Result<SignedRank> signed_rank(std::span<const double> differences, double confi
   const auto sample = present(differences);
   if (!sample) return Refusal{sample.reason()};
   if (sample->values.empty()) return Refusal{"no values"};
+  const auto n_values = static_cast<double>(sample->values.size());
+  if (n_values * (n_values + 1) / 2 > most_pairs) return too_many;
   std::vector<double> nonzero;
   for (const double d : sample->values) {
     if (std::abs(d) > resolution) nonzero.push_back(d);
@@ -166,6 +171,8 @@ Result<MannWhitney> mann_whitney(std::span<const double> x, std::span<const doub
   if (!a) return Refusal{a.reason()};
   if (!b) return Refusal{b.reason()};
   if (a->values.empty() || b->values.empty()) return Refusal{"a group without values"};
+  if (static_cast<double>(a->values.size()) * static_cast<double>(b->values.size()) > most_pairs)
+    return too_many;
   std::vector<double> all = a->values;
   all.insert(all.end(), b->values.begin(), b->values.end());
   const auto ranked = midranks(all);

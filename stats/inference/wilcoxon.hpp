@@ -1,5 +1,6 @@
 #pragma once
-/// Wilcoxon's signed-rank test and the test of Mann and Whitney. NaN = missing: dropped and counted.
+/// Wilcoxon's signed-rank test and the test of Mann and Whitney. NaN = missing: dropped and counted. More
+/// than 2.5e7 pairs of values (7,070 differences, two groups of 5,000) are refused.
 
 #include <array>
 #include <cstddef>

@@ -90,6 +90,23 @@ TEST(EquivalenceTest, SwappingGroupsMirrorsTheMargins) {
   EXPECT_DOUBLE_EQ(a->ci[0], -b->ci[1]);
 }
 
+TEST(EquivalenceTest, FollowsOrderShiftAndScale) {
+  const Values x{4, 5, 3, 5, 4.5, 5.5}, y{4, 5.5, 4, 4.25, 5, 4.5};
+  const auto base = equivalence_paired(x, y, {-0.5, 0.5}), apart = equivalence_welch(x, y, {-0.5, 0.5});
+  for (const double scale : {0x1p-490, 0x1p480}) {
+    Values sx(x.rbegin(), x.rend()), sy(y.rbegin(), y.rend());
+    for (auto& v : sx) v = (v + 0x1p40) * scale;
+    for (auto& v : sy) v = (v + 0x1p40) * scale;
+    const Margins margins{-0.5 * scale, 0.5 * scale};
+    const auto got = equivalence_paired(sx, sy, margins), got_apart = equivalence_welch(sx, sy, margins);
+    ASSERT_TRUE(base && apart && got && got_apart);
+    EXPECT_NEAR(got->p, base->p, 1e-13);
+    EXPECT_NEAR(got->ci[1], base->ci[1] * scale, 1e-13 * scale);
+    EXPECT_NEAR(got_apart->p, apart->p, 1e-13);
+    EXPECT_NEAR(got_apart->df, apart->df, 1e-12);
+  }
+}
+
 TEST(EquivalenceTest, AtTheMarginTheErrorRateIsAlpha) {
   // One-sided p at the margin is uniform; the other test hardly ever decides with margins this wide.
   constexpr std::size_t sets = 3000;

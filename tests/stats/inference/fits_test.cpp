@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -54,6 +55,20 @@ TEST(LinearFit, FollowsScale) {
   EXPECT_DOUBLE_EQ(fit->coefficients[0], base->coefficients[0] * 0x1p400);
   EXPECT_DOUBLE_EQ(fit->coefficients[1], base->coefficients[1] * 0x1p900);
   EXPECT_DOUBLE_EQ(*fit->f, *base->f);
+}
+
+TEST(LinearFit, IsBlindToTheOrderOfRows) {
+  std::mt19937_64 random(9);
+  auto a = sampling::normal(random, 20), b = sampling::normal(random, 20, 1e9),
+       y = sampling::normal(random, 20);
+  const auto base = fit_linear({a, b}, y);
+  for (auto* values : {&a, &b, &y}) std::reverse(values->begin(), values->end());
+  const auto turned = fit_linear({a, b}, y);
+  ASSERT_TRUE(base && turned);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(turned->coefficients[i], base->coefficients[i], 1e-13 * std::abs(base->coefficients[i]));
+    EXPECT_NEAR(turned->standard_errors[i], base->standard_errors[i], 1e-13 * base->standard_errors[i]);
+  }
 }
 
 TEST(LinearFit, SaysWhyThereIsNone) {

@@ -140,6 +140,7 @@ TEST(SignedRank, SmallAndEmptySamples) {
   EXPECT_EQ(signed_rank(Values{0, 0, 0}).reason(), "no difference that is not zero");
   EXPECT_EQ(signed_rank(Values{1, infinite}).reason(), "a value is infinite");
   EXPECT_EQ(signed_rank(Values{1, 2}, Values{1, 2}).reason(), "no difference that is not zero");
+  EXPECT_EQ(signed_rank(Values(8000, 1.0)).reason(), "more pairs of values than 2.5e7");
   EXPECT_THROW(signed_rank(Values{1, 2}, Values{1}), std::invalid_argument);
   EXPECT_THROW(signed_rank(Values{1}, 0.95, -1.0), std::invalid_argument);
   const auto one = signed_rank(Values{-2, unknown});
@@ -222,6 +223,7 @@ TEST(MannWhitney, EdgesAndRefusals) {
   EXPECT_EQ(mann_whitney(Values{}, Values{1}).reason(), "a group without values");
   EXPECT_EQ(mann_whitney(Values{1}, Values{unknown}).reason(), "a group without values");
   EXPECT_EQ(mann_whitney(Values{infinite}, Values{1}).reason(), "a value is infinite");
+  EXPECT_FALSE(mann_whitney(Values(6000, 1.0), Values(6000, 2.0)));
   const auto same = mann_whitney(Values{4, 4, 4}, Values{4, 4});
   ASSERT_TRUE(same);
   EXPECT_EQ(*same->p_exact, 1);
