@@ -39,7 +39,9 @@ class Descent {
     if (!std::isfinite(at_.value)) throw std::invalid_argument("the start lies outside the domain");
   }
 
-  void bfgs();
+  /// Until a step promises less than `least`; false when no step lowers the value before.
+  bool bfgs(Vector inverse, double least);
+  const Point& at() const { return at_; }
   Minimum newton();
 
  private:
@@ -79,23 +81,23 @@ void Descent::update_inverse(Vector& inverse, const Vector& s, const Vector& y) 
   }
 }
 
-void Descent::bfgs() {
-  Vector inverse(n_ * n_), direction(n_), s(n_), y(n_);
+bool Descent::bfgs(Vector inverse, double least) {
+  Vector direction(n_), s(n_), y(n_);
   const auto restart = [&] {
-    std::fill(inverse.begin(), inverse.end(), 0.0);
+    inverse.assign(n_ * n_, 0.0);
     for (std::size_t i = 0; i < n_; ++i) inverse[i * n_ + i] = 1 / std::max(1.0, largest(at_.gradient));
   };
-  restart();
+  if (inverse.empty()) restart();
   for (int iteration = 0; iteration < 500; ++iteration) {
     for (std::size_t i = 0; i < n_; ++i) direction[i] = -dot({&inverse[i * n_], n_}, at_.gradient);
-    double slope = dot(direction, at_.gradient);
-    if (!(slope < 0)) {
+    const double slope = dot(direction, at_.gradient);
+    if (slope > 0) {
       restart();
       continue;
     }
-    if (-slope < 1e-9 * (1 + 1e-3 * std::abs(at_.value))) return;
+    if (-slope < least) return true;
     const auto next = step(direction, slope, 1e-4);
-    if (!next) return;
+    if (!next) return false;
     for (std::size_t i = 0; i < n_; ++i) {
       s[i] = next->x[i] - at_.x[i];
       y[i] = next->gradient[i] - at_.gradient[i];
@@ -103,6 +105,7 @@ void Descent::bfgs() {
     at_ = *next;
     update_inverse(inverse, s, y);
   }
+  return false;
 }
 
 Vector Descent::hessian() const {
@@ -147,8 +150,17 @@ Minimum Descent::newton() {
 
 Minimum minimise(const Objective& objective, std::vector<double> start) {
   Descent descent(objective, std::move(start));
-  descent.bfgs();
+  descent.bfgs({}, 1e-9);
   return descent.newton();
+}
+
+Minimum minimise_near(const Objective& objective, std::vector<double> start,
+                      std::vector<double> inverse_hessian) {
+  if (inverse_hessian.size() != start.size() * start.size())
+    throw std::invalid_argument("an inverse Hessian of another size");
+  Descent descent(objective, std::move(start));
+  const bool converged = descent.bfgs(std::move(inverse_hessian), 1e-10);
+  return {descent.at().x, descent.at().value, {}, converged};
 }
 
 }  // namespace stats

@@ -101,8 +101,39 @@ ScoreGrid PilotTable::grid(PilotMean mean, std::span<const double> weights) cons
   return grid;
 }
 
+std::vector<PilotObservation> PilotTable::observations(PilotMean mean) const {
+  std::vector<PilotObservation> out;
+  for (int p = 0; p < participants_; ++p) {
+    for (std::size_t cell = 0; cell < mu_.size() * delta_.size(); ++cell) {
+      const auto& e = entry(p, cell);
+      if (e.n == 0) continue;
+      const double mu = mean == PilotMean::Harmonic ? e.mu_harmonic : e.mu_arithmetic;
+      out.push_back({p, mu / e.n, e.delta / e.n, e.score / e.n, delta_[cell % delta_.size()]});
+    }
+  }
+  return out;
+}
+
 Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level) {
   return fit_contour(column_crossings(grid, level, contour_lines(grid)).points);
+}
+
+Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
+                                 const BootstrapOptions& options) {
+  const int n = participants;
+  const int failed = options.resamples - static_cast<int>(a.size());
+  if (a.size() < 2 || failed > largest_failed_share * options.resamples) {
+    return Refusal{std::to_string(failed) + " of " + std::to_string(options.resamples) +
+                   " resamples of the participants have no fit"};
+  }
+  const bool extremes = expanded_tail(n, options.confidence) * static_cast<double>(a.size()) < 1;
+  return PilotSpread{expanded_percentile_interval(a, n, options.confidence),
+                     expanded_percentile_interval(b, n, options.confidence),
+                     bootstrap_se(a),
+                     bootstrap_se(b),
+                     options.resamples,
+                     failed,
+                     extremes};
 }
 
 namespace {
@@ -123,19 +154,7 @@ Result<PilotSpread> spread_over_participants(const PilotTable& table, PilotMean 
     a.push_back(fit->a);
     b.push_back(fit->b);
   }
-  const int failed = options.resamples - static_cast<int>(a.size());
-  if (a.size() < 2 || failed > largest_failed_share * options.resamples) {
-    return Refusal{std::to_string(failed) + " of " + std::to_string(options.resamples) +
-                   " resamples of the participants have no fit"};
-  }
-  const bool extremes = expanded_tail(n, options.confidence) * static_cast<double>(a.size()) < 1;
-  return PilotSpread{expanded_percentile_interval(a, n, options.confidence),
-                     expanded_percentile_interval(b, n, options.confidence),
-                     bootstrap_se(a),
-                     bootstrap_se(b),
-                     options.resamples,
-                     failed,
-                     extremes};
+  return pilot_spread(a, b, n, options);
 }
 
 }  // namespace

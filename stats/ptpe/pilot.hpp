@@ -23,6 +23,14 @@ struct PilotRating {
   double score = 0;
 };
 
+/// A participant's mean score of one setting, where it was really shown.
+struct PilotObservation {
+  int participant = 0;  ///< 0, 1, ... in ascending order of PilotRating::participant
+  double mu = 0, delta = 0;
+  double score = 0;
+  double nominal_delta = 0;  ///< of the setting: equal numbers are one column of the grid
+};
+
 /// Which realised mean is the coordinate mu of a setting.
 enum class PilotMean { Harmonic, Arithmetic };
 
@@ -41,6 +49,8 @@ class PilotTable {
 
   /// Mean scores and places, participant i counted weights[i] times (empty = once each).
   ScoreGrid grid(PilotMean mean, std::span<const double> weights = {}) const;
+  /// One for each setting that each participant rated.
+  std::vector<PilotObservation> observations(PilotMean mean) const;
 
  private:
   struct Entry {
@@ -73,6 +83,11 @@ struct PilotSpread {
 inline constexpr int least_participants = 4;
 /// With a larger share of resamples without a fit, the rest is a selection and no interval is given.
 inline constexpr double largest_failed_share = 0.05;
+
+/// From resampled estimates of a and b, fewer than options.resamples where some had no fit. Refused beyond
+/// largest_failed_share.
+Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
+                                 const BootstrapOptions& options);
 
 /// A contour, its curve, and how far the participants determine it.
 struct PilotEstimate {

@@ -1,0 +1,52 @@
+#pragma once
+/// mu(delta) = a exp(b delta) with what the participants determine of it: intervals and bands.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// log mu(delta) = log a + b delta.
+struct Curve {
+  double log_a = 0, b = 0;  ///< a in frames/s, b in s/frame
+
+  double a() const;
+  double mu(double delta) const;
+};
+
+/// mu(delta) and an interval for it, frames/s.
+struct BandPoint {
+  double delta = 0, mu = 0;
+  std::array<double, 2> pointwise{};     ///< holds the true mu(delta) at this delta
+  std::array<double, 2> simultaneous{};  ///< holds the whole true curve at once
+};
+
+/// A curve's uncertainty by the jackknife over participants (Tukey 1958): leaving each out in turn.
+struct CurveSpread {
+  Curve curve;
+  double var_log_a = 0, cov = 0, var_b = 0;
+  int participants = 0;
+  double confidence = 0.95;
+  std::array<double, 2> a_ci{}, b_ci{};  ///< exp(log a -+ t se), b -+ t se with participants - 1 df
+
+  double a_se() const;  ///< a se(log a)
+  double b_se() const;
+  /// Pointwise with Student's t; simultaneous after Working and Hotelling (1929) with Hotelling's T^2 for the
+  /// two coefficients.
+  BandPoint band(double delta) const;
+  /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): how far, in parts of
+  /// the threshold frame rate, the participants leave it open.
+  double largest_relative_half_width(std::span<const double> deltas) const;
+};
+
+/// From the estimate and those without each participant; both in any units, at least four participants
+/// (std::invalid_argument). `confidence` in (0, 1).
+CurveSpread jackknife_curve(const Curve& estimate, std::span<const Curve> without_one, double confidence);
+
+/// (n-1)/n sum (x_i - mean)(y_i - mean): the jackknife's covariance of two estimates.
+double jackknife_covariance(std::span<const double> x, std::span<const double> y);
+
+}  // namespace stats

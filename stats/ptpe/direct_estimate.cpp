@@ -1,0 +1,148 @@
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "stats/gsl_errors.hpp"
+#include "stats/ptpe/direct_fit.hpp"
+
+namespace stats {
+
+namespace {
+
+/// The fits without each participant; the reason when one has none.
+using Fitter = std::function<Result<DirectFit>(std::span<const double>)>;
+Result<std::vector<DirectFit>> leave_one_out(int n, const Fitter& fitter) {
+  if (n < least_participants) {
+    return Refusal{"an interval over participants needs at least " + std::to_string(least_participants) +
+                   " of them, not " + std::to_string(n)};
+  }
+  std::vector<DirectFit> fits;
+  for (int left_out = 0; left_out < n; ++left_out) {
+    std::vector<double> weights(static_cast<std::size_t>(n), 1.0);
+    weights[static_cast<std::size_t>(left_out)] = 0;
+    const auto fit = fitter(weights);
+    if (!fit) return Refusal{"one participant decides whether there is a fit: without them " + fit.reason()};
+    fits.push_back(*fit);
+  }
+  return fits;
+}
+
+CurveSpread spread_of(const DirectFit& fit, const std::vector<DirectFit>& without, double confidence) {
+  std::vector<Curve> curves;
+  for (const auto& f : without) curves.push_back(f.curve);
+  return jackknife_curve(fit.curve, curves, confidence);
+}
+
+Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>& without) {
+  use_gsl_codes();
+  std::vector<double> m, q;
+  for (const auto& f : without) {
+    m.push_back(f.m);
+    q.push_back(f.q);
+  }
+  const double mm = jackknife_covariance(m, m), mq = jackknife_covariance(m, q),
+               qq = jackknife_covariance(q, q);
+  const double determinant = mm * qq - mq * mq, n = static_cast<double>(m.size());
+  if (!(determinant > 1e-12 * mm * qq)) return Refusal{"the participants agree: m and q have no spread"};
+  const double t2 = (qq * fit.m * fit.m - 2 * mq * fit.m * fit.q + mm * fit.q * fit.q) / determinant;
+  LackOfFit test;
+  test.m = fit.m;
+  test.q = fit.q;
+  test.df2 = static_cast<int>(m.size()) - 2;
+  test.f = t2 * (n - 2) / (2 * (n - 1));
+  test.p = gsl_cdf_fdist_Q(test.f, 2, n - 2);
+  return test;
+}
+
+Result<PilotSpread> bootstrap(const DirectModel& model, const DirectFit& fit,
+                              const BootstrapOptions& options) {
+  const int n = model.participants();
+  if (options.resamples < 1) return Refusal{"no resamples were asked for"};
+  std::vector<double> a, b;
+  for (int i = 0; i < options.resamples; ++i) {
+    const auto drawn = model.fit(resample_weights(n, options.seed, static_cast<std::uint64_t>(i)), &fit);
+    if (options.progress) options.progress(i + 1);
+    if (!drawn) continue;
+    a.push_back(drawn->curve.a());
+    b.push_back(drawn->curve.b);
+  }
+  return pilot_spread(a, b, n, options);
+}
+
+void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
+  estimate.jackknife = Refusal{reason};
+  estimate.bootstrap = Refusal{reason};
+  estimate.lack_of_fit = Refusal{reason};
+}
+
+}  // namespace
+
+std::vector<PilotObservation> within_reach(std::span<const PilotObservation> observations, double level,
+                                           std::vector<double>& left_out) {
+  std::vector<PilotObservation> kept(observations.begin(), observations.end());
+  left_out.clear();
+  const auto whole = DirectModel(observations, level).fit();
+  if (!whole) return kept;
+  double low = observations.front().mu, high = low;
+  std::map<double, double> beyond;  // by nominal delta: how far outside the curve runs, in log mu
+  for (const auto& o : observations) {
+    low = std::min(low, o.mu);
+    high = std::max(high, o.mu);
+    beyond[o.nominal_delta] = 0;
+  }
+  std::vector<double> distances;
+  for (auto& [delta, distance] : beyond) {
+    const double mu = whole->curve.mu(delta);
+    distance = std::max({0.0, std::log(mu / high), std::log(low / mu)});
+    distances.push_back(distance);
+  }
+  std::sort(distances.begin(), distances.end());
+  const double farthest = distances[std::min<std::size_t>(2, distances.size() - 1)];
+  for (const auto& [delta, distance] : beyond) {
+    if (distance > farthest) left_out.push_back(delta);
+  }
+  std::erase_if(kept, [&](const auto& o) { return beyond[o.nominal_delta] > farthest; });
+  return kept;
+}
+
+DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
+                               const BootstrapOptions& options) {
+  DirectEstimate out;
+  const DirectModel model(within_reach(observations, level, out.out_of_reach), level);
+  if (model.participants() == 0) {
+    out.fit = Refusal{"no ratings"};
+    out.straight = Refusal{"no ratings"};
+  } else {
+    out.fit = model.fit();
+    out.straight = model.fit_straight();
+  }
+  const int n = model.participants();
+  if (!out.fit) {
+    refuse_spread(out, out.fit.reason());
+  } else {
+    const auto without = leave_one_out(n, [&](std::span<const double> w) { return model.fit(w, &*out.fit); });
+    if (without) {
+      out.jackknife = spread_of(*out.fit, *without, options.confidence);
+      out.lack_of_fit = lack_of_fit(*out.fit, *without);
+      out.bootstrap = bootstrap(model, *out.fit, options);
+    } else {
+      refuse_spread(out, without.reason());
+    }
+  }
+  if (!out.straight) {
+    out.straight_jackknife = Refusal{out.straight.reason()};
+    return out;
+  }
+  const auto without = leave_one_out(n, [&](std::span<const double> w) { return model.fit_straight(w); });
+  out.straight_jackknife = without
+                               ? Result<CurveSpread>(spread_of(*out.straight, *without, options.confidence))
+                               : Refusal{without.reason()};
+  return out;
+}
+
+}  // namespace stats

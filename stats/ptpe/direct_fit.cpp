@@ -1,0 +1,237 @@
+#include "stats/ptpe/direct_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stats/ptpe/small_cholesky.hpp"
+
+namespace stats {
+
+namespace {
+
+/// delta is measured in tens of frames/s, so that every coefficient is of the order 1.
+constexpr double delta_unit = 10;
+
+}  // namespace
+
+/// u = x - alpha - beta d with x = log mu - its centre and d = (delta - its centre) / delta_unit; the score
+/// less the level is u (k + m d + q u).
+struct DirectModel::Place {
+  double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
+
+  std::array<double, terms> coefficients() const {
+    return {-k * alpha + q * alpha * alpha,
+            k - 2 * q * alpha,
+            -k * beta - m * alpha + 2 * q * alpha * beta,
+            m - 2 * q * beta,
+            q,
+            -m * beta + q * beta * beta};
+  }
+  /// Rows: alpha, beta, k, m, q.
+  std::array<std::array<double, terms>, 5> jacobian() const {
+    return {{{-k + 2 * q * alpha, -2 * q, -m + 2 * q * beta, 0, 0, 0},
+             {0, 0, -k + 2 * q * alpha, -2 * q, 0, -m + 2 * q * beta},
+             {-alpha, 1, -beta, 0, 0, 0},
+             {0, 0, -alpha, 1, 0, -beta},
+             {alpha * alpha, -2 * alpha, 2 * alpha * beta, -2 * beta, 1, beta * beta}}};
+  }
+  /// The other line on which the score is the level.
+  Place other() const { return {alpha - k / q, beta - m / q, -k, -m, q}; }
+};
+
+DirectModel::DirectModel(std::span<const PilotObservation> observations, double level) : level_(level) {
+  int participants = 0;
+  double n = 0;
+  for (const auto& o : observations) {
+    if (!(o.mu > 0)) throw std::invalid_argument("a mean frame rate must be positive");
+    participants = std::max(participants, o.participant + 1);
+    log_mu_centre_ += std::log(o.mu);
+    delta_centre_ += o.delta;
+    n += 1;
+  }
+  if (n == 0) return;
+  log_mu_centre_ /= n;
+  delta_centre_ /= n;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  log_mu_range_ = delta_range_ = {infinity, -infinity};
+  sums_.resize(static_cast<std::size_t>(participants));
+  for (const auto& o : observations) {
+    const double x = std::log(o.mu) - log_mu_centre_, d = (o.delta - delta_centre_) / delta_unit;
+    const std::array<double, terms> row{1, x, d, x * d, x * x, d * d};
+    auto& sums = sums_[static_cast<std::size_t>(o.participant)];
+    const double y = o.score - level;
+    for (std::size_t i = 0; i < terms; ++i) {
+      sums.moment[i] += row[i] * y;
+      for (std::size_t j = 0; j < terms; ++j) sums.gram[i * terms + j] += row[i] * row[j];
+    }
+    sums.squares += y * y;
+    sums.n += 1;
+    log_mu_range_ = {std::min(log_mu_range_[0], std::log(o.mu)), std::max(log_mu_range_[1], std::log(o.mu))};
+    delta_range_ = {std::min(delta_range_[0], o.delta), std::max(delta_range_[1], o.delta)};
+  }
+}
+
+DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
+  if (!weights.empty() && weights.size() != sums_.size())
+    throw std::invalid_argument("one weight for each participant is needed");
+  Sums out;
+  for (std::size_t p = 0; p < sums_.size(); ++p) {
+    const double w = weights.empty() ? 1 : weights[p];
+    if (w == 0) continue;
+    for (std::size_t i = 0; i < out.gram.size(); ++i) out.gram[i] += w * sums_[p].gram[i];
+    for (std::size_t i = 0; i < terms; ++i) out.moment[i] += w * sums_[p].moment[i];
+    out.squares += w * sums_[p].squares;
+    out.n += w * sums_[p].n;
+  }
+  return out;
+}
+
+double DirectModel::rss(const Sums& sums, const Place& at) {
+  const auto c = at.coefficients();
+  double value = sums.squares;
+  for (std::size_t i = 0; i < terms; ++i) {
+    double row = -2 * sums.moment[i];
+    for (std::size_t j = 0; j < terms; ++j) row += sums.gram[i * terms + j] * c[j];
+    value += c[i] * row;
+  }
+  return value;
+}
+
+/// Ordinary least squares on 1, x and d; empty when the settings do not determine it or the score does not
+/// depend on x.
+std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
+  std::array<double, 9> gram{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) gram[i * 3 + j] = sums.gram[i * terms + j];
+  }
+  const auto c = solve_positive<3>(gram, {sums.moment[0], sums.moment[1], sums.moment[2]});
+  if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;
+  return Place{-(*c)[0] / (*c)[1], -(*c)[2] / (*c)[1], (*c)[1], 0, 0};
+}
+
+/// Marquardt (1963): damped Gauss-Newton steps until they vanish.
+DirectModel::Place DirectModel::descend(const Sums& sums, Place at) {
+  double value = rss(sums, at), damping = 1e-4;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const auto c = at.coefficients();
+    const auto J = at.jacobian();
+    std::array<double, terms> slope{};  // half the gradient by coefficients
+    for (std::size_t i = 0; i < terms; ++i) {
+      slope[i] = -sums.moment[i];
+      for (std::size_t j = 0; j < terms; ++j) slope[i] += sums.gram[i * terms + j] * c[j];
+    }
+    std::array<double, 25> normal{};
+    std::array<double, 5> down{};
+    for (std::size_t r = 0; r < 5; ++r) {
+      std::array<double, terms> gj{};
+      for (std::size_t i = 0; i < terms; ++i) {
+        down[r] -= J[r][i] * slope[i];
+        for (std::size_t j = 0; j < terms; ++j) gj[i] += sums.gram[i * terms + j] * J[r][j];
+      }
+      for (std::size_t s = 0; s < 5; ++s) {
+        for (std::size_t i = 0; i < terms; ++i) normal[r * 5 + s] += gj[i] * J[s][i];
+      }
+    }
+    bool moved = false;
+    for (; damping < 1e12 && !moved; damping *= 10) {
+      auto damped = normal;
+      for (std::size_t r = 0; r < 5; ++r) damped[r * 6] *= 1 + damping;
+      const auto step = solve_positive<5>(damped, down);
+      if (!step) continue;
+      const Place next{at.alpha + (*step)[0], at.beta + (*step)[1], at.k + (*step)[2], at.m + (*step)[3],
+                       at.q + (*step)[4]};
+      const double there = rss(sums, next);
+      double length = 0;
+      for (const double s : *step) length = std::max(length, std::abs(s));
+      if (length < 1e-10) return there < value ? next : at;
+      if (!(there < value)) continue;
+      at = next;
+      value = there;
+      damping = std::max(damping / 100, 1e-12);
+      moved = true;
+    }
+    if (!moved) return at;
+  }
+  return at;
+}
+
+/// Of the two lines on which the score is the level, the one along which it rises with mu.
+Result<DirectFit> DirectModel::checked(const Sums& sums, const Place& at) const {
+  if (at.k < 0 && std::abs(at.q) > 1e-12) {
+    if (const auto rising = described(sums, at.other())) return rising;
+  }
+  return described(sums, at);
+}
+
+Result<DirectFit> DirectModel::described(const Sums& sums, const Place& at) const {
+  DirectFit fit;
+  fit.level = level_;
+  fit.curve.b = at.beta / delta_unit;
+  fit.curve.log_a = at.alpha + log_mu_centre_ - fit.curve.b * delta_centre_;
+  fit.m = at.m / delta_unit;
+  fit.k = at.k - fit.m * delta_centre_;
+  fit.q = at.q;
+  fit.rss = std::max(0.0, rss(sums, at));
+  fit.n = sums.n;
+  if (!std::isfinite(fit.curve.log_a) || !std::isfinite(fit.curve.b) || !std::isfinite(fit.rss))
+    return Refusal{"the fit left the numbers that a computer holds"};
+  constexpr int steps = 20;
+  bool rises = true, inside = false;
+  for (int i = 0; i <= steps; ++i) {
+    const double delta = std::lerp(delta_range_[0], delta_range_[1], i / double{steps});
+    const double log_mu = fit.curve.log_a + fit.curve.b * delta;
+    if (log_mu < log_mu_range_[0] || log_mu > log_mu_range_[1]) continue;
+    inside = true;
+    rises &= fit.k + fit.m * delta > 0;
+  }
+  if (!inside) return Refusal{"no contour: the ratings do not meet the level within the settings shown"};
+  if (!rises) return Refusal{"the scores do not rise with the frame rate all along the curve"};
+  return fit;
+}
+
+Result<DirectFit> DirectModel::fit(std::span<const double> weights, const DirectFit* start) const {
+  const auto sums = weighted(weights);
+  const auto plane = straight(sums);
+  const auto scale = std::max(sums.n, 1.0);
+  auto ridge = sums.gram;
+  for (double& g : ridge) g /= scale;
+  if (!plane || !solve_positive<terms>(ridge, {}))
+    return Refusal{"the settings rated do not determine a surface over mean and deviation"};
+  std::vector<Place> starts{*plane};
+  if (start) {
+    const double b = start->curve.b, m = start->m;
+    starts.push_back({start->curve.log_a + b * delta_centre_ - log_mu_centre_, b * delta_unit,
+                      start->k + m * delta_centre_, m * delta_unit, start->q});
+  } else {
+    for (const double alpha : {-0.4, 0.0, 0.4}) {
+      for (const double beta : {-0.2, 0.2, 0.6}) starts.push_back({alpha, beta, plane->k, 0, 0});
+    }
+  }
+  Place best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& from : starts) {
+    const auto end = descend(sums, from);
+    const double value = rss(sums, end);
+    if (value < least - 1e-9 * sums.squares) {
+      least = value;
+      best = end;
+    }
+  }
+  return checked(sums, best);
+}
+
+Result<DirectFit> DirectModel::fit_straight(std::span<const double> weights) const {
+  const auto sums = weighted(weights);
+  const auto plane = straight(sums);
+  if (!plane) return Refusal{"the settings rated do not determine a plane over mean and deviation"};
+  return checked(sums, *plane);
+}
+
+double DirectFit::score(double mu, double delta) const {
+  const double u = std::log(mu) - curve.log_a - curve.b * delta;
+  return level + u * (k + m * delta + q * u);
+}
+
+}  // namespace stats

@@ -1,0 +1,107 @@
+#pragma once
+/// a and b straight from the ratings, without a detour over the contour of their means.
+///
+///   E[score] = level + k u + m u delta + q u^2,   u = log mu - log a - b delta
+///
+/// is the general quadratic in (log mu, delta) whose contour at `level` is mu = a exp(b delta) exactly: m
+/// lets the slope change along the curve, q across it. m = q = 0 is the straight form, a plane in (log mu,
+/// delta).
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stats/ptpe/curve.hpp"
+#include "stats/ptpe/pilot.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct DirectFit {
+  Curve curve;
+  double level = 4;
+  double k = 0;  ///< rise of the score with log mu on the curve at delta = 0
+  double m = 0;  ///< its change with delta, per frame/s
+  double q = 0;
+  double rss = 0;
+  double n = 0;  ///< sum of the weights of the observations
+
+  double score(double mu, double delta) const;
+};
+
+/// Least squares for any weights of the participants, from sums of monomials that are taken once.
+class DirectModel {
+ public:
+  /// Settings as PilotTable::observations gives them; mu > 0 (std::invalid_argument).
+  DirectModel(std::span<const PilotObservation> observations, double level);
+
+  int participants() const { return static_cast<int>(sums_.size()); }
+
+  /// The global minimum by Levenberg's and Marquardt's method from several starts; with `start` only from it
+  /// and the straight form, as resamples do. The level may be met on a second line, where scores fall as mu
+  /// rises; the curve is the one where they rise. Refused: settings that do not determine the surface; scores
+  /// that do not rise with the frame rate all along the curve; a curve outside the settings shown ("no
+  /// contour").
+  Result<DirectFit> fit(std::span<const double> weights = {}, const DirectFit* start = nullptr) const;
+
+  /// m = q = 0: ordinary least squares of the score on log mu and delta.
+  Result<DirectFit> fit_straight(std::span<const double> weights = {}) const;
+
+  /// Smallest and largest delta shown.
+  std::array<double, 2> delta_range() const { return delta_range_; }
+
+ private:
+  static constexpr std::size_t terms = 6;  ///< 1, x, d, x d, x^2, d^2
+  struct Sums {
+    std::array<double, terms * terms> gram{};
+    std::array<double, terms> moment{};
+    double squares = 0, n = 0;
+  };
+  struct Place;
+  Sums weighted(std::span<const double> weights) const;
+  std::optional<Place> straight(const Sums& sums) const;
+  static double rss(const Sums& sums, const Place& at);
+  static Place descend(const Sums& sums, Place at);
+  Result<DirectFit> checked(const Sums& sums, const Place& at) const;
+  Result<DirectFit> described(const Sums& sums, const Place& at) const;
+
+  std::vector<Sums> sums_;
+  double level_;
+  double log_mu_centre_ = 0, delta_centre_ = 0;
+  std::array<double, 2> log_mu_range_{}, delta_range_{};
+};
+
+/// Test of m = q = 0, which says whether the straight form may be used: Hotelling's T^2 of (m, q) with the
+/// jackknife's covariance over participants.
+struct LackOfFit {
+  double m = 0, q = 0;
+  double f = 0;  ///< T^2 (n-2) / (2 (n-1)), F(2, n-2) under the null
+  int df1 = 2, df2 = 0;
+  double p = 1;
+};
+
+/// The direct estimate and what the participants determine of it.
+struct DirectEstimate {
+  Result<DirectFit> fit = Refusal{"not computed"};
+  std::vector<double> out_of_reach;  ///< nominal deltas whose settings are left out, ascending
+  Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
+  Result<PilotSpread> bootstrap = Refusal{"not computed"};
+  Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
+  Result<DirectFit> straight = Refusal{"not computed"};
+  Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
+};
+
+/// The observations within reach, and in `left_out` the nominal deltas of the others: where the curve fitted
+/// to all lies outside the frame rates shown, settings say nothing of where it runs and only bend it (b's
+/// bias at a = 31, b = 0.035 falls from 12 to 4 %). At least the three nearest deltas stay.
+std::vector<PilotObservation> within_reach(std::span<const PilotObservation> observations, double level,
+                                           std::vector<double>& left_out);
+
+/// Fit within reach, jackknife-t and expanded percentile bootstrap, both with whole participants
+/// (options.resamples = 0: no bootstrap). Refused with fewer than least_participants, and where leaving a
+/// participant out leaves no fit; the bootstrap beyond largest_failed_share.
+DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
+                               const BootstrapOptions& options);
+
+}  // namespace stats

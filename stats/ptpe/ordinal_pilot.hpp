@@ -1,0 +1,48 @@
+#pragma once
+/// a and b by an ordinal mixed model: ratings as ordered categories, people as a random effect, and the same
+/// location as the direct estimate (stats/ptpe/direct_fit.hpp).
+///
+///   P(Y <= j) = Phi(theta_j - k u - m u delta - q u^2 - s_p),  s_p ~ N(0, sd^2),  u = log mu - log a - b
+///   delta
+///
+/// with the thresholds held so that E[Y] = level at u = 0 over the population of participants. Scores need
+/// not be equal steps apart, and the ends of the scale need no curvature: they are thresholds.
+
+#include <span>
+#include <vector>
+
+#include "stats/ptpe/curve.hpp"
+#include "stats/ptpe/pilot.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+struct OrdinalPilotFit {
+  Curve curve;
+  double level = 4;
+  double k = 0, m = 0, q = 0;  ///< on the probit scale
+  double sd_participant = 0;
+  std::vector<double> levels, thresholds;
+  double log_likelihood = 0;
+  int n = 0;
+};
+
+/// Maximum likelihood with adaptive quadrature of `points` nodes (1 = Laplace), begun at the direct fit.
+/// Repeated ratings enter one by one. Refused: no direct fit to start from; one score throughout; the level
+/// not between the lowest and the highest score given; no convergence; scores that do not rise with the frame
+/// rate along the curve.
+Result<OrdinalPilotFit> fit_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean, double level,
+                                          int points = 1);
+
+struct OrdinalPilotEstimate {
+  Result<OrdinalPilotFit> fit = Refusal{"not computed"};
+  Result<CurveSpread> jackknife = Refusal{"not computed"};
+  std::vector<double> out_of_reach;  ///< nominal deltas left out, by the direct fit's rule
+};
+
+/// The fit within reach and its jackknife over participants: one more fit for each, about 0.1 s in all for
+/// the paper's pilot. `progress` is told after each fit; may be empty.
+OrdinalPilotEstimate estimate_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean,
+                                            double level, double confidence);
+
+}  // namespace stats
