@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "stats/quantiles.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 #include "tests/stats/uniformity.hpp"
 
@@ -91,6 +92,10 @@ TEST(BootstrapInterval, AgreesWithTheReferenceAnswers) {
     }
     const auto got = bootstrap_interval(x, of, indices(input.at("index_csv_zero_based")), confidence);
     ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
+    oracle::expect_known_fields(
+        c, {"t0", "boot_mean", "boot_se", "accel_jackknife", "z0_half_ties", "z0_strict", "bca_probs_half",
+            "bca_type7_half", "bca_probs_strict", "bca_type7_strict", "bca_bootci", "perc_type7",
+            "perc_type6", "large_B_50000"});
     oracle::expect_field(c, "t0", got->estimate);
     oracle::expect_field(c, "boot_mean", got->mean);
     oracle::expect_field(c, "boot_se", got->se);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stats/inference/repeated_anova.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 #include "tests/stats/uniformity.hpp"
 
@@ -44,6 +45,8 @@ void expect_friedman(const json& c) {
   const auto got = friedman_test(rows, k);
   if (oracle::is_undefined(c)) return oracle::expect_refused(c, got);
   ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
+  oracle::expect_known_fields(c, {"n_used", "k", "chi2", "df", "p", "kendall_W", "iman_davenport_F",
+                                  "iman_davenport_p", "mean_ranks"});
   oracle::expect_field(c, "n_used", got->n);
   oracle::expect_field(c, "k", got->k);
   oracle::expect_field(c, "chi2", got->chi2);
@@ -65,6 +68,9 @@ void expect_anova(const json& c) {
   const auto got = repeated_anova(rows, k);
   if (oracle::is_undefined(c)) return oracle::expect_refused(c, got);
   ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
+  oracle::expect_known_fields(
+      c, {"n_used", "k", "ss_cond", "ss_subj", "ss_err", "F", "df1", "df2", "p", "eps_gg", "eps_hf_uncapped",
+          "p_gg", "p_hf", "partial_eta2", "generalized_eta2"});
   const double total = got->ss_conditions + got->ss_subjects + got->ss_error;
   oracle::expect_field(c, "n_used", got->n);
   oracle::expect_field(c, "k", got->k);

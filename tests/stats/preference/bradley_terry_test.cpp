@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 #include "tests/stats/uniformity.hpp"
 
@@ -63,6 +64,10 @@ Values of_pairs(const BradleyTerry& fit, const Field& field) {
 }
 
 void expect_likelihood(const json& c, const BradleyTerry& fit) {
+  oracle::expect_known_fields(
+      c, {"lambda_ref1", "se_ref1", "lambda_sum0", "se_sum0", "vcov_ref1", "worth_sum1", "loglik_kernel",
+          "gof_deviance", "gof_df", "gof_p", "lrt_equal_chi2", "lrt_equal_df", "lrt_equal_p", "pairs_ij",
+          "pair_diff", "pair_se", "pair_p_wald", "firth_lambda_ref1"});
   expect_list(c, "lambda_ref1", fit.lambda_ref1);
   expect_list(c, "se_ref1", fit.se_ref1);
   expect_list(c, "lambda_sum0", fit.lambda_sum0);
