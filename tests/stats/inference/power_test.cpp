@@ -88,6 +88,9 @@ TEST(PaperNumbers, PowerOfTwentySixParticipants) {
   EXPECT_NEAR(stats::binomial_power(26, 0.70)->power, 0.46, 0.005);
   EXPECT_EQ(*stats::binomial_power(26, 0.70)->k_critical_upper, 19);
   EXPECT_NEAR(*stats::tost_power(26, {.low = -0.5, .high = 0.5, .sd = 1.3}), 0.22, 0.005);
+  EXPECT_EQ(stats::binomial_sample_size(0.7, 0.8)->n, 49);
+  EXPECT_EQ(stats::binomial_sample_size(0.7, 0.9)->n_lasting, 70);
+  EXPECT_EQ(stats::tost_sample_size(0.8, {.sd = 1.3})->n, 60);
 }
 
 TEST(Power, UnderTheNullItIsAlpha) {
