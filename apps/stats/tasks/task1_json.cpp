@@ -19,7 +19,8 @@ Json rules_json() {
        "test; a cybersickness score is the mean of its items, and a report that lacks an item has none."},
       {"missing",
        "A test of two methods uses the participants with both; Friedman's test and the analysis of variance "
-       "those with every method; the ordinal model every answer."},
+       "those with every method; the ordinal model every answer. A session that ended early counts with what "
+       "it has."},
       {"outliers", "Values beyond 1.5 interquartile ranges are drawn and listed; none is left out."},
       {"tests",
        "Paired t tests, two-sided, within each n_*; Holm and Benjamini-Hochberg over the pairs of methods of "
