@@ -29,7 +29,8 @@ Json rules_json(const stats::AnalysisPlan& plan) {
              "person "
              "are not independent."},
       {"missing",
-       "A pair counts those who answered it; circular triads those who answered every pair once."}};
+       "A pair counts those who answered it, also in sessions that ended early; circular triads those who "
+       "answered every pair once."}};
 }
 
 Json pair_json(const stats::PairPreference& pair, const Names& methods) {
