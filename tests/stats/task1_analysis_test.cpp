@@ -145,13 +145,13 @@ TEST(Task1, SwappingMethodsSwapsSignsAndKeepsP) {
   EXPECT_NEAR(one.equivalence->p, other.equivalence->p, 1e-14);
 }
 
-/// Share of 2,000 null studies in which the paired t test of the two columns says p < .05. Each participant
+/// Share of 1,000 null studies in which the paired t test of the two columns says p < .05. Each participant
 /// has an own leaning between the methods, and two blocks at one n_*.
 double false_alarms(bool averaged) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   int alarms = 0;
-  constexpr int studies = 2000, people = 13;
+  constexpr int studies = 1000, people = 13;
   for (int study = 0; study < studies; ++study) {
     std::vector<MethodScore> scores;
     for (int p = 0; p < people; ++p) {
@@ -171,8 +171,8 @@ double false_alarms(bool averaged) {
 }
 
 TEST(Task1, AveragingScenesKeepsTheLevelAndPoolingDoesNot) {
-  // Three standard errors of a share of 5 % in 2,000 studies are 1.5 %.
-  EXPECT_NEAR(false_alarms(true), 0.05, 0.015);
+  // Three standard errors of a share of 5 % in 1,000 studies are 2.1 %.
+  EXPECT_NEAR(false_alarms(true), 0.05, 0.021);
   EXPECT_GT(false_alarms(false), 0.075);
 }
 

@@ -86,7 +86,7 @@ TEST(Task2, IntervalBiasIsSeenWithinParticipants) {
   for (int person = 0; person < 12; ++person) {
     for (int trial = 0; trial < 4; ++trial) {
       const bool swapped = (person + trial) % 2 == 0;
-      choices.push_back({person, 0, swapped ? 1 : 0, swapped ? 0 : 1, trial != person % 4, trial});
+      choices.push_back({person, 0, swapped ? 1 : 0, swapped ? 0 : 1, trial != person % 3, trial});
     }
   }
   const auto bias = analyse_preferences(choices, 2, {}).interval;
