@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "stats/inference/equivalence.hpp"
+#include "stats/inference/t_test.hpp"
 #include "tests/stats/analysis_fixture.hpp"
 
 namespace stats {
@@ -80,6 +82,27 @@ TEST(Hypotheses, ASuperiorMethodIsNotInferior) {
   const auto h3 = verdicts({2, 3, 4, 6, 5}, {1, 1, 0.9, 0.2, 0.5})[2];
   EXPECT_EQ(h3.status, HypothesisStatus::Supported);
   EXPECT_TRUE(h3.paper_supported);
+}
+
+TEST(Hypotheses, TestsAreThoseOfTheTable) {
+  const auto realism = normal_table({2, 3, 3.2, 3.1, 5}, 0.5, 1, 26, 21);
+  const auto sickness = normal_table({1, 1, 0.9, 0.8, 0.5}, 0.2, 0.5, 26, 22, test::sickness_scale());
+  const auto all = task1_hypotheses(realism, sickness, {}, "");
+  const auto paired = t_test_paired(realism.column(1, 2), realism.column(1, 1));
+  const HypothesisTest& h1 = all[0].tests[1];  // Ours - FovFluid, realism, 32k
+  EXPECT_NEAR(*h1.p, paired->p, 1e-12);
+  EXPECT_NEAR(*h1.t, paired->t, 1e-12);
+  EXPECT_NEAR(*h1.d_z, paired->cohen_dz, 1e-12);
+  EXPECT_NEAR((*h1.ci)[0], paired->ci[0], 1e-12);
+  EXPECT_NEAR((*h1.ci)[1], paired->ci[1], 1e-12);
+  const HypothesisTest& h2 = all[1].tests[4];  // Ours - HiRes, sickness, 16k
+  const auto both = equivalence_paired(sickness.column(0, 2), sickness.column(0, 4), {-0.25, 0.25});
+  EXPECT_NEAR(*h2.p, both->p, 1e-15);
+  EXPECT_NEAR(*h2.paper_p, t_test_paired(sickness.column(0, 2), sickness.column(0, 4))->p, 1e-12);
+  const HypothesisTest& h3 = all[2].tests[2];  // Ours-TSp - Ours, sickness, 16k: less is better
+  const auto one =
+      t_test_paired(sickness.column(0, 3), sickness.column(0, 2), {Alternative::Less, 0.95, 0.25});
+  EXPECT_NEAR(*h3.p, one->p, 1e-12);
 }
 
 TEST(Hypotheses, HolmStaysWithinTheFamily) {
