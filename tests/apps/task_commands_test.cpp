@@ -62,7 +62,8 @@ TEST_F(TaskCommandsE2e, TimingIsThatOfTheProtocol) {
   const fs::path json = *folder_ / "timing.json";
   ASSERT_EQ(program("vip-stats task1 " + database_.string() + " --json " + json.string()).exit_code, 0);
   int showings = 0;
-  for (const auto& cell : json_of(json).at("timing")) {
+  const auto results = json_of(json);
+  for (const auto& cell : results.at("timing")) {
     EXPECT_NEAR(cell.at("realised_mean_fps").get<double>(), cell.at("nominal_mean_fps").get<double>(), 0.05);
     showings += cell.at("showings").get<int>();
   }
