@@ -76,7 +76,7 @@ struct SimulationOptions {
   /// Frames that lie behind the start: nozzles go on from there. >= 0.
   int start_frame = 0;
   /// For starts in the middle of a run: at most so many density projections move the particles of `start`,
-  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 1 %; velocities stay. The velocity grid
+  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %; velocities stay. The velocity grid
   /// of temporal acceleration is then made from the start as well. 0 = take the start as it is.
   int start_projections = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.

@@ -4,6 +4,7 @@
 
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
+#include "libstudy/session/interruptions.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/error.hpp"
 
@@ -53,6 +54,10 @@ void resume(const PlayOptions& options) {
   const StopSignals signals;
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages);
+  for (const study::OpenRun& run : store.open_runs()) {
+    const study::Protocol protocol = rebuild_protocol(run, place);
+    for (const auto& session : run.sessions) study::settle_interruption(store, protocol, session);
+  }
   const auto runs = store.open_runs();
   if (runs.empty()) std::printf("%s: nothing is left to do\n", place.c_str());
   for (const study::OpenRun& run : runs) {

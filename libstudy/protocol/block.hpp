@@ -46,6 +46,14 @@ struct TrialStep {
   bool operator==(const TrialStep&) const = default;
 };
 
+/// What resuming a session does about the trial that was under way when it stopped. Word in the file:
+/// "resume", "restart_block", "invalidate". Whatever was shown and answered stays in the database.
+enum class Interruption {
+  Resume,        ///< the trial is shown again
+  RestartBlock,  ///< all trials of its block are shown again, from the first
+  Invalidate     ///< the trial is left out, excluded as interrupted; the next one follows
+};
+
 struct Block {
   BlockKind kind = BlockKind::Instructions;
   std::string id;                   ///< unique in the protocol
@@ -57,6 +65,7 @@ struct Block {
   std::string like;                 ///< Practice, Repeat, Catch: id of a Stimulus block
   std::vector<TrialStep> steps;     ///< Practice, Stimulus, Repeat: what each trial does
   double between_groups_s = 0;      ///< Stimulus: a break before each group of the design but the first
+  Interruption on_interruption = Interruption::Resume;  ///< Practice, Stimulus, Repeat: that of Stimulus
 };
 
 }  // namespace study

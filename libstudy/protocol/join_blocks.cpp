@@ -125,7 +125,10 @@ void join_like(const base::TomlTable& table, const Design& design, std::vector<B
     table.fail("like", "names a later block", "put the repeats after what they repeat");
   if (block.kind == BlockKind::Practice && place < index)
     table.fail("like", "names an earlier block", "put practice before what it prepares for");
-  if (has_trials(block.kind)) block.steps = model->steps;
+  if (has_trials(block.kind)) {
+    block.steps = model->steps;
+    block.on_interruption = model->on_interruption;
+  }
   check_count(table, block, design);
 }
 

@@ -80,9 +80,17 @@ void read_block_questions(const base::TomlTable& table, Block& block, const std:
   }
 }
 
+Interruption read_interruption(const base::TomlTable& table) {
+  const std::string word =
+      table.choice_or("on_interruption", "resume", {"resume", "restart_block", "invalidate"});
+  if (word == "restart_block") return Interruption::RestartBlock;
+  return word == "invalidate" ? Interruption::Invalidate : Interruption::Resume;
+}
+
 void read_trials(const base::TomlTable& table, const Design& design, Block& block) {
   block.steps = read_steps(table, design.pairs);
   block.between_groups_s = table.number_or("between_groups_s", 0, pause_range);
+  block.on_interruption = read_interruption(table);
   if (block.between_groups_s > 0 && design.groups == 1) {
     table.fail("between_groups_s", "has no effect: a participant meets one group",
                "remove it, or raise design.groups");

@@ -174,6 +174,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "of questions of a block of kind stimulus, question, ssq or fms)"},
       {"block", "between_groups_s", "number", "[0, 3600]", "0",
        "stimulus: a break before each group but the first, s"},
+      {"block", "on_interruption", "text", "\"resume\", \"restart_block\", \"invalidate\"", "\"resume\"",
+       "stimulus, for its practice and repeats too: what `vip-study resume` does about a trial that was cut. "
+       "resume shows it again, restart_block all trials of its block, invalidate none: it is excluded. What "
+       "was shown and answered stays"},
       {"block", "question", "tables", "", where_needed, "what is asked"},
 
       {"block.question", "id", "text", "", "",

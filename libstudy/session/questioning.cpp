@@ -25,18 +25,18 @@ void check_answers(std::span<const Question> questions, std::span<const TimedAns
   }
 }
 
-std::optional<SessionEnds> ending(const Block& block, std::span<const Question> questions,
-                                  std::span<const TimedAnswer> answers) {
+std::optional<Ending> ending(const Block& block, std::span<const Question> questions,
+                             std::span<const TimedAnswer> answers) {
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const auto& accept = questions[i].accept;
     const auto score = answers[i].answer.score;
     if (accept && !(score && in_span(*score, *accept)))
-      return SessionEnds{EarlyEnd::NotEligible, "block " + block.id};
+      return Ending{EarlyEnd::NotEligible, "block " + block.id};
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const auto score = answers[i].answer.score;
     if (questions[i].stop_at && score && *score >= *questions[i].stop_at)
-      return SessionEnds{EarlyEnd::Stopped, "stop rule of block " + block.id};
+      return Ending{EarlyEnd::Stopped, "stop rule of block " + block.id};
   }
   return {};
 }
@@ -81,7 +81,7 @@ std::vector<Question> Questioning::left(const OpenUnit& unit, const std::vector<
 }
 
 void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Question> questions,
-                       std::span<const TimedAnswer> answers, bool last) {
+                       std::span<const TimedAnswer> answers, bool last, const std::optional<Ending>& ending) {
   std::vector<KeptAnswer> kept;
   std::vector<PersonalEntry> personal;
   for (std::size_t i = 0; i < questions.size(); ++i) {
@@ -93,17 +93,21 @@ void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Questi
       kept.push_back({question.id, answers[i]});
     }
   }
-  if (!personal.empty()) run_.parts.personal->keep(personal);
-  if (!kept.empty()) {
-    run_.parts.store.answer(run_.session.id, unit, attempt, kept, last, run_.now_ns());
-  } else if (last) {
-    run_.parts.store.finish_unit(run_.session.id, unit.id, run_.now_ns());
+  if (!personal.empty()) {
+    // Of another file, and not asked again: what they end has ended before they are kept.
+    if (ending) run_.parts.store.end_session(run_.session.id, *ending, run_.now_ns());
+    run_.parts.personal->keep(personal);
+  }
+  const bool ends_here = ending && personal.empty();
+  if (last || ends_here || !kept.empty()) {
+    run_.parts.store.answer(run_.session.id, unit, attempt, kept, last, run_.now_ns(),
+                            ends_here ? ending : std::nullopt);
   }
 }
 
-std::optional<SessionEnds> Questioning::ask(const OpenUnit& unit, int attempt,
-                                            const std::vector<Question>& questions, const Occasion& occasion,
-                                            bool last, const Check& check) {
+std::optional<Ending> Questioning::ask(const OpenUnit& unit, int attempt,
+                                       const std::vector<Question>& questions, const Occasion& occasion,
+                                       bool last, const Check& check) {
   const std::vector<Question> asked = left(unit, questions);
   std::vector<TimedAnswer> answers;
   const Block& block = run_.block(unit);
@@ -112,9 +116,11 @@ std::optional<SessionEnds> Questioning::ask(const OpenUnit& unit, int attempt,
     check_answers(asked, answers);
   }
   auto ends = ending(block, asked, answers);
-  if (ends) run_.parts.store.end_session(run_.session.id, ends->how, ends->reason, run_.now_ns());
   const bool refused = ends && ends->how == EarlyEnd::NotEligible && block.kind == BlockKind::Consent;
-  if (!refused) keep(unit, attempt, asked, answers, last);
+  if (refused)
+    run_.parts.store.end_session(run_.session.id, *ends, run_.now_ns());
+  else
+    keep(unit, attempt, asked, answers, last, ends);
   return ends;
 }
 

@@ -19,16 +19,16 @@ class Questioning {
   /// Asks those of `questions` that have no answer in `unit` yet, on one page, and commits the answers
   /// together; personal ones go to the personal file and are not asked of a person it knows. With `last` the
   /// unit is then done. attempt: showing of the trial that is judged, 0: a page. Returns how the answers end
-  /// the session, if they do; that is then committed too, before the answers, so that whoever shall not go on
-  /// is not shown more if the program ends in between. Refused consent keeps no answers. base::Error for an
-  /// answer that breaks its question's rules: nothing is kept of that page.
-  std::optional<SessionEnds> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
-                                 const Occasion& occasion, bool last, const Check& check);
+  /// the session, if they do; that is then committed with the answers, and before personal ones, so that
+  /// whoever shall not go on is not shown more if the program ends in between. Refused consent keeps no
+  /// answers. base::Error for an answer that breaks its question's rules: nothing is kept of that page.
+  std::optional<Ending> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
+                            const Occasion& occasion, bool last, const Check& check);
 
  private:
   std::vector<Question> left(const OpenUnit& unit, const std::vector<Question>& questions) const;
   void keep(const OpenUnit& unit, int attempt, std::span<const Question> questions,
-            std::span<const TimedAnswer> answers, bool last);
+            std::span<const TimedAnswer> answers, bool last, const std::optional<Ending>& ending);
 
   const Running& run_;
 };

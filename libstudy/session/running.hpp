@@ -27,22 +27,16 @@ struct Running {
   }
 };
 
-/// Thrown to end a session before its last unit.
-struct SessionEnds {
-  EarlyEnd how = EarlyEnd::Stopped;
-  std::string reason;  ///< for the log: no answers
-};
-
 /// Thrown to cut a trial and show it again.
 struct TrialAgain {};
 
-/// Heeds what the experimenter wishes at once: Stopped or SessionEnds. TrialAgain too where there is a trial.
+/// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial.
 inline void heed(const Running& run, bool in_trial) {
   switch (run.wish()) {
     case Wish::Stop:
       throw Stopped();
     case Wish::EndSession:
-      throw SessionEnds{EarlyEnd::Stopped, "ended by the experimenter"};
+      throw Ending{EarlyEnd::Stopped, "ended by the experimenter"};
     case Wish::RepeatTrial:
       if (in_trial) throw TrialAgain{};
       break;

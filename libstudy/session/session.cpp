@@ -20,7 +20,7 @@ class SessionRun {
   explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}
 
   /// Returns how the session ended early, if it did.
-  std::optional<SessionEnds> go() {
+  std::optional<Ending> go() {
     for (const OpenUnit& unit : run_.session.units) {
       wait_while_paused();
       if (run_.hooks.begins) run_.hooks.begins(unit);
@@ -36,7 +36,7 @@ class SessionRun {
       run_.parts.participant.pause(PauseKind::Black, pause_look_s, run_.parts.clock, check);
   }
 
-  std::optional<SessionEnds> page(const OpenUnit& unit) {
+  std::optional<Ending> page(const OpenUnit& unit) {
     const Block& block = run_.block(unit);
     const Check check = [this] { heed(run_, false); };
     switch (block.kind) {
@@ -98,14 +98,14 @@ void run_session(const Protocol& protocol, const OpenSession& session, const Ses
                  const SessionHooks& hooks) {
   const Running run{protocol, session, parts, hooks};
   check_personal(run);
-  std::optional<SessionEnds> ends;
+  std::optional<Ending> ends;
   try {
     ends = SessionRun(run).go();
-  } catch (const SessionEnds& wished) {
-    parts.store.end_session(session.id, wished.how, wished.reason, run.now_ns());
+  } catch (const Ending& wished) {
+    parts.store.end_session(session.id, wished, run.now_ns());
     ends = wished;
   } catch (const Left& left) {
-    parts.store.end_session(session.id, EarlyEnd::DroppedOut, left.what(), run.now_ns());
+    parts.store.end_session(session.id, {EarlyEnd::DroppedOut, left.what()}, run.now_ns());
   }
   if (ends && ends->how == EarlyEnd::Stopped) rest_after_stop(run);
 }

@@ -75,7 +75,7 @@ std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const Planned
   return out;
 }
 
-std::optional<SessionEnds> TrialPlayer::play(OpenUnit unit) {
+std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   Showing showing{unit, unit.attempts + 1, {}, intervals_of(*unit.trial), {}};
   for (;; again(showing)) {
     showing.occasion = run_.occasion(unit);
@@ -95,7 +95,7 @@ void TrialPlayer::again(Showing& showing) {
   showing.next_interval = 0;
 }
 
-std::optional<SessionEnds> TrialPlayer::play_steps(Showing& showing) {
+std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   run_.parts.participant.before_trial(showing.occasion);
   const Block& block = run_.block(showing.unit);
   const Check check = [this] { heed(run_, true); };
@@ -198,7 +198,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   }
 }
 
-std::optional<SessionEnds> TrialPlayer::ask(Showing& showing, std::size_t step) {
+std::optional<Ending> TrialPlayer::ask(Showing& showing, std::size_t step) {
   const Block& block = run_.block(showing.unit);
   const bool last =
       std::none_of(block.steps.begin() + static_cast<std::ptrdiff_t>(step) + 1, block.steps.end(),

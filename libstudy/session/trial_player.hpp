@@ -14,7 +14,7 @@ class TrialPlayer {
 
   /// Plays the steps until the last one; TrialAgain starts over with a new attempt, for which everything is
   /// asked anew. Returns how an answer ends the session, if it does.
-  std::optional<SessionEnds> play(OpenUnit unit);
+  std::optional<Ending> play(OpenUnit unit);
 
  private:
   /// What one showing of a trial consists of.
@@ -28,7 +28,7 @@ class TrialPlayer {
     int next_interval = 0;
   };
 
-  std::optional<SessionEnds> play_steps(Showing& showing);
+  std::optional<Ending> play_steps(Showing& showing);
   void again(Showing& showing);
   std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
   const Cell& cell(const OpenUnit& unit, int interval) const;
@@ -39,7 +39,7 @@ class TrialPlayer {
                         const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
                         ShownStimulus& shown) const;
   TimingVerdict judge(const Cell& cell, const PlayedTrial& played) const;
-  std::optional<SessionEnds> ask(Showing& showing, std::size_t step);
+  std::optional<Ending> ask(Showing& showing, std::size_t step);
 
   const Running& run_;
   Questioning& questioning_;

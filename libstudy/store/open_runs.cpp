@@ -34,8 +34,8 @@ std::vector<OpenUnit> open_units(sqlite::Connection& database, std::int64_t sess
   Statement row(database,
                 "SELECT u.unit_id, u.position, u.block_index, t.trial_id, t.position, t.group_index, "
                 "t.first_cell, t.second_cell, t.schedule_seed, "
-                "(SELECT coalesce(max(p.attempt), 0) FROM presentation p WHERE p.trial_id = t.trial_id) "
-                "FROM unit u LEFT JOIN trial t USING (trial_id) "
+                "(SELECT coalesce(max(p.attempt), 0) FROM presentation p WHERE p.trial_id = t.trial_id), "
+                "t.set_aside FROM unit u LEFT JOIN trial t USING (trial_id) "
                 "WHERE u.session_id = ? AND u.state = 'planned' ORDER BY u.position");
   row.bind(0, session);
   std::vector<OpenUnit> units;
@@ -49,6 +49,7 @@ std::vector<OpenUnit> open_units(sqlite::Connection& database, std::int64_t sess
       unit.trial = read_trial(row, unit.plan.block);
       unit.plan.trial = unit.trial->position;
       unit.attempts = static_cast<int>(row.integer(9));
+      unit.begun = unit.attempts > row.integer(10);
     }
     unit.answered = answered_questions(database, unit.id);
     units.push_back(std::move(unit));

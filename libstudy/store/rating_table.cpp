@@ -75,7 +75,7 @@ constexpr const char* joined_tables =
     "AND cell_2.cell = trial.second_cell "
     "LEFT JOIN response ON response.response_id = (SELECT r.response_id FROM response r "
     "WHERE r.unit_id = unit.unit_id AND r.question_id = question.question_id "
-    "ORDER BY r.attempt DESC LIMIT 1) "
+    "AND r.attempt > trial.set_aside ORDER BY r.attempt DESC LIMIT 1) "
     "LEFT JOIN presentation AS shown_1 ON shown_1.trial_id = trial.trial_id "
     "AND shown_1.attempt = response.attempt AND shown_1.interval = 0 "
     "LEFT JOIN presentation AS shown_2 ON shown_2.trial_id = trial.trial_id "

@@ -160,7 +160,8 @@ void Store::interrupt_presentation(std::int64_t session, std::int64_t presentati
 }
 
 void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
-                   std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns) {
+                   std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,
+                   const std::optional<Ending>& ending) {
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
   Statement& insert = statements_->response;
@@ -179,6 +180,7 @@ void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
   }
   const std::string where = "unit " + std::to_string(unit.plan.position);
   if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
+  if (ending) mark_ended(session, *ending, clock_ns);
   if (last) mark_done(session, unit.id, now, clock_ns);
   transaction.commit();
 }
@@ -190,7 +192,7 @@ void Store::finish_unit(std::int64_t session, std::int64_t unit, std::int64_t cl
 }
 
 void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string& now,
-                      std::int64_t clock_ns) {
+                      std::optional<std::int64_t> clock_ns) {
   Statement done(*database_,
                  "UPDATE unit SET state = 'done', done_utc = ? WHERE unit_id = ? AND session_id = ? "
                  "RETURNING position");
@@ -212,21 +214,42 @@ void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string
   insert_event(session, {}, "done", where, clock_ns);
 }
 
-void Store::end_session(std::int64_t session, EarlyEnd how, const std::string& reason,
-                        std::int64_t clock_ns) {
+void Store::end_session(std::int64_t session, const Ending& ending, std::int64_t clock_ns) {
   Transaction transaction(*database_);
+  mark_ended(session, ending, clock_ns);
+  transaction.commit();
+}
+
+void Store::mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns) {
   Statement(*database_, "UPDATE session SET state = ?, ended_utc = ? WHERE session_id = ? AND state = 'open'")
-      .bind(0, state_name(how))
+      .bind(0, state_name(ending.how))
       .bind(1, base::utc_now())
       .bind(2, session)
       .run();
-  insert_event(session, {}, "ended early", state_name(how), clock_ns);
-  if (!reason.empty()) insert_note(session, {}, reason);
-  transaction.commit();
+  insert_event(session, {}, "ended early", state_name(ending.how), clock_ns);
+  if (!ending.reason.empty()) insert_note(session, {}, ending.reason);
 }
 
 void Store::repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason) {
   Transaction transaction(*database_);
+  set_trial_aside(session, trial);
+  if (!reason.empty()) insert_note(session, trial_unit(trial), reason);
+  transaction.commit();
+}
+
+void Store::restart_block(std::int64_t session, int block, const std::string& reason) {
+  Transaction transaction(*database_);
+  std::vector<std::int64_t> begun;
+  Statement row(*database_,
+                "SELECT DISTINCT u.trial_id FROM unit u JOIN presentation p USING (trial_id) "
+                "WHERE u.session_id = ? AND u.block_index = ? ORDER BY u.position");
+  for (row.bind(0, session).bind(1, block); row.step();) begun.push_back(row.integer(0));
+  for (const std::int64_t trial : begun) set_trial_aside(session, trial);
+  if (!reason.empty()) insert_note(session, {}, reason);
+  transaction.commit();
+}
+
+void Store::set_trial_aside(std::int64_t session, std::int64_t trial) {
   Statement open(*database_,
                  "UPDATE trial SET state = 'planned', set_aside = (SELECT coalesce(max(attempt), 0) "
                  "FROM presentation p WHERE p.trial_id = ?1) WHERE trial_id = ?1 AND session_id = ?2 "
@@ -242,7 +265,18 @@ void Store::repeat_trial(std::int64_t session, std::int64_t trial, const std::st
       .bind(0, session)
       .run();
   insert_event(session, {}, "trial set aside", where, {});
-  if (!reason.empty()) insert_note(session, trial_unit(trial), reason);
+}
+
+void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const std::string& reason) {
+  Transaction transaction(*database_);
+  mark_excluded(session, unit.trial_id, reason);
+  mark_done(session, unit.id, base::utc_now(), {});
+  // Done, but nobody judged it.
+  Statement(*database_,
+            "UPDATE trial SET state = 'planned' WHERE trial_id = ?1 AND NOT EXISTS (SELECT 1 FROM response "
+            "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")
+      .bind(0, unit.trial_id)
+      .run();
   transaction.commit();
 }
 
@@ -250,6 +284,11 @@ void Store::exclude_trial(std::int64_t session, std::int64_t trial, const std::s
   if (reason.empty())
     throw base::Error("exclusion of a trial", "has no reason", "say why the analyses shall leave it out");
   Transaction transaction(*database_);
+  mark_excluded(session, trial, reason);
+  transaction.commit();
+}
+
+void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason) {
   Statement exclude(*database_,
                     "UPDATE trial SET excluded = ?3 WHERE trial_id = ?1 AND session_id = ?2 "
                     "RETURNING position");
@@ -257,7 +296,6 @@ void Store::exclude_trial(std::int64_t session, std::int64_t trial, const std::s
   const std::string where = "trial " + exclude.text(0);
   exclude.reset();
   insert_event(session, {}, "trial excluded", where, {});
-  transaction.commit();
 }
 
 void Store::throw_no_trial() const {

@@ -52,6 +52,7 @@ struct OpenUnit {
   std::int64_t trial_id = 0;          ///< 0: a page
   std::optional<PlannedTrial> trial;  ///< none: a page
   int attempts = 0;                   ///< showings of the trial so far
+  bool begun = false;                 ///< the trial was shown since it was last set aside: it was cut
   std::vector<std::string> answered;  ///< ids of questions that have an answer: not asked again
 };
 
@@ -77,6 +78,11 @@ enum class EarlyEnd {
   NotEligible,  ///< no consent, or ruled out by screening
   Stopped,      ///< by a stop rule or on the participant's wish; the data stay
   DroppedOut    ///< did not come back; the slot is free again
+};
+
+struct Ending {
+  EarlyEnd how = EarlyEnd::Stopped;
+  std::string reason;  ///< may be empty
 };
 
 /// What a question was answered with, ready to be kept.
@@ -121,16 +127,21 @@ class Store {
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
   /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well.
-  /// base::Error, with nothing kept, for a question that is personal, unknown or answered here before.
+  /// An `ending` to which the answers led is kept with them. base::Error, with nothing kept, for a question
+  /// that is personal, unknown or answered here before.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
-              bool last, std::int64_t clock_ns);
+              bool last, std::int64_t clock_ns, const std::optional<Ending>& ending = {});
   /// Commits that a unit without answers is done.
   void finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns);
   /// Ends a session before its last unit; what is not done stays planned. The reason becomes a note.
-  void end_session(std::int64_t session, EarlyEnd how, const std::string& reason, std::int64_t clock_ns);
+  void end_session(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
   /// Opens a trial again, done or under way: it is shown once more as a new attempt, and the answers it has
   /// are kept apart. The reason becomes a note.
   void repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
+  /// Opens every trial of a block again that is done or under way, as repeat_trial does, in one transaction.
+  void restart_block(std::int64_t session, int block, const std::string& reason);
+  /// A trial that was begun is not shown again: it is excluded, its unit is done; what was answered stays.
+  void leave_out_trial(std::int64_t session, const OpenUnit& unit, const std::string& reason);
   /// Marks a trial so that analyses leave it out.
   void exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
   /// The experimenter's words, beside the log; withdrawal deletes them.
@@ -147,8 +158,12 @@ class Store {
                    const SessionPlan& plan);
   void check_newcomer(std::int64_t protocol_id, const SessionPlan& plan);
   void mark_cut_presentations();
-  void mark_done(std::int64_t session, std::int64_t unit, const std::string& now, std::int64_t clock_ns);
+  void mark_done(std::int64_t session, std::int64_t unit, const std::string& now,
+                 std::optional<std::int64_t> clock_ns);
   [[noreturn]] void throw_no_trial() const;
+  void mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
+  void mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason);
+  void set_trial_aside(std::int64_t session, std::int64_t trial);
   std::int64_t trial_unit(std::int64_t trial);
   void insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   void insert_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);

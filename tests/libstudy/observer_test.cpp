@@ -301,14 +301,21 @@ TEST(FramesObserver, CoarsePicturesLookLessRealAndMakeSicker) {
   EXPECT_GT((symptoms[0] - symptoms[1]) / 2000, 0.1);
 }
 
-TEST(FeatureTable, KnowsTheFiveMethodsAndNoOther) {
+TEST(FeatureTable, KnowsTheCellsOfTheTasksAndNoOthers) {
   FeatureTable table;
-  for (const char* method : {"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"}) {
-    const PictureFeatures features = table.of({"data/scenes/faucet.toml", method, "16k"});
-    EXPECT_GT(features.granularity_px, 0);
-    EXPECT_GT(features.flicker, 0);
+  for (const char* scene : {"single_dam", "jet_impact", "faucet"}) {
+    const auto features = [&](const char* method, const char* n_star) {
+      return table.of({std::string("data/scenes/") + scene + ".toml", method, n_star});
+    };
+    for (const char* method : {"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"}) {
+      EXPECT_GT(features(method, "16k").flicker, 0) << scene << method;
+      EXPECT_NE(features(method, "16k").granularity_px, features(method, "32k").granularity_px);
+      EXPECT_EQ(features(method, "1k").granularity_px, features(method, "16k").granularity_px);
+    }
+    EXPECT_GT(features("LoRes", "32k").granularity_px, features("HiRes", "32k").granularity_px) << scene;
+    EXPECT_THROW(features("Theirs", "16k"), base::Error);
   }
-  EXPECT_THROW(table.of({"data/scenes/faucet.toml", "Theirs", "16k"}), base::Error);
+  EXPECT_THROW(table.of({"peers_dam.toml", "HiRes", "16k"}), base::Error);
 }
 
 }  // namespace

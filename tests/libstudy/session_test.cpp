@@ -15,43 +15,18 @@
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/session_fixture.hpp"
 
 namespace study {
 namespace {
 
 using sqlite::Open;
+using test::Desk;
+using test::OneSession;
+using test::paced_pairs;
+using test::ptpe_observer;
+using test::wish_at_frame_5;
 using ::testing::ElementsAre;
-
-/// One stimulus without pictures for all cells; tells which were asked for.
-class NullStimuli final : public StimulusSource {
- public:
-  explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
-  Stimulus& stimulus(const Cell& cell) override {
-    asked.push_back(cell.stimulus.method);
-    return stimulus_;
-  }
-  std::vector<std::string> asked;
-
- private:
-  NullStimulus stimulus_;
-};
-
-/// What a session needs on the virtual clock.
-struct Desk {
-  explicit Desk(const Protocol& protocol) : stimuli(protocol.content.content_step_s) {}
-  SessionParts parts(Participant& participant, Store& store) {
-    return {clock, display, stimuli, participant, store, nullptr, true};
-  }
-  VirtualClock clock;
-  NullDisplay display;
-  NullStimuli stimuli;
-};
-
-std::unique_ptr<Observer> ptpe_observer() {
-  static FeatureTable features;
-  return make_observer("ptpe:a=31,b=0.035", features);
-}
 
 /// One process's share of a study: plays what is open until `frames` more frames were shown.
 void play(Store& store, const Protocol& protocol, std::int64_t frames) {
@@ -98,120 +73,6 @@ TEST(Session, PlaysThePlanAndTheRealisedMomentsAreTheNominalOnes) {
   EXPECT_EQ(status.frames, 7000);  // 10 s at 10 (2x), 20 (4x), 30, 40 and 50 (5x) frames/s
   EXPECT_EQ(status.protocols.at(0).answered, 21);
   EXPECT_TRUE(status.sessions.at(0).ended);
-}
-
-/// Hands chosen frames over late: presenting frame i takes delay_ns(i) on the virtual clock.
-class LateDisplay final : public Display {
- public:
-  LateDisplay(VirtualClock& clock, std::function<std::int64_t(std::int64_t)> delay_ns)
-      : clock_(clock), delay_ns_(std::move(delay_ns)) {}
-  std::string description() const override { return "late"; }
-  TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
-  double refresh_hz() const override { return 0; }
-  void render(Stimulus&) override {}
-  PresentTimes present(const Clock&) override {
-    clock_.wait_until(clock_.now_ns() + delay_ns_(frame_++));
-    PresentTimes times;
-    times.submitted_ns = clock_.now_ns();
-    return times;
-  }
-
- private:
-  VirtualClock& clock_;
-  std::function<std::int64_t(std::int64_t)> delay_ns_;
-  std::int64_t frame_ = 0;
-};
-
-/// The pilot's setting (50, 0) alone: one trial of 500 frames of 20 ms.
-Protocol one_constant_setting() {
-  std::string text = test::bytes_of(base::resource("protocols/ptpe_pilot.toml"));
-  const std::pair<std::string, std::string> changes[] = {
-      {"mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [50]"},
-      {"sd_fps = [0, 5, 10, 15, 20]", "sd_fps = [0]"}};
-  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
-  return parse_protocol(text, "one.toml");
-}
-
-using Delay = std::function<std::int64_t(std::int64_t)>;
-const Delay punctual = [](std::int64_t) { return 0; };
-const Delay frame_100_is_2_ms_late = [](std::int64_t frame) { return frame == 100 ? 2'000'000 : 0; };
-const Delay each_takes_25_ms = [](std::int64_t) { return 25'000'000; };
-
-/// A run of one trial a participant, each at a display of its own; the certificate's only row.
-CertificateRow certificate_of(const std::filesystem::path& path, const std::vector<Delay>& delays) {
-  const Protocol protocol = one_constant_setting();
-  Store store(path, Open::Create);
-  std::vector<std::string> participants;
-  for (std::size_t i = 0; i < delays.size(); ++i) participants.push_back("P" + std::to_string(i));
-  const auto id = store.add_run(test::run_plan(protocol, participants));
-  const OpenRun run = store.open_runs().at(0);
-  for (std::size_t i = 0; i < delays.size(); ++i) {
-    VirtualClock clock;
-    LateDisplay display(clock, delays[i]);
-    NullStimuli stimuli(protocol.content.content_step_s);
-    const auto observer = ptpe_observer();
-    run_session(protocol, run.sessions.at(i), {clock, display, stimuli, *observer, store, nullptr, true}, {});
-  }
-  const auto rows = read_certificate(path, id, FpsMean::Harmonic);
-  EXPECT_EQ(rows.size(), 1u);
-  return rows.at(0);
-}
-
-std::vector<std::int64_t> late_frames(const std::filesystem::path& path) {
-  sqlite::Connection file(path, Open::Read);
-  std::vector<std::int64_t> frames;
-  for (sqlite::Statement row(file, "SELECT frame_index FROM frame WHERE late ORDER BY 1"); row.step();)
-    frames.push_back(row.integer(0));
-  return frames;
-}
-
-TEST(LateFrames, WithoutDelayTheTrialPasses) {
-  const test::TemporaryFolder folder;
-  const CertificateRow row = certificate_of(folder / "study.db", {punctual});
-  EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(1, 0, 0));
-  EXPECT_EQ(row.frames, 500);
-  EXPECT_EQ(row.late, 0);
-  EXPECT_EQ(row.worst_late_ms, 0);
-  EXPECT_NEAR(row.mean, 50, 1e-9);
-  EXPECT_NEAR(row.sd, 0, 1e-6);
-  EXPECT_TRUE(late_frames(folder / "study.db").empty());
-}
-
-TEST(LateFrames, OneFrameLateByTwoMillisecondsDegradesTheTrial) {
-  const test::TemporaryFolder folder;
-  const CertificateRow row = certificate_of(folder / "study.db", {frame_100_is_2_ms_late});
-  EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 1, 0));
-  EXPECT_THAT(late_frames(folder / "study.db"), ElementsAre(100));
-  EXPECT_EQ(row.late, 1);
-  EXPECT_NEAR(row.worst_late_ms, 2, 1e-9);
-  // Frame 99 stays on for 22 ms and frame 100 for 18; no other deadline moves, so the mean stays.
-  EXPECT_NEAR(row.mean, 50, 1e-9);
-  const double slow = 1 / 0.022 - 50, fast = 1 / 0.018 - 50;
-  EXPECT_NEAR(row.sd, std::sqrt((slow * slow + fast * fast) / 500 - std::pow((slow + fast) / 500, 2)), 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("1 late frame, the worst by 2 ms"));
-}
-
-TEST(LateFrames, SustainedLoadFailsTheTrial) {
-  const test::TemporaryFolder folder;
-  const CertificateRow row = certificate_of(folder / "study.db", {each_takes_25_ms});
-  EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
-  // Every interval is 25 ms but the last, which lasts as planned; frame i is late by 25 (i + 1) - 20 i ms.
-  EXPECT_EQ(row.late, 500);
-  EXPECT_NEAR(row.worst_late_ms, 25 * 500 - 20 * 499, 1e-6);
-  EXPECT_NEAR(row.mean, 500 / (499 * 0.025 + 0.020), 1e-9);
-  EXPECT_NEAR(row.sd, 10 * std::sqrt(499.0) / 500, 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
-}
-
-TEST(LateFrames, ACellCountsEachVerdict) {
-  const test::TemporaryFolder folder;
-  const CertificateRow row =
-      certificate_of(folder / "study.db", {each_takes_25_ms, punctual, frame_100_is_2_ms_late, punctual});
-  EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(2, 1, 1));
-  EXPECT_EQ(row.trials, 4);
-  EXPECT_EQ(row.late, 501);
 }
 
 TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
@@ -275,85 +136,6 @@ TEST(Session, EachFrameHoldsTauWhenAModelIsInForce) {
                                   "AND abs(tolerance_fps - (c.mean_fps - 24)) > 1e-5"),
             0);
 }
-
-/// A participant of pages told beforehand: question -> answer, everything else 1.
-class Scripted final : public Participant {
- public:
-  std::optional<std::string> simulated() const override { return "scripted"; }
-  void read(const Block& block, double least_s, Clock& clock, const Check& check) override {
-    seen.push_back("read " + block.id);
-    wait(least_s, clock, check);
-  }
-  std::vector<TimedAnswer> ask(const Block&, std::span<const Question> questions, const Occasion& occasion,
-                               Clock&, const Check& check) override {
-    check();
-    std::vector<TimedAnswer> out;
-    std::string line = "ask";
-    for (const Question& question : questions) {
-      line += " " + question.id;
-      const auto found = says.find(question.id);
-      out.push_back({found == says.end() ? test::score(1) : found->second, 0.5});
-    }
-    seen.push_back(line);
-    occasions.push_back(occasion);
-    return out;
-  }
-  void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) override {
-    const char* names[] = {"black", "rest", "break"};
-    if (seconds > 0)
-      seen.push_back(names[static_cast<int>(kind)] + (" " + std::to_string(std::lround(seconds))));
-    wait(seconds, clock, check);
-  }
-
-  std::map<std::string, Answer> says;
-  std::vector<std::string> seen;
-  std::vector<Occasion> occasions;
-
- private:
-  static void wait(double seconds, Clock& clock, const Check& check) {
-    check();
-    clock.wait_until(clock.now_ns() + std::llround(1e9 * seconds));
-    check();
-  }
-};
-
-/// test::pairs() at one frame rate for all, shown by its own clock, with a rest within each trial.
-Protocol paced_pairs() {
-  std::string text = test::pairs_toml;
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    text.replace(text.find(from), from.size(), to);
-  };
-  replace("timing = \"native\"", "timing = \"equal\"\nmean_fps = [20]\nsd_fps = [0]");
-  replace("\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\"");
-  return parse_protocol(text, "pairs.toml");
-}
-
-/// One session of a protocol in a database of its own.
-struct OneSession {
-  explicit OneSession(const Protocol& asked) : protocol(asked), desk(asked) {
-    store.add_run(test::run_plan(protocol, {"P01"}));
-    person.says["age"] = test::score(40);
-    person.says["remarks"] = test::words("");
-  }
-  std::vector<OpenRun> open() { return store.open_runs(); }
-  void run(const SessionHooks& hooks = {}) {
-    SessionParts parts = desk.parts(person, store);
-    parts.personal = &personal;
-    const auto runs = open();
-    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
-  }
-  std::int64_t count(const std::string& sql) {
-    return sqlite::Connection(folder / "study.db", Open::Read).integer("SELECT count(*) FROM " + sql);
-  }
-  SessionRow row() { return read_status(folder / "study.db").sessions.at(0); }
-
-  test::TemporaryFolder folder;
-  Protocol protocol;
-  Desk desk;
-  Store store{folder / "study.db", Open::Create};
-  PersonalFile personal{folder / "study.db"};
-  Scripted person;
-};
 
 TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   OneSession one(paced_pairs());
@@ -461,21 +243,6 @@ TEST(Session, AStopRuleOffersARestAndShowsNothingMore) {
   EXPECT_EQ(one.count("presentation"), 0);
   EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'fms' AND score = 12"), 1);
   EXPECT_TRUE(one.open().empty());
-}
-
-/// Wishes for the first showings of trials: the wish at frame 5 of each.
-SessionHooks wish_at_frame_5(Wish wish, int showings) {
-  auto frame = std::make_shared<std::int64_t>(-1);
-  auto left = std::make_shared<int>(showings);
-  SessionHooks hooks;
-  hooks.shown = [frame](const FrameRecord& record) { *frame = record.index; };
-  hooks.wish = [=] {
-    if (*frame != 5 || *left == 0) return Wish::GoOn;
-    *frame = -1;
-    --*left;
-    return wish;
-  };
-  return hooks;
 }
 
 TEST(Session, ATrialIsRepeatedOnWishAndBothShowingsStay) {

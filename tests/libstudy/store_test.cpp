@@ -321,9 +321,9 @@ TEST(Store, ASessionThatEndedEarlyIsNotResumed) {
   Store store(folder / "study.db", Open::Create);
   store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03", "P04"}));
   const auto sessions = store.open_runs().at(0).sessions;
-  store.end_session(sessions[0].id, EarlyEnd::NotEligible, "", 1);
-  store.end_session(sessions[1].id, EarlyEnd::Stopped, "felt unwell", 1);
-  store.end_session(sessions[2].id, EarlyEnd::DroppedOut, "", 1);
+  store.end_session(sessions[0].id, {EarlyEnd::NotEligible, ""}, 1);
+  store.end_session(sessions[1].id, {EarlyEnd::Stopped, "felt unwell"}, 1);
+  store.end_session(sessions[2].id, {EarlyEnd::DroppedOut, ""}, 1);
   const auto left = store.open_runs().at(0).sessions;
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(left[0].plan.participant, "P04");
@@ -346,9 +346,9 @@ TEST(Store, SlotsOfThoseWhoCountAreTaken) {
   run.sessions[4].test_data = true;
   store.add_run(run);
   const auto sessions = store.open_runs().at(0).sessions;
-  store.end_session(sessions[1].id, EarlyEnd::NotEligible, "", 1);
-  store.end_session(sessions[2].id, EarlyEnd::DroppedOut, "", 1);
-  store.end_session(sessions[3].id, EarlyEnd::Stopped, "", 1);
+  store.end_session(sessions[1].id, {EarlyEnd::NotEligible, ""}, 1);
+  store.end_session(sessions[2].id, {EarlyEnd::DroppedOut, ""}, 1);
+  store.end_session(sessions[3].id, {EarlyEnd::Stopped, ""}, 1);
   EXPECT_THAT(store.taken_slots(protocol.sha256), ElementsAre(0, 3));
   EXPECT_THAT(store.taken_slots(test::pairs().sha256), IsEmpty());
 }

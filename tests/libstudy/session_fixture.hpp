@@ -1,0 +1,145 @@
+#pragma once
+/// Sessions on the virtual clock without pictures, for tests: what they need and who answers.
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libstudy/display/null.hpp"
+#include "libstudy/observer/observer.hpp"
+#include "libstudy/session/session.hpp"
+#include "libstudy/store/status.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace study::test {
+
+/// One stimulus without pictures for all cells; tells which were asked for.
+class NullStimuli final : public StimulusSource {
+ public:
+  explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
+  Stimulus& stimulus(const Cell& cell) override {
+    asked.push_back(cell.stimulus.method);
+    return stimulus_;
+  }
+  std::vector<std::string> asked;
+
+ private:
+  NullStimulus stimulus_;
+};
+
+/// What a session needs on the virtual clock.
+struct Desk {
+  explicit Desk(const Protocol& protocol) : stimuli(protocol.content.content_step_s) {}
+  SessionParts parts(Participant& participant, Store& store) {
+    return {clock, display, stimuli, participant, store, nullptr, true};
+  }
+  VirtualClock clock;
+  NullDisplay display;
+  NullStimuli stimuli;
+};
+
+inline std::unique_ptr<Observer> ptpe_observer() {
+  static FeatureTable features;
+  return make_observer("ptpe:a=31,b=0.035", features);
+}
+
+/// A participant of pages told beforehand: question -> answer, everything else 1.
+class Scripted final : public Participant {
+ public:
+  std::optional<std::string> simulated() const override { return "scripted"; }
+  void read(const Block& block, double least_s, Clock& clock, const Check& check) override {
+    seen.push_back("read " + block.id);
+    wait(least_s, clock, check);
+  }
+  std::vector<TimedAnswer> ask(const Block&, std::span<const Question> questions, const Occasion& occasion,
+                               Clock&, const Check& check) override {
+    check();
+    std::vector<TimedAnswer> out;
+    std::string line = "ask";
+    for (const Question& question : questions) {
+      line += " " + question.id;
+      const auto found = says.find(question.id);
+      out.push_back({found == says.end() ? score(1) : found->second, 0.5});
+    }
+    seen.push_back(line);
+    occasions.push_back(occasion);
+    return out;
+  }
+  void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) override {
+    const char* names[] = {"black", "rest", "break"};
+    if (seconds > 0)
+      seen.push_back(names[static_cast<int>(kind)] + (" " + std::to_string(std::lround(seconds))));
+    wait(seconds, clock, check);
+  }
+
+  std::map<std::string, Answer> says;
+  std::vector<std::string> seen;
+  std::vector<Occasion> occasions;
+
+ private:
+  static void wait(double seconds, Clock& clock, const Check& check) {
+    check();
+    clock.wait_until(clock.now_ns() + std::llround(1e9 * seconds));
+    check();
+  }
+};
+
+/// pairs() at one frame rate for all, shown by its own clock, with a rest within each trial; `policy`: its
+/// on_interruption.
+inline Protocol paced_pairs(const std::string& policy = "") {
+  std::string text = pairs_toml;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("timing = \"native\"", "timing = \"equal\"\nmean_fps = [20]\nsd_fps = [0]");
+  if (!policy.empty()) replace("id = \"judge\"\n", "id = \"judge\"\non_interruption = \"" + policy + "\"\n");
+  replace("\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\"");
+  return parse_protocol(text, "pairs.toml");
+}
+
+/// One session of a protocol in a database of its own.
+struct OneSession {
+  explicit OneSession(const Protocol& asked) : protocol(asked), desk(asked) {
+    store.add_run(run_plan(protocol, {"P01"}));
+    person.says["age"] = score(40);
+    person.says["remarks"] = words("");
+  }
+  std::vector<OpenRun> open() { return store.open_runs(); }
+  void run(const SessionHooks& hooks = {}) {
+    SessionParts parts = desk.parts(person, store);
+    parts.personal = &personal;
+    const auto runs = open();
+    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
+  }
+  std::int64_t count(const std::string& sql) {
+    return sqlite::Connection(folder / "study.db", sqlite::Open::Read).integer("SELECT count(*) FROM " + sql);
+  }
+  SessionRow row() { return read_status(folder / "study.db").sessions.at(0); }
+
+  TemporaryFolder folder;
+  Protocol protocol;
+  Desk desk;
+  Store store{folder / "study.db", sqlite::Open::Create};
+  PersonalFile personal{folder / "study.db"};
+  Scripted person;
+};
+
+/// Wishes for the first showings of trials: the wish at frame 5 of each.
+inline SessionHooks wish_at_frame_5(Wish wish, int showings) {
+  auto frame = std::make_shared<std::int64_t>(-1);
+  auto left = std::make_shared<int>(showings);
+  SessionHooks hooks;
+  hooks.shown = [frame](const FrameRecord& record) { *frame = record.index; };
+  hooks.wish = [=] {
+    if (*frame != 5 || *left == 0) return Wish::GoOn;
+    *frame = -1;
+    --*left;
+    return wish;
+  };
+  return hooks;
+}
+
+}  // namespace study::test
