@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "stats/inference/equivalence.hpp"
@@ -117,6 +118,44 @@ TEST(Hypotheses, HolmStaysWithinTheFamily) {
       return *test.p == p[i] && std::abs(*test.p_holm - run) < 1e-14;
     }));
   }
+}
+
+/// Share of 1,000 studies of 26 people in which some test of a hypothesis rejects. Three standard errors of 5
+/// % are 2.1 %.
+template <class Rejects>
+double share_of_studies(const std::vector<double>& realism, const std::vector<double>& sickness,
+                        Rejects rejects) {
+  constexpr int studies = 1000;
+  int count = 0;
+  for (std::uint64_t study = 0; study < studies; ++study) {
+    const auto all =
+        task1_hypotheses(normal_table(realism, 0.5, 1.1, 26, 2 * study + 1),
+                         normal_table(sickness, 0.2, 0.4, 26, 2 * study + 2, test::sickness_scale()), {}, "");
+    count += rejects(all) ? 1 : 0;
+  }
+  return 1.0 * count / studies;
+}
+
+TEST(Hypotheses, AFamilyOfEightKeepsItsLevelWhereNothingDiffers) {
+  int uncorrected = 0;
+  const double share =
+      share_of_studies({4, 4, 4, 4, 4}, {1, 1, 1, 1, 1}, [&](const std::vector<Hypothesis>& all) {
+        const auto& tests = all[0].tests;
+        uncorrected +=
+            std::any_of(tests.begin(), tests.end(), [](const auto& test) { return *test.paper_p < 0.05; });
+        return std::any_of(tests.begin(), tests.end(),
+                           [](const auto& test) { return test.holds || test.against; });
+      });
+  EXPECT_NEAR(share, 0.05, 0.021);
+  EXPECT_GT(uncorrected, 250) << "without correction every fourth study finds something";
+}
+
+TEST(Hypotheses, NonInferiorityKeepsItsLevelAtTheMargin) {
+  // The accelerated strategy is worse by exactly the margin.
+  const double share =
+      share_of_studies({4, 4, 4, 3.5, 4}, {1, 1, 1, 1.25, 1},
+                       [](const std::vector<Hypothesis>& all) { return all[2].confirmed > 0; });
+  EXPECT_NEAR(share, 0.05, 0.021);
 }
 
 TEST(Hypotheses, WithoutTrackedGazeTheFirstIsNotTestable) {
