@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
@@ -35,6 +36,9 @@ void expect_description(const nlohmann::json& c, const Values& x, const stats::D
   expect_field(c, "q25_type6", *stats::quantile(x, 0.25, QuantileType::Weibull), scale);
   expect_field(c, "skew_g1", got.skewness);
   expect_field(c, "exkurt_g2", got.kurtosis);
+  oracle::expect_known_fields(
+      c, {"n", "n_missing", "mean", "sd", "var", "sem", "median", "min", "max", "mad_raw", "q25_type7",
+          "q75_type7", "q10_type7", "q25_type6", "skew_g1", "exkurt_g2"});
 }
 
 TEST(Describe, Oracle) {

@@ -8,6 +8,7 @@
 
 #include "stats/inference/t_test.hpp"
 #include "tests/stats/inference/sampling.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
@@ -29,6 +30,7 @@ void expect_case(const nlohmann::json& c, const Result<EquivalenceTest>& got, do
   expect_field(c, "t_upper", got->t_upper);
   expect_field(c, "p_upper", got->p_upper);
   expect_field(c, "p_tost", got->p);
+  oracle::expect_known_fields(c, {"df", "t_lower", "p_lower", "t_upper", "p_upper", "p_tost", "ci90"});
   if (!oracle::asks(c.at("expect"), "ci90")) return;
   const auto& ci = c.at("expect").at("ci90");
   // Packs give the interval of mean - mu, except where the answer was recomputed in 50 digits: there it is

@@ -7,6 +7,7 @@
 
 #include "stats/quantiles.hpp"
 #include "tests/stats/inference/sampling.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
@@ -25,6 +26,7 @@ TEST(ShapiroWilk, Oracle) {
       ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
       oracle::expect_field(c, "W", got->w);
       oracle::expect_field(c, "p", got->p);
+      oracle::expect_known_fields(c, {"W", "p"});
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/stats/inference/sampling.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
@@ -20,10 +21,10 @@ constexpr double nct_rtol = 1e-6;
 
 TTestOptions options(const nlohmann::json& input) {
   TTestOptions out;
-  const auto side = input.at("alternative").get<std::string>();
+  const auto side = input.value("alternative", std::string("two.sided"));
   if (side == "less") out.alternative = Alternative::Less;
   if (side == "greater") out.alternative = Alternative::Greater;
-  out.confidence = input.at("conf").get<double>();
+  out.confidence = input.value("conf", 0.95);
   out.null_value = input.value("mu", 0.0);
   return out;
 }
@@ -52,6 +53,8 @@ void expect_fields(const nlohmann::json& c, const OneSampleTTest& got) {
   expect_field(c, "sd", got.sd);
   expect_field(c, "cohen_d", got.cohen_d);
   expect_interval(c, "d_ci95_nct", got.cohen_d_ci, 1, nct_rtol);
+  oracle::expect_known_fields(
+      c, {"t", "df", "p", "estimate", "stderr", "ci", "n", "mean", "sd", "cohen_d", "d_ci95_nct"});
 }
 
 void expect_fields(const nlohmann::json& c, const PairedTTest& got) {
@@ -67,6 +70,9 @@ void expect_fields(const nlohmann::json& c, const PairedTTest& got) {
   expect_field(c, "cohen_dav", got.cohen_dav);
   expect_field(c, "cohen_drm", got.cohen_drm);
   expect_interval(c, "dz_ci95_nct", got.cohen_dz_ci, 1, nct_rtol);
+  oracle::expect_known_fields(
+      c, {"t", "df", "p", "estimate", "stderr", "ci", "n", "mean_x", "mean_y", "sd_x", "sd_y", "sd_diff", "r",
+          "cohen_dz", "hedges_gz", "cohen_dav", "cohen_drm", "dz_ci95_nct"});
 }
 
 void expect_fields(const nlohmann::json& c, const IndependentTTest& got) {
@@ -75,6 +81,8 @@ void expect_fields(const nlohmann::json& c, const IndependentTTest& got) {
   expect_field(c, "hedges_gs", got.hedges_gs);
   expect_field(c, "glass_delta_y", got.glass_delta);
   expect_interval(c, "ds_ci95_nct", got.cohen_ds_ci, 1, nct_rtol);
+  oracle::expect_known_fields(c, {"t", "df", "p", "estimate", "stderr", "ci", "sd_pooled", "cohen_ds",
+                                  "hedges_gs", "glass_delta_y", "ds_ci95_nct"});
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/stats/inference/sampling.hpp"
+#include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
@@ -42,6 +43,26 @@ void expect_signed(const nlohmann::json& c, const SignedRank& got) {
   expect_field(c, "pratt_z_nocc", got.pratt_z);
   expect_field(c, "pratt_p_normal_nocc", got.pratt_p_normal);
   expect_field(c, "pratt_p_exact", got.pratt_p_exact);
+  oracle::expect_known_fields(c, {"n",
+                                  "n_nonzero",
+                                  "W_plus",
+                                  "W_minus",
+                                  "has_ties",
+                                  "rank_biserial",
+                                  "p_exact_conditional_two",
+                                  "p_exact_less",
+                                  "p_exact_greater",
+                                  "p_normal_cc",
+                                  "p_normal_nocc",
+                                  "R_default_p",
+                                  "R_default_method",
+                                  "hodges_lehmann",
+                                  "hl_ci95_exact",
+                                  "walsh_median_all",
+                                  "pratt_W_plus",
+                                  "pratt_z_nocc",
+                                  "pratt_p_normal_nocc",
+                                  "pratt_p_exact"});
   const auto& expect = c.at("expect");
   if (oracle::asks(expect, "R_default_method")) {
     const bool exact = expect.at("R_default_method").get<std::string>().find("exact") != std::string::npos;
@@ -65,6 +86,8 @@ void expect_ranked(const nlohmann::json& c, const MannWhitney& got) {
   expect_field(c, "p_normal_nocc", got.p_normal_uncorrected);
   expect_field(c, "p_exact_conditional", got.p_exact);
   expect_field(c, "p_exact_R", got.p_exact);
+  oracle::expect_known_fields(c, {"U_x", "rank_biserial", "A12", "has_ties", "p_normal_cc", "p_normal_nocc",
+                                  "p_exact_conditional", "p_exact_R"});
 }
 
 TEST(Wilcoxon, Oracle) {
