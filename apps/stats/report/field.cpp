@@ -1,0 +1,141 @@
+#include "apps/stats/report/field.hpp"
+
+#include "apps/common/svg.hpp"
+
+namespace apps::report {
+
+namespace {
+
+const Json nothing;
+
+std::string pointer_token(const std::string& key) {
+  std::string out = "/";
+  for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return out;
+}
+
+std::string span(const Field& field, const std::string& text) {
+  return "<span" + data_field(field) + ">" + svg::escaped(text) + "</span>";
+}
+
+std::string dash(const Field& field) {
+  const std::string reason = field.reason();
+  return "<span class=\"none\"" + (reason.empty() ? "" : svg::attribute("title", reason)) +
+         ">\xE2\x80\x93</span>";
+}
+
+/// APA style leaves the 0 before the point out where a number cannot exceed 1.
+std::string without_zero(std::string text) { return text.starts_with("0.") ? text.substr(1) : text; }
+
+std::string end_of(const Field& end, int decimals) {
+  if (end.is_number()) return fixed(end, decimals);
+  const std::string text = end.words();
+  if (text == "-Inf") return span(end, "\xE2\x88\x92\xE2\x88\x9E");
+  if (text == "Inf") return span(end, "\xE2\x88\x9E");
+  return dash(end);
+}
+
+}  // namespace
+
+Field Field::operator[](const std::string& key) const {
+  const std::string pointer = pointer_ + pointer_token(key);
+  if (!value_->is_object() || !value_->contains(key)) return {nothing, pointer, value_};
+  return {(*value_)[key], pointer, value_};
+}
+
+Field Field::operator[](std::size_t index) const {
+  const std::string pointer = pointer_ + "/" + std::to_string(index);
+  if (!value_->is_array() || index >= value_->size()) return {nothing, pointer, value_};
+  return {(*value_)[index], pointer, value_};
+}
+
+bool Field::there() const {
+  return !value_->is_null() && !(value_->is_object() && value_->contains("refused"));
+}
+
+std::string Field::reason() const {
+  if (there()) return "";
+  const auto text = [](const Json* json, const char* key) {
+    if (json == nullptr || !json->is_object() || !json->contains(key) || !(*json)[key].is_string())
+      return std::string();
+    return (*json)[key].get<std::string>();
+  };
+  if (const std::string own = text(value_, "refused"); !own.empty()) return own;
+  const std::string beside = text(parent_, "reason");
+  return beside.empty() ? text(parent_, "refused") : beside;
+}
+
+std::vector<Field> Field::entries() const {
+  std::vector<Field> out;
+  if (value_->is_array())
+    for (std::size_t i = 0; i < value_->size(); ++i) out.push_back((*this)[i]);
+  return out;
+}
+
+std::vector<std::pair<std::string, Field>> Field::members() const {
+  std::vector<std::pair<std::string, Field>> out;
+  if (value_->is_object())
+    for (const auto& [key, member] : value_->items()) out.emplace_back(key, (*this)[key]);
+  return out;
+}
+
+double Field::number() const { return value_->is_number() ? value_->get<double>() : 0; }
+
+std::string Field::words() const { return value_->is_string() ? value_->get<std::string>() : ""; }
+
+bool Field::yes() const { return value_->is_boolean() && value_->get<bool>(); }
+
+std::string data_field(const Field& field) { return svg::attribute("data-field", field.pointer()); }
+
+std::string decimal(double value, int decimals) {
+  const std::string text = svg::number(value, decimals);
+  return text.front() == '-' ? "\xE2\x88\x92" + text.substr(1) : text;
+}
+
+std::string p_value(double p) {
+  if (p < 0.001) return "< .001";
+  if (p > 0.9995) return "> .999";
+  return without_zero(svg::number(p, 3));
+}
+
+std::string fixed(const Field& field, int decimals) {
+  return field.is_number() ? span(field, decimal(field.number(), decimals)) : dash(field);
+}
+
+std::string count(const Field& field) { return fixed(field, 0); }
+
+std::string percent(const Field& field, int decimals) {
+  if (!field.is_number()) return dash(field);
+  return "<span data-unit=\"%\"" + data_field(field) + ">" + decimal(100 * field.number(), decimals) +
+         " %</span>";
+}
+
+std::string p_bare(const Field& field) {
+  return field.is_number() ? span(field, p_value(field.number())) : dash(field);
+}
+
+std::string p(const Field& field) {
+  if (!field.is_number()) return "= " + dash(field);
+  const std::string text = p_value(field.number());
+  return text.front() == '<' || text.front() == '>' ? span(field, text) : "= " + span(field, text);
+}
+
+std::string interval(const Field& field, int decimals) {
+  if (field.entries().size() != 2) return dash(field);
+  return "[" + end_of(field[0], decimals) + ", " + end_of(field[1], decimals) + "]";
+}
+
+std::string words(const Field& field) { return field.words().empty() ? "" : span(field, field.words()); }
+
+std::string yes_no(const Field& field) {
+  return field.json().is_boolean() ? span(field, field.yes() ? "yes" : "no") : dash(field);
+}
+
+std::string why_not(const Field& field) {
+  if (field.there()) return "";
+  const std::string reason = field.reason();
+  return "<p class=\"refused\">Not given: " +
+         (reason.empty() ? "the results hold no such part" : svg::escaped(reason)) + ".</p>\n";
+}
+
+}  // namespace apps::report

@@ -1,0 +1,27 @@
+#pragma once
+/// The page's figures, each from a part of the results.
+
+#include <string>
+
+#include "apps/common/svg.hpp"
+#include "apps/stats/report/field.hpp"
+
+namespace apps::report {
+
+/// One score of Task 1 as in the paper's Fig. 9: a box for each method within each n_*, its mean an X,
+/// brackets with stars over pairs that differ. `score`: an entry of task1.scores.
+svg::Picture box_plot(const Field& task1, const Field& score);
+
+/// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.
+svg::Picture preference_bars(const Field& pairs);
+
+/// Verdicts on the timing of each method's showings, over scenes, for each task.
+svg::Picture timing_chart(const Field& timing, const std::string& task);
+
+/// What became of those who began, as CONSORT draws it. `flow`: flow.task1 or flow.task2.
+svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task);
+
+/// The pilot's heat map (paper Fig. 6). `pilot`: what fit-ptpe writes; its estimates are there.
+svg::Picture pilot_map(const Field& pilot);
+
+}  // namespace apps::report

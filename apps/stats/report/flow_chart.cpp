@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+
+#include "apps/stats/report/figures.hpp"
+
+namespace apps::report {
+
+namespace {
+
+using svg::text;
+
+constexpr double main_x = 16, main_width = 270, side_x = 350, side_width = 300, line_px = 20, pad = 10;
+
+/// A count with what it counts.
+struct Entry {
+  const char* words;
+  Field n;
+};
+
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;
+  std::string drawn;
+};
+
+Box box(double x, double y, double width, const std::vector<Entry>& entries) {
+  Box out{x, y, width, 2 * pad + line_px * static_cast<double>(entries.size()), ""};
+  out.drawn = svg::rectangle({x, y}, {x + width, y + out.height},
+                             "fill=\"#ffffff\" stroke=\"#000000\" stroke-width=\"1.4\"");
+  double base = y + pad + 14;
+  for (const auto& [words, n] : entries) {
+    out.drawn += text({x + 12, base}, words, "font-size=\"14\"");
+    out.drawn += text({x + width - 12, base}, n.is_number() ? svg::number(n.number(), 0) : "\xE2\x80\x93",
+                      "font-size=\"14\" font-weight=\"bold\" text-anchor=\"end\"" + data_field(n));
+    base += line_px;
+  }
+  return out;
+}
+
+/// A line with a head, drawn without a marker: its id would have to differ from chart to chart.
+std::string arrow(svg::Point from, svg::Point to) {
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const double dx = (to.x - from.x) / length, dy = (to.y - from.y) / length;
+  const svg::Point base{to.x - 10 * dx, to.y - 10 * dy};
+  return svg::line(from, base, "stroke=\"#000000\" stroke-width=\"1.4\"") +
+         svg::path(svg::move('M', to) + svg::move('L', {base.x - 4 * dy, base.y + 4 * dx}) +
+                       svg::move('L', {base.x + 4 * dy, base.y - 4 * dx}) + "Z",
+                   "fill=\"#000000\"");
+}
+
+/// Entries whose number is not 0.
+std::vector<Entry> those_with_some(const std::vector<Entry>& all) {
+  std::vector<Entry> out;
+  for (const auto& entry : all)
+    if (entry.n.number() > 0) out.push_back(entry);
+  return out;
+}
+
+}  // namespace
+
+svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task) {
+  svg::Picture picture{.width = side_x + side_width + 12, .id = id};
+  picture.title = "Flow of participants, " + task;
+  picture.description =
+      "Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
+      "those who left in between, with the reason, and those set aside.";
+  const std::vector<std::pair<std::vector<Entry>, std::vector<Entry>>> steps{
+      {{{"sessions started", flow["started"]}},
+       those_with_some({{"not eligible", flow["not_eligible"]},
+                        {"stopped early", flow["stopped"]},
+                        {"did not come back", flow["dropped_out"]},
+                        {"still open", flow["open"]}})},
+      {{{"sessions completed", flow["done"]}},
+       those_with_some({{"left out by rule or by hand", flow["excluded_participants"]},
+                        {"test data, set aside", flow["set_aside"]["test_data"]},
+                        {"simulated, set aside", flow["set_aside"]["simulated"]}})},
+      {{{"participants analysed", flow["analysed"]},
+        {"trials planned", flow["trials_planned"]},
+        {"trials answered", flow["trials_answered"]},
+        {"trials left out", flow["trials_excluded"]},
+        {"trials analysed", flow["trials_analysed"]}},
+       those_with_some({{"withdrew, data deleted", flow["withdrawn"]},
+                        {"practice trials, not analysed", flow["practice"]},
+                        {"repeated trials, for retest", flow["repeat"]}})}};
+  double y = 40;
+  const double middle = main_x + main_width / 2;
+  picture.body = text({main_x, 22}, picture.title, "class=\"axis\" font-size=\"15\" font-weight=\"bold\"");
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto& [here, gone] = steps[i];
+    const Box main = box(main_x, y, main_width, here);
+    picture.body += main.drawn;
+    double next = y + main.height + 34;
+    if (!gone.empty()) {
+      // The side box stands beside the arrow to the next step; beside the last box itself.
+      const bool last = i + 1 == steps.size();
+      const Box side = box(side_x, last ? y : y + main.height + 12, side_width, gone);
+      picture.body += side.drawn;
+      const double at = last ? y + pad + 9 : side.y + side.height / 2;
+      picture.body += last ? svg::line({main_x + main_width, at}, {side_x, at},
+                                       "stroke=\"#000000\" stroke-dasharray=\"3 3\"")
+                           : arrow({middle, at}, {side_x, at});
+      next = std::max(next, side.y + side.height + 14);
+    }
+    if (i + 1 < steps.size()) picture.body += arrow({middle, y + main.height}, {middle, next});
+    y = next;
+  }
+  picture.height = y;
+  return picture;
+}
+
+}  // namespace apps::report

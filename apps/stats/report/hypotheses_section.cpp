@@ -1,0 +1,155 @@
+#include "apps/stats/report/html.hpp"
+#include "apps/stats/report/sections.hpp"
+
+namespace apps::report {
+
+namespace {
+
+const std::string minus = "\xE2\x88\x92";
+
+/// "0.46 [0.06, 1.25]" of a difference, or of a share.
+std::string estimate(const Field& test) {
+  if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
+  return fixed(test["estimate"], 2) + " " + interval(test["ci"], 2);
+}
+
+/// What the test did not give, behind its label.
+std::string label(const Field& test) {
+  const std::string reason = test["reason"].words();
+  return words(test["label"]) + (reason.empty() ? "" : " <em>(no test: " + words(test["reason"]) + ")</em>");
+}
+
+Table tests_table(const Field& hypothesis) {
+  const bool preference = hypothesis["kind"].words() == "preference";
+  Table table(words(hypothesis["id"]) + ": tests of the family",
+              {"Test", "<i>n</i>", preference ? "Share [CI]" : "Difference [CI]", "Margin", "<i>p</i>", "",
+               "<i>p</i><sub>Holm</sub>", "", "Holds", "<i>p</i> as in the paper", "Holds as in the paper"});
+  for (const Field& test : hypothesis["tests"].entries()) {
+    table.row({label(test), count(test["n"]), estimate(test), fixed(test["margin"], 2), p_bare(test["p"]),
+               words(test["stars"]), p_bare(test["p_holm"]), words(test["stars_holm"]), yes_no(test["holds"]),
+               p_bare(test["paper_p"]), yes_no(test["paper_holds"])});
+  }
+  return table;
+}
+
+/// One test as a sentence in APA style.
+std::string apa(const Field& test, bool preference) {
+  std::string out = words(test["label"]) + ": ";
+  if (!test["p"].is_number()) {
+    const std::string reason = test["reason"].words();
+    return out + "no test" + (reason.empty() ? "" : ", " + words(test["reason"]));
+  }
+  if (preference) {
+    if (test["k"].is_number()) out += count(test["k"]) + " of " + count(test["n"]) + ", ";
+    out += "share = " + fixed(test["estimate"], 2);
+  } else {
+    out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
+  }
+  out += ", CI " + interval(test["ci"], 2);
+  if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
+  if (test["t"].is_number()) out += ", <i>t</i>(" + fixed(test["df"], 0) + ") = " + fixed(test["t"], 2);
+  if (test["d_z"].is_number()) out += ", <i>d<sub>z</sub></i> = " + fixed(test["d_z"], 2);
+  return out + ", <i>p</i> " + p(test["p"]) + ", <i>p</i><sub>Holm</sub> " + p(test["p_holm"]);
+}
+
+/// What Holm makes of a preference over the paper's five pairs and over all ten: the family decides.
+std::string families(const Field& hypothesis) {
+  Table table("The same <i>p</i> in larger families",
+              {"Test", "<i>p</i>", "Holm over this family", "Holm over the five of the paper's figure",
+               "Holm over all ten pairs"});
+  for (const Field& test : hypothesis["tests"].entries()) {
+    if (!test["p_holm_of_five"].is_number() && !test["p_holm_of_ten"].is_number()) continue;
+    table.row({words(test["label"]), p_bare(test["p"]), p_bare(test["p_holm"]),
+               p_bare(test["p_holm_of_five"]), p_bare(test["p_holm_of_ten"])});
+  }
+  return table.empty() ? "" : table.html();
+}
+
+std::string one(const Field& hypothesis, bool registered) {
+  const Field paper = hypothesis["paper"];
+  const bool preference = hypothesis["kind"].words() == "preference";
+  std::string body = paragraph("<q>" + words(hypothesis["title"]) + "</q>");
+  body += paragraph(badge(registered) + " <strong>" + words(hypothesis["status"]) + ".</strong> " +
+                    words(hypothesis["status_text"]));
+  if (hypothesis["status_if_testable"].there() && hypothesis["status"].words() == "not testable")
+    body += paragraph(
+        "Were it testable, the tests below would read: " + words(hypothesis["status_if_testable"]) + ".");
+  body += paragraph("Rule: " + words(hypothesis["rule"]) + "; family of " + count(hypothesis["family"]) +
+                    ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ".");
+  body += tests_table(hypothesis).html() + families(hypothesis);
+  std::vector<std::string> lines;
+  for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
+  body += list(lines);
+  if (paper.there())
+    body += paragraph("The paper's own procedure on these data (" + words(paper["rule"]) +
+                      "): " + words(paper["status"]) + ". " + words(paper["text"]) +
+                      " Of its own data the paper said: " + words(paper["published"]) + ".");
+  return subsection(words(hypothesis["id"]) + ", " + words(hypothesis["kind"]), body);
+}
+
+}  // namespace
+
+bool preregistered(const Field& root) {
+  if (!root["plan"]["preregistered"].yes()) return false;
+  const Field bundle = root["preregistration"];
+  return bundle.there() && bundle["holds"].yes();
+}
+
+std::string decisions_section(const Field& root) {
+  if (root["hypotheses"].entries().empty()) return "";
+  const bool registered = preregistered(root);
+  Table table("Decisions on the hypotheses", {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold",
+                                              "In words", "The paper's uncorrected procedure", "Published"});
+  for (const Field& hypothesis : root["hypotheses"].entries()) {
+    table.row({words(hypothesis["id"]), words(hypothesis["kind"]), badge(registered),
+               "<strong>" + words(hypothesis["status"]) + "</strong>",
+               count(hypothesis["confirmed"]) + " of " + count(hypothesis["family"]),
+               words(hypothesis["status_text"]), words(hypothesis["paper"]["status"]),
+               words(hypothesis["paper"]["published"])});
+  }
+  return section("decisions", "Decisions", table.html());
+}
+
+std::string hypotheses_section(const Field& root) {
+  std::string body;
+  const bool registered = preregistered(root);
+  for (const Field& hypothesis : root["hypotheses"].entries()) body += one(hypothesis, registered);
+  if (body.empty()) return "";
+  return section("hypotheses", "Hypotheses",
+                 paragraph("Each hypothesis is a family of its own; Holm's step-down correction holds the "
+                           "family's error rate. Stars: * <i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** "
+                           "<i>p</i> &lt; .001.") +
+                     body);
+}
+
+std::string sensitivity_section(const Field& root) {
+  if (root["sensitivity"].entries().empty()) return "";
+  Table overview("The decisions under other rules",
+                 {"Rules", "Task", "Participants", "Answers", "Decisions", "Changed"});
+  Table details("Every test under other rules",
+                {"Test", "<i>n</i>", "Estimate", "<i>p</i><sub>Holm</sub>", "Holds"});
+  for (const Field& variant : root["sensitivity"].entries()) {
+    std::string decisions, changed;
+    for (const Field& hypothesis : variant["hypotheses"].entries()) {
+      decisions +=
+          (decisions.empty() ? "" : "; ") + words(hypothesis["id"]) + ": " + words(hypothesis["status"]);
+      details.group(words(variant["label"]) + ", " + words(hypothesis["id"]));
+      for (const Field& test : hypothesis["tests"].entries())
+        details.row({words(test["label"]), count(test["n"]), fixed(test["estimate"], 2),
+                     p_bare(test["p_holm"]), yes_no(test["holds"])});
+    }
+    for (const Field& id : variant["changed"].entries()) changed += (changed.empty() ? "" : ", ") + words(id);
+    if (variant["hypotheses"].entries().empty() && !variant.reason().empty())
+      decisions = svg::escaped(variant.reason());
+    overview.row({words(variant["label"]), words(variant["task"]), count(variant["participants"]),
+                  count(variant["answers"]), decisions, changed.empty() ? "none" : changed});
+  }
+  return section(
+      "sensitivity", "Sensitivity",
+      paragraph(badge(false) +
+                " The hypotheses again under other rules of exclusion and averaging. None of these "
+                "replaces a decision above.") +
+          overview.html() + details.html());
+}
+
+}  // namespace apps::report

@@ -1,0 +1,26 @@
+#pragma once
+/// The page's sections, each "" when the results lack what it shows.
+
+#include <string>
+
+#include "apps/stats/report/field.hpp"
+
+namespace apps::report {
+
+/// Whether H1 to H6 were fixed beforehand: a plan was given, its bundle is whole and nothing differs.
+bool preregistered(const Field& root);
+
+std::string head_section(const Field& root);
+std::string decisions_section(const Field& root);
+std::string methods_section(const Field& root);
+std::string participants_section(const Field& root);
+std::string timing_section(const Field& root);
+std::string pilot_section(const Field& root);
+std::string task1_section(const Field& root);
+std::string task2_section(const Field& root);
+std::string hypotheses_section(const Field& root);
+std::string sensitivity_section(const Field& root);
+std::string preregistration_section(const Field& root);
+std::string provenance_section(const Field& root);
+
+}  // namespace apps::report

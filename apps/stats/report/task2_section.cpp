@@ -1,0 +1,138 @@
+#include "apps/stats/report/figures.hpp"
+#include "apps/stats/report/html.hpp"
+#include "apps/stats/report/sections.hpp"
+
+namespace apps::report {
+
+namespace {
+
+std::string pair_name(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
+
+std::string pairs_table(const Field& pairs) {
+  Table table("How often each of a pair was chosen: exact binomial tests, two-sided",
+              {"Pair", "Chosen", "Share", "CI (Clopper-Pearson)", "CI (Wilson)", "<i>p</i>", "",
+               "<i>p</i><sub>Holm</sub>", "", "<i>p</i><sub>BH</sub>", "Left one shown first",
+               "First one chosen", "In the paper's Fig.&nbsp;10"});
+  for (const Field& pair : pairs.entries()) {
+    const std::string warning = pair["warning"].words();
+    const std::string name =
+        pair_name(pair) + (warning.empty() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
+    if (!pair["p"].is_number() && !pair["share"].is_number()) {
+      table.refused(name, "no test: " + svg::escaped(pair["p"].reason()));
+      continue;
+    }
+    table.row({name, count(pair["k"]) + " of " + count(pair["n"]), percent(pair["share"]),
+               interval(pair["clopper_pearson"], 2), interval(pair["wilson"], 2), p_bare(pair["p"]),
+               words(pair["stars"]), p_bare(pair["p_holm"]), words(pair["stars_holm"]), p_bare(pair["p_bh"]),
+               count(pair["a_first"]), count(pair["first_chosen"]), yes_no(pair["paper"])});
+  }
+  return table.html();
+}
+
+std::string apa_lines(const Field& pairs) {
+  std::vector<std::string> lines;
+  for (const Field& pair : pairs.entries()) {
+    if (!pair["p"].is_number()) continue;
+    lines.push_back(pair_name(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) + " (" +
+                    percent(pair["share"]) + "), CI " + interval(pair["clopper_pearson"], 2) +
+                    ", exact binomial <i>p</i> " + p(pair["p"]) + ", <i>p</i><sub>Holm</sub> " +
+                    p(pair["p_holm"]));
+  }
+  return list(lines);
+}
+
+std::string interval_bias(const Field& bias) {
+  if (bias.json().is_null()) return "";
+  if (!bias.there()) return subsection("Bias towards the first interval", why_not(bias));
+  std::string body =
+      paragraph("The first of a pair was chosen in " + count(bias["first_chosen"]) + " of " +
+                count(bias["n"]) + " answers (" + percent(bias["share"]) + ", CI " +
+                interval(bias["clopper_pearson"], 2) + ", exact binomial <i>p</i> " + p(bias["p"]) + ").");
+  if (!bias["warning"].words().empty()) body += paragraph("Note: " + words(bias["warning"]) + ".");
+  const Field by = bias["by_participant"];
+  if (by.there()) {
+    body += paragraph("Over participants: mean share " + fixed(by["mean_share"], 2) + " " +
+                      interval(by["ci"], 2) + ", <i>t</i>(" + fixed(by["df"], 0) +
+                      ") = " + fixed(by["t"], 2) + ", <i>p</i> " + p(by["p"]) + ".");
+  } else {
+    body += why_not(by);
+  }
+  return subsection("Bias towards the first interval", body);
+}
+
+std::string bradley_terry(const Field& model) {
+  if (model.json().is_null()) return "";
+  if (!model.there()) return subsection("Bradley-Terry model", why_not(model));
+  Table table("Abilities on the log-odds scale against " + words(model["reference"]),
+              {"Method", "Estimate", "<i>SE</i>", "CI", "Worth (sums to one)"});
+  for (const Field& ability : model["abilities"].entries())
+    table.row({words(ability["method"]), fixed(ability["estimate"], 2), fixed(ability["se"], 2),
+               interval(ability["ci"], 2), fixed(ability["worth"], 3)});
+  std::string body = table.html();
+  if (model["penalised"].yes())
+    body += paragraph("Some method was always or never chosen: the estimates are Firth's, penalised.");
+  const auto test = [](const std::string& name, const Field& part) {
+    if (!part.there()) return part.reason().empty() ? "" : name + ": " + svg::escaped(part.reason());
+    return name + ": \xCF\x87\xC2\xB2(" + count(part["df"]) + ") = " + fixed(part["chi2"], 2) +
+           ", <i>p</i> " + p(part["p"]);
+  };
+  std::vector<std::string> lines;
+  for (const auto& line :
+       {test("All methods equal", model["overall"]), test("Lack of fit over the pairs", model["fit"])})
+    if (!line.empty()) lines.push_back(line);
+  const Field order = model["order"];
+  if (order.there())
+    lines.push_back("Effect of the order (log odds of the first interval): " + fixed(order["estimate"], 2) +
+                    " " + interval(order["ci"], 2) + ", <i>z</i> = " + fixed(order["z"], 2) + ", <i>p</i> " +
+                    p(order["p"]));
+  return subsection("Bradley-Terry model", body + list(lines));
+}
+
+std::string triads(const Field& t) {
+  if (t.json().is_null()) return "";
+  if (!t.there()) return subsection("Circular triads", why_not(t));
+  return subsection("Circular triads",
+                    paragraph("Participants who judged all pairs: " + count(t["n"]) +
+                              " (without: " + count(t["incomplete"]) + "). Mean number of circular triads " +
+                              fixed(t["mean"], 2) + " (random answers: " + fixed(t["expected"], 2) +
+                              "), mean consistency (Kendall's \xCE\xB6) " + fixed(t["mean_consistency"], 2) +
+                              "; as few or fewer by chance: <i>p</i> " + p(t["p"]) + "."));
+}
+
+std::string by_scene(const Field& task2) {
+  Table table("Choices by scene (not tested)", {"Scene", "Pair", "Chosen"});
+  for (const Field& c : task2["by_scene"].entries())
+    table.row({words(c["scene"]), pair_name(c), count(c["k"]) + " of " + count(c["n"])});
+  return table.empty() ? "" : subsection("By scene", table.html());
+}
+
+std::string retest(const Field& r) {
+  if (!r.there()) return "";
+  return subsection("Test and retest", paragraph("Of " + count(r["pairs"]) + " pairs shown again, " +
+                                                 percent(r["same"]) + " were answered alike."));
+}
+
+}  // namespace
+
+std::string task2_section(const Field& root) {
+  const Field task2 = root["task2"];
+  if (task2.json().is_null()) return "";
+  if (!task2.there()) return section("task2", "Task 2: preference", why_not(task2));
+  const Field pairs = task2["pairs"];
+  std::vector<std::string> rules;
+  for (const auto& [name, rule] : task2["rules"].members()) rules.push_back(words(rule));
+  return section(
+      "task2", "Task 2: preference",
+      paragraph(badge(false) + " " + count(task2["participants"]) + " participants, " +
+                count(task2["answers"]) +
+                " answers. The tests of all pairs describe the data; the decisions stand under Hypotheses.") +
+          list(rules) +
+          figure(preference_bars(pairs),
+                 "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10; line: Wilson "
+                 "interval. Stars: exact binomial test, uncorrected / after Holm over all pairs.") +
+          pairs_table(pairs) + apa_lines(pairs) + interval_bias(task2["interval_bias"]) +
+          bradley_terry(task2["bradley_terry"]) + triads(task2["triads"]) + by_scene(task2) +
+          retest(task2["retest"]));
+}
+
+}  // namespace apps::report

@@ -1,0 +1,97 @@
+#include <array>
+#include <map>
+
+#include "apps/stats/report/figures.hpp"
+
+namespace apps::report {
+
+namespace {
+
+using svg::text;
+
+constexpr double left = 190, width = 430, row = 24, bar = 16, top = 74;
+
+struct Verdict {
+  const char* key;
+  const char* words;
+  const char* fill;
+};
+constexpr std::array<Verdict, 4> verdicts{{{"pass", "pass", "#0072b2"},
+                                           {"degraded", "degraded", "url(#timing-degraded)"},
+                                           {"fail", "fail", "url(#timing-fail)"},
+                                           {"unjudged", "not judged", "#ffffff"}}};
+
+constexpr const char* patterns =
+    "<pattern id=\"timing-degraded\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\"><rect "
+    "width=\"6\" "
+    "height=\"6\" fill=\"#e69f00\"/><path d=\"M-1,7 L7,-1\" stroke=\"#000000\" stroke-width=\"0.8\"/>"
+    "</pattern>\n<pattern id=\"timing-fail\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\"><rect "
+    "width=\"6\" height=\"6\" fill=\"#ffffff\"/><path d=\"M0,0 L6,6 M6,0 L0,6\" stroke=\"#a03d00\" "
+    "stroke-width=\"1.6\"/></pattern>\n";
+
+/// Showings of a method at one n_*, over scenes.
+struct Line {
+  std::array<double, 4> n{};
+  double all() const { return n[0] + n[1] + n[2] + n[3]; }
+};
+
+std::string legend() {
+  std::string out;
+  double x = left;
+  for (const auto& verdict : verdicts) {
+    out +=
+        svg::rectangle({x, 40}, {x + 20, 54}, svg::attribute("fill", verdict.fill) + " stroke=\"#000000\"") +
+        text({x + 26, 52}, verdict.words, "font-size=\"13\"");
+    x += 108;
+  }
+  return out;
+}
+
+std::string drawn(const std::string& name, const Line& line, double y) {
+  std::string out = text({left - 8, y + 13}, name, "class=\"axis\" text-anchor=\"end\" font-size=\"13\"");
+  double before = 0;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    if (line.n[i] <= 0) continue;
+    const double from = left + width * before / line.all();
+    before += line.n[i];
+    out += svg::rectangle({from, y}, {left + width * before / line.all(), y + bar},
+                          svg::attribute("fill", verdicts[i].fill) + " stroke=\"#000000\"");
+  }
+  return out;
+}
+
+}  // namespace
+
+svg::Picture timing_chart(const Field& timing, const std::string& task) {
+  std::vector<std::string> order;
+  std::map<std::string, Line> lines;
+  for (const Field& cell : timing.entries()) {
+    if (cell["task"].words() != task) continue;
+    const std::string name = cell["method"].words() + ", " + cell["n_star"].words();
+    const auto [at, fresh] = lines.try_emplace(name);
+    if (fresh) order.push_back(name);
+    for (std::size_t i = 0; i < verdicts.size(); ++i) at->second.n[i] += cell[verdicts[i].key].number();
+  }
+  svg::Picture picture{.width = left + width + 20, .id = "timing-" + task};
+  picture.title = "Verdicts on the timing of the showings";
+  picture.description =
+      "A bar for each method and n*: the shares of its showings, over scenes, whose timing passed, was "
+      "degraded, failed or could not be judged. The table below holds the counts of each cell.";
+  picture.definitions = patterns;
+  double y = top;
+  for (const auto& name : order) {
+    picture.body += drawn(name, lines[name], y);
+    y += row;
+  }
+  for (int i = 0; i <= 4; ++i) {
+    const double x = left + width * i / 4.0;
+    picture.body += svg::line({x, y}, {x, y + 6}, "stroke=\"#000000\"") +
+                    text({x, y + 22}, svg::number(25 * i, 0) + " %",
+                         "class=\"axis\" text-anchor=\"middle\" font-size=\"12\"");
+  }
+  picture.body += text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") + legend();
+  picture.height = y + 34;
+  return picture;
+}
+
+}  // namespace apps::report
