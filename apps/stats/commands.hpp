@@ -8,5 +8,7 @@ namespace apps {
 void add_fit_ptpe_command(CLI::App& app);
 /// task1 and task2.
 void add_task_commands(CLI::App& app);
+void add_report_command(CLI::App& app);
+void add_preregister_command(CLI::App& app);
 
 }  // namespace apps

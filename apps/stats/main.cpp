@@ -7,5 +7,7 @@ int main(int argc, char** argv) {
   CLI::App app("Statistics of ViP-Lab studies", "vip-stats");
   apps::add_fit_ptpe_command(app);
   apps::add_task_commands(app);
+  apps::add_report_command(app);
+  apps::add_preregister_command(app);
   return apps::run_program(app, argc, argv);
 }

@@ -110,7 +110,7 @@ std::string bracket(const Bracket& b, double origin, double lowest) {
   return svg::path(svg::move('M', {from, y + 6}) + svg::move('L', {from, y}) + svg::move('L', {to, y}) +
                        svg::move('L', {to, y + 6}),
                    "stroke=\"#000000\" stroke-width=\"1.3\" fill=\"none\"" + dash) +
-         text({(from + to) / 2, y + 1}, b.stars.words(),
+         text({(from + to) / 2, y - 1}, b.stars.words(),
               "text-anchor=\"middle\" font-size=\"15\" font-weight=\"bold\"" + data_field(b.stars));
 }
 

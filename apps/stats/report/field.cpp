@@ -18,6 +18,11 @@ std::string span(const Field& field, const std::string& text) {
   return "<span" + data_field(field) + ">" + svg::escaped(text) + "</span>";
 }
 
+/// A number, kept on one line.
+std::string number_span(const Field& field, const std::string& text) {
+  return "<span class=\"number\"" + data_field(field) + ">" + svg::escaped(text) + "</span>";
+}
+
 std::string dash(const Field& field) {
   const std::string reason = field.reason();
   return "<span class=\"none\"" + (reason.empty() ? "" : svg::attribute("title", reason)) +
@@ -99,30 +104,32 @@ std::string p_value(double p) {
 }
 
 std::string fixed(const Field& field, int decimals) {
-  return field.is_number() ? span(field, decimal(field.number(), decimals)) : dash(field);
+  return field.is_number() ? number_span(field, decimal(field.number(), decimals)) : dash(field);
 }
 
 std::string count(const Field& field) { return fixed(field, 0); }
 
 std::string percent(const Field& field, int decimals) {
   if (!field.is_number()) return dash(field);
-  return "<span data-unit=\"%\"" + data_field(field) + ">" + decimal(100 * field.number(), decimals) +
-         " %</span>";
+  return "<span class=\"number\" data-unit=\"%\"" + data_field(field) + ">" +
+         decimal(100 * field.number(), decimals) + " %</span>";
 }
 
 std::string p_bare(const Field& field) {
-  return field.is_number() ? span(field, p_value(field.number())) : dash(field);
+  return field.is_number() ? number_span(field, p_value(field.number())) : dash(field);
 }
 
 std::string p(const Field& field) {
   if (!field.is_number()) return "= " + dash(field);
   const std::string text = p_value(field.number());
-  return text.front() == '<' || text.front() == '>' ? span(field, text) : "= " + span(field, text);
+  return text.front() == '<' || text.front() == '>' ? number_span(field, text)
+                                                    : "= " + number_span(field, text);
 }
 
 std::string interval(const Field& field, int decimals) {
   if (field.entries().size() != 2) return dash(field);
-  return "[" + end_of(field[0], decimals) + ", " + end_of(field[1], decimals) + "]";
+  return "<span class=\"number\">[" + end_of(field[0], decimals) + ", " + end_of(field[1], decimals) +
+         "]</span>";
 }
 
 std::string words(const Field& field) { return field.words().empty() ? "" : span(field, field.words()); }

@@ -74,8 +74,8 @@ std::string one(const Field& hypothesis, bool registered) {
   if (hypothesis["status_if_testable"].there() && hypothesis["status"].words() == "not testable")
     body += paragraph(
         "Were it testable, the tests below would read: " + words(hypothesis["status_if_testable"]) + ".");
-  body += paragraph("Rule: " + words(hypothesis["rule"]) + "; family of " + count(hypothesis["family"]) +
-                    ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ".");
+  body += paragraph("Rule: " + words(hypothesis["rule"]) + " (tests in the family: " +
+                    count(hypothesis["family"]) + ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ").");
   body += tests_table(hypothesis).html() + families(hypothesis);
   std::vector<std::string> lines;
   for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
@@ -89,19 +89,17 @@ std::string one(const Field& hypothesis, bool registered) {
 
 }  // namespace
 
-bool preregistered(const Field& root) {
-  if (!root["plan"]["preregistered"].yes()) return false;
-  const Field bundle = root["preregistration"];
-  return bundle.there() && bundle["holds"].yes();
+bool preregistered(const Field& root, const std::string& task) {
+  return root["preregistration"]["tasks"][task].yes();
 }
 
 std::string decisions_section(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
-  const bool registered = preregistered(root);
   Table table("Decisions on the hypotheses", {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold",
                                               "In words", "The paper's uncorrected procedure", "Published"});
   for (const Field& hypothesis : root["hypotheses"].entries()) {
-    table.row({words(hypothesis["id"]), words(hypothesis["kind"]), badge(registered),
+    table.row({words(hypothesis["id"]), words(hypothesis["kind"]),
+               badge(preregistered(root, hypothesis["task"].words())),
                "<strong>" + words(hypothesis["status"]) + "</strong>",
                count(hypothesis["confirmed"]) + " of " + count(hypothesis["family"]),
                words(hypothesis["status_text"]), words(hypothesis["paper"]["status"]),
@@ -112,8 +110,8 @@ std::string decisions_section(const Field& root) {
 
 std::string hypotheses_section(const Field& root) {
   std::string body;
-  const bool registered = preregistered(root);
-  for (const Field& hypothesis : root["hypotheses"].entries()) body += one(hypothesis, registered);
+  for (const Field& hypothesis : root["hypotheses"].entries())
+    body += one(hypothesis, preregistered(root, hypothesis["task"].words()));
   if (body.empty()) return "";
   return section("hypotheses", "Hypotheses",
                  paragraph("Each hypothesis is a family of its own; Holm's step-down correction holds the "

@@ -7,8 +7,9 @@
 
 namespace apps::report {
 
-/// Whether H1 to H6 were fixed beforehand: a plan was given, its bundle is whole and nothing differs.
-bool preregistered(const Field& root);
+/// Whether the hypotheses of a task ("task1", "task2") were fixed beforehand: a bundle was given, is whole,
+/// and holds the study's protocol and the tests as they were made.
+bool preregistered(const Field& root, const std::string& task);
 
 std::string head_section(const Field& root);
 std::string decisions_section(const Field& root);

@@ -202,7 +202,7 @@ std::string preregistration_section(const Field& root) {
         "force: " +
         words(plan["source"]) + ".");
   } else {
-    body = paragraph("Bundle SHA-256 <span class=\"hash\">" + words(bundle["sha256"]) + "</span>, frozen " +
+    body = paragraph("Bundle, SHA-256 <span class=\"hash\">" + words(bundle["sha256"]) + "</span>, frozen " +
                      words(bundle["frozen_utc"]) + " by ViP-Lab " + words(bundle["vip_lab"]) + ". " +
                      words(bundle["summary"]));
     std::vector<std::string> differences;
@@ -211,11 +211,16 @@ std::string preregistration_section(const Field& root) {
       body += "<div class=\"warning\"><p><strong>What differs from the preregistration</strong></p>\n" +
               list(differences) + "</div>\n";
   }
-  const bool registered = preregistered(root);
-  body += list({badge(registered) + " Hypotheses: the tests of each family with their margins, corrections "
-                                    "and exclusions.",
-                badge(false) + " All else: tables and tests of each task, ordinal and Bradley-Terry models, "
-                               "results by scene, sensitivity."});
+  std::vector<std::string> parts;
+  for (const auto& [key, name] : tasks) {
+    if (root[key].there())
+      parts.push_back(badge(preregistered(root, key)) + " Hypotheses of " + name +
+                      ": the tests of each family with their margins, corrections and exclusions.");
+  }
+  parts.push_back(badge(false) +
+                  " All else: tables and tests of each task, ordinal and Bradley-Terry models, "
+                  "results by scene, sensitivity, the pilot.");
+  body += list(parts);
   return section("preregistration", "Preregistered and exploratory parts", body);
 }
 

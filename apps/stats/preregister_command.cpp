@@ -1,0 +1,49 @@
+/// vip-stats preregister: protocol, hypotheses, rules and seed under one hash, before the data.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/stats/commands.hpp"
+#include "apps/stats/report/preregistration.hpp"
+
+namespace apps {
+
+namespace {
+
+struct PreregisterCommand {
+  std::vector<std::string> protocols;
+  std::string plan, power, out;
+  std::optional<std::uint64_t> seed;
+};
+
+void preregister(const PreregisterCommand& command) {
+  report::BundleRequest request;
+  request.protocols.assign(command.protocols.begin(), command.protocols.end());
+  if (!command.plan.empty()) request.plan = read_plan(command.plan).plan;
+  if (command.seed) request.plan.seed = *command.seed;
+  if (!command.power.empty()) request.power = command.power;
+  const std::string hash = report::freeze_bundle(request, command.out);
+  std::printf("%s  %s\nDeposit this hash where its date can be proved, before the first participant.\n",
+              hash.c_str(), command.out.c_str());
+}
+
+}  // namespace
+
+void add_preregister_command(CLI::App& app) {
+  auto command = std::make_shared<PreregisterCommand>();
+  auto* sub =
+      app.add_subcommand("preregister", "Freeze protocol, hypotheses, rules and seed into one hashed folder");
+  sub->add_option("protocols", command->protocols, "Protocols of the study (TOML)")->required();
+  sub->add_option("--out", command->out, "Folder to be made")->required();
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML): margins, level, exclusion rules; without: the defaults");
+  sub->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--power", command->power, "Result of vip-stats power --json, to be frozen as well");
+  sub->callback([command] { preregister(*command); });
+}
+
+}  // namespace apps

@@ -1,0 +1,27 @@
+#pragma once
+/// What freezing and comparing a preregistration share.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps::report {
+
+/// H1 to H3 for a protocol that shows methods one by one, H4 to H6 for pairs; none for a pilot of frame
+/// rates.
+std::vector<stats::Hypothesis> hypotheses_of(const study::Protocol& protocol,
+                                             const stats::AnalysisPlan& plan);
+
+/// What preregistration fixes of a hypothesis: no estimate, no p. Takes "hypotheses" of the results just as
+/// well as hypothesis_json(), so that both sides of a comparison pass through here.
+nlohmann::ordered_json fixed_part(const nlohmann::ordered_json& hypothesis);
+
+/// For people, to be deposited with the hash.
+std::string bundle_text(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
+                        const nlohmann::ordered_json& hypotheses, bool with_power,
+                        const std::string& frozen_utc);
+
+}  // namespace apps::report

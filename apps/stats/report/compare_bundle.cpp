@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <sstream>
+
+#include "apps/stats/report/bundle_parts.hpp"
+#include "apps/stats/report/line_difference.hpp"
+#include "apps/stats/report/preregistration.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t largest_file = 1 << 24;
+/// Lines of a changed protocol that the page quotes.
+constexpr std::size_t most_lines = 12;
+
+[[noreturn]] void no_bundle(const fs::path& folder, const std::string& problem) {
+  throw base::Error(folder.string(), problem, "give a folder that vip-stats preregister wrote");
+}
+
+/// File names by the hash that the manifest gives them.
+std::map<std::string, std::string> read_manifest(const std::string& text, const fs::path& folder) {
+  std::map<std::string, std::string> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string name = line.size() > 66 ? line.substr(66) : "";
+    if (name.empty() || line.substr(64, 2) != "  " || name.find('/') != std::string::npos)
+      no_bundle(folder, "MANIFEST.sha256 cannot be read: \"" + line + "\"");
+    out[name] = line.substr(0, 64);
+  }
+  return out;
+}
+
+Json parsed(const std::string& bytes, const fs::path& file) {
+  Json json = Json::parse(bytes, nullptr, false);
+  if (json.is_discarded()) no_bundle(file, "is no JSON");
+  return json;
+}
+
+void quote(Json& differences, const std::string& what, const std::vector<std::string>& lines) {
+  for (std::size_t i = 0; i < std::min(lines.size(), most_lines); ++i)
+    differences.push_back(what + ": " + lines[i]);
+  if (lines.size() > most_lines)
+    differences.push_back(what + ": " + std::to_string(lines.size() - most_lines) + " further lines");
+}
+
+std::string name_of(const Json& about, const std::string& sha256) {
+  for (const Json& protocol : about.value("protocols", Json::array()))
+    if (protocol.value("sha256", "") == sha256) return protocol.value("name", "");
+  return "";
+}
+
+/// Whether the study's protocol is one of the bundle's; adds what differs.
+bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, Json& differences) {
+  if (bundle.protocols.contains(used.sha256)) return true;
+  const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
+    return name_of(bundle.about, entry.first) == used.name;
+  });
+  if (planned == bundle.protocols.end()) {
+    differences.push_back("protocol " + used.name + " was not preregistered");
+    return false;
+  }
+  differences.push_back("protocol " + used.name + " has the hash " + used.sha256.substr(0, 12) +
+                        ", preregistered was " + planned->first.substr(0, 12));
+  if (used.trial_seconds)
+    differences.push_back("protocol " + used.name + ": trials were shortened for a test");
+  const auto lines = line_difference(planned->second, used.text);
+  quote(differences, "protocol " + used.name + ", preregistered only", lines.only_first);
+  quote(differences, "protocol " + used.name + ", used only", lines.only_second);
+  return false;
+}
+
+/// Whether the hypotheses of a task were tested as planned; adds what differs.
+bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& results, Json& differences) {
+  bool same = true;
+  std::map<std::string, Json> planned;
+  for (const Json& hypothesis : bundle.hypotheses)
+    if (hypothesis.at("task") == task) planned[hypothesis.at("id")] = hypothesis;
+  for (const Json& hypothesis : results.value("hypotheses", Json::array())) {
+    if (hypothesis.at("task") != task) continue;
+    const std::string id = hypothesis.at("id");
+    const Json now = fixed_part(hypothesis);
+    const auto before = planned.find(id);
+    if (before == planned.end()) {
+      differences.push_back(id + " was not preregistered");
+      same = false;
+      continue;
+    }
+    for (const auto& [key, value] : now.items()) {
+      if (before->second.contains(key) && before->second[key] == value) continue;
+      differences.push_back(id + ", " + key + ": preregistered " + before->second.value(key, Json()).dump() +
+                            ", tested " + value.dump());
+      same = false;
+    }
+    planned.erase(before);
+  }
+  for (const auto& [id, hypothesis] : planned) {
+    differences.push_back(id + " was preregistered and is not tested here");
+    same = false;
+  }
+  return same;
+}
+
+}  // namespace
+
+Bundle read_bundle(const fs::path& folder) {
+  if (!fs::is_regular_file(folder / "MANIFEST.sha256")) no_bundle(folder, "holds no MANIFEST.sha256");
+  const std::string manifest = base::read_file(folder / "MANIFEST.sha256", largest_file);
+  Bundle bundle;
+  bundle.sha256 = base::sha256_hex(manifest);
+  std::map<std::string, std::string> files;
+  for (const auto& [name, hash] : read_manifest(manifest, folder)) {
+    if (fs::is_regular_file(folder / name)) files[name] = base::read_file(folder / name, largest_file);
+    if (!files.contains(name) || base::sha256_hex(files[name]) != hash) bundle.altered.push_back(name);
+  }
+  for (const char* needed : {"about.json", "hypotheses.json", "plan.toml"})
+    if (!files.contains(needed)) no_bundle(folder, std::string("holds no ") + needed);
+  bundle.about = parsed(files["about.json"], folder / "about.json");
+  if (!bundle.about.is_object() || bundle.about.value("schema", "") != "vip-preregistration/1")
+    no_bundle(folder / "about.json", "is not of schema vip-preregistration/1");
+  bundle.hypotheses = parsed(files["hypotheses.json"], folder / "hypotheses.json");
+  for (const auto& [name, bytes] : files)
+    if (name.starts_with("protocol_")) bundle.protocols[base::sha256_hex(bytes)] = bytes;
+  bundle.plan = read_plan(folder / "plan.toml");
+  return bundle;
+}
+
+Json compare_with_bundle(const Bundle& bundle, const std::vector<study::ProtocolRow>& protocols,
+                         const Json& results) {
+  Json differences = Json::array(), tasks = Json::object();
+  for (const auto& name : bundle.altered)
+    differences.push_back(name + " was changed or removed after the bundle was frozen");
+  for (const Json& used : results.at("study").value("protocols", Json::array())) {
+    const std::string task = used.at("task"), sha256 = used.at("sha256");
+    const auto row = std::find_if(protocols.begin(), protocols.end(),
+                                  [&](const auto& protocol) { return protocol.sha256 == sha256; });
+    const bool protocol_holds = row != protocols.end() && same_protocol(bundle, *row, differences);
+    const bool hypotheses_hold = same_hypotheses(bundle, task, results, differences);
+    tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty();
+  }
+  const bool holds = differences.empty();
+  return {{"sha256", bundle.sha256},
+          {"frozen_utc", bundle.about.value("frozen_utc", "")},
+          {"vip_lab", bundle.about.value("vip_lab", "")},
+          {"holds", holds},
+          {"summary", holds ? "Protocols, hypotheses, margins and rules are those of the bundle."
+                            : "The study or its analysis differs from the bundle."},
+          {"tasks", tasks},
+          {"differences", differences}};
+}
+
+}  // namespace apps::report

@@ -1,0 +1,112 @@
+#include <unistd.h>
+
+#include "apps/stats/report/bundle_parts.hpp"
+#include "apps/stats/report/preregistration.hpp"
+#include "apps/stats/tasks/hypotheses_json.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Files = std::map<std::string, std::string>;  ///< bytes by name
+
+constexpr std::size_t largest_file = 1 << 24;
+
+std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) {
+  std::vector<study::Protocol> out;
+  for (const auto& path : paths) {
+    out.push_back(study::read_protocol(base::find_input(path)));
+    for (std::size_t i = 0; i + 1 < out.size(); ++i) {
+      if (out[i].name == out.back().name)
+        throw base::Error(path.string(), "has the name of another protocol, " + out[i].name,
+                          "give each protocol of a bundle a name of its own");
+    }
+  }
+  return out;
+}
+
+Files contents(const BundleRequest& request) {
+  const auto protocols = read_protocols(request.protocols);
+  const std::string now = base::utc_now();
+  Files files;
+  std::vector<std::string> hashes;
+  Json hypotheses = Json::array(), listed = Json::array();
+  for (const auto& protocol : protocols) {
+    const std::string name = "protocol_" + protocol.sha256.substr(0, 12) + ".toml";
+    files[name] = protocol.text;
+    hashes.push_back(protocol.sha256);
+    listed.push_back({{"name", protocol.name},
+                      {"version", protocol.version},
+                      {"sha256", protocol.sha256},
+                      {"file", name}});
+    for (const auto& hypothesis : hypotheses_of(protocol, request.plan))
+      hypotheses.push_back(fixed_part(hypothesis_json(hypothesis)));
+  }
+  files["hypotheses.json"] = hypotheses.dump(2) + "\n";
+  files["plan.toml"] = format_plan(request.plan, hashes);
+  if (request.power) {
+    files["power.json"] = base::read_file(*request.power, largest_file);
+    if (!Json::accept(files["power.json"]))
+      throw base::Error(request.power->string(), "is no JSON",
+                        "give the file that vip-stats power --json wrote");
+  }
+  files["about.json"] = Json{{"schema", "vip-preregistration/1"},
+                             {"frozen_utc", now},
+                             {"vip_lab", base::version()},
+                             {"seed", request.plan.seed},
+                             {"protocols", listed}}
+                            .dump(2) +
+                        "\n";
+  files["PREREGISTRATION.txt"] =
+      bundle_text(protocols, request.plan, hypotheses, request.power.has_value(), now);
+  return files;
+}
+
+/// A folder that vanishes unless it is kept under its final name.
+class Draft {
+ public:
+  explicit Draft(const fs::path& out) : out_(out), path_(out.string() + ".tmp" + std::to_string(::getpid())) {
+    std::error_code failed;
+    fs::create_directories(path_, failed);
+    if (failed) throw base::Error(path_.string(), failed.message(), "choose a folder that can be written");
+  }
+  ~Draft() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  const fs::path& path() const { return path_; }
+  void keep() {
+    std::error_code failed;
+    fs::rename(path_, out_, failed);
+    if (failed) throw base::Error(out_.string(), failed.message(), "choose a folder that is not there yet");
+  }
+
+ private:
+  fs::path out_, path_;
+};
+
+}  // namespace
+
+std::string freeze_bundle(const BundleRequest& request, const fs::path& given) {
+  const fs::path out = given.has_filename() ? given : given.parent_path();
+  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
+    throw base::Error(out.string(), "is there already, and a bundle is never written over",
+                      "choose a new folder");
+  const Files files = contents(request);
+  std::string manifest;
+  for (const auto& [name, bytes] : files) manifest += base::sha256_hex(bytes) + "  " + name + "\n";
+  Draft draft(out);
+  for (const auto& [name, bytes] : files) base::write_file_atomically(draft.path() / name, bytes);
+  base::write_file_atomically(draft.path() / "MANIFEST.sha256", manifest);
+  draft.keep();
+  return base::sha256_hex(manifest);
+}
+
+}  // namespace apps::report

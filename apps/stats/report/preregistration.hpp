@@ -1,0 +1,48 @@
+#pragma once
+/// What is fixed before the data: a folder with protocols, hypotheses and rules under one SHA-256.
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/stats/tasks/plan_file.hpp"
+#include "libstudy/store/status.hpp"
+#include "stats/analysis/plan.hpp"
+
+namespace apps::report {
+
+struct BundleRequest {
+  std::vector<std::filesystem::path> protocols;
+  stats::AnalysisPlan plan;
+  std::optional<std::filesystem::path> power;  ///< JSON of `vip-stats power`
+};
+
+/// Writes the folder `out`: a copy of each protocol, hypotheses.json (H1 to H6 as far as the protocols test
+/// them, each test with its margin), plan.toml (margins, level, exclusion rules, seed), power.json if given,
+/// about.json, PREREGISTRATION.txt for people, and MANIFEST.sha256, which sha256sum -c reads. Returns the
+/// bundle's hash: the SHA-256 of MANIFEST.sha256. base::Error when `out` holds anything, a protocol cannot
+/// be read or two share a name; nothing is then left behind.
+std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
+
+/// A bundle as it lies there now.
+struct Bundle {
+  std::string sha256;                ///< of the manifest
+  std::vector<std::string> altered;  ///< files that are missing or do not have the manifest's hash
+  nlohmann::ordered_json about, hypotheses;
+  std::map<std::string, std::string> protocols;  ///< text by SHA-256 of the protocol
+  PlanInForce plan;
+};
+
+/// base::Error when it is no bundle.
+Bundle read_bundle(const std::filesystem::path& folder);
+
+/// "preregistration" of the results (docs/results.md): whether each task's protocol and hypotheses are those
+/// of the bundle, and what differs. `results`: as study_results() gave them under the bundle's plan.
+nlohmann::ordered_json compare_with_bundle(const Bundle& bundle,
+                                           const std::vector<study::ProtocolRow>& protocols,
+                                           const nlohmann::ordered_json& results);
+
+}  // namespace apps::report

@@ -1,0 +1,123 @@
+/// vip-stats report: a study's results as one page, with the same numbers as JSON and CSV.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "apps/stats/commands.hpp"
+#include "apps/stats/pilot_data.hpp"
+#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/report/preregistration.hpp"
+#include "apps/stats/tasks/csv.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "libstudy/store/ratings.hpp"
+#include "libstudy/store/status.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct ReportCommand {
+  std::string database, html, json, csv, plan, bundle;
+};
+
+/// Outputs that would overwrite the database or each other are refused before anything is read.
+void check_outputs(const ReportCommand& command) {
+  std::map<std::filesystem::path, std::string> taken{
+      {std::filesystem::weakly_canonical(command.database), "the database"}};
+  for (const auto& [option, path] : std::map<std::string, std::string>{
+           {"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}}) {
+    if (path.empty()) continue;
+    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
+    if (!added)
+      throw base::Error(option + " " + path, "is " + other->second, "give each output a place of its own");
+  }
+}
+
+/// Ratings under protocols that set the frame rate itself; those that show methods are tasks.
+std::vector<study::RatingRow> pilot_ratings(const std::filesystem::path& database) {
+  std::set<std::string> tasks;
+  for (const auto& protocol : study::read_tasks(database).protocols) tasks.insert(protocol.sha256);
+  auto rows = study::read_ratings(database);
+  std::erase_if(rows, [&](const auto& row) { return tasks.contains(row.protocol_sha256); });
+  return rows;
+}
+
+/// "pilot" of the results; none without a pilot in the database.
+std::optional<Json> pilot_json(const std::filesystem::path& database) {
+  const auto rows = pilot_ratings(database);
+  if (rows.empty()) return {};
+  constexpr double level = 4;
+  auto data = select_pilot(rows, {});
+  return data ? fit_json(fit_pilot(*data, level, {})) : failed_fit_json(level, data.reason());
+}
+
+Json document(const ReportCommand& command) {
+  ResultsRequest request{command.database, {TaskKind::Task1, TaskKind::Task2}, "", {}};
+  std::optional<report::Bundle> bundle;
+  if (!command.bundle.empty()) {
+    bundle = report::read_bundle(command.bundle);
+    request.plan = bundle->plan;
+  } else if (!command.plan.empty()) {
+    request.plan = read_plan(command.plan);
+  }
+  Results results = study_results(request);
+  for (const auto& missing : results.missing)
+    results.json[task_name(missing.task)] = {{"refused", missing.reason}};
+  if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
+  if (bundle)
+    results.json["preregistration"] =
+        report::compare_with_bundle(*bundle, study::read_status(command.database).protocols, results.json);
+  return results.json;
+}
+
+void write_report(const ReportCommand& command) {
+  check_outputs(command);
+  const Json json = document(command);
+  if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
+    throw base::Error(command.database, "holds no answers of a pilot, of Task 1 or of Task 2",
+                      "collect answers first; nothing was written");
+  const std::string page = report::results_page(json);
+  if (!command.csv.empty()) write_csv_folder(json, command.csv);
+  if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
+  base::write_file_atomically(command.html, page);
+  std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
+  if (json.contains("preregistration")) {
+    const Json& check = json["preregistration"];
+    std::printf("%s\n", check["summary"].get<std::string>().c_str());
+    for (const auto& difference : check["differences"])
+      std::printf("  %s\n", difference.get<std::string>().c_str());
+  }
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  auto command = std::make_shared<ReportCommand>();
+  auto* sub = app.add_subcommand("report", "One page with every table, figure, test and decision of a study");
+  auto* positional = sub->add_option("database", command->database, "The study's database");
+  sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
+  sub->add_option("--html", command->html, "File for the page")->required();
+  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)");
+  sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
+  auto* plan =
+      sub->add_option("--plan", command->plan,
+                      "Analysis plan (TOML): margins, level, exclusion rules, seed; without: the defaults");
+  sub->add_option("--preregistered", command->bundle,
+                  "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
+      ->excludes(plan);
+  sub->callback([command] {
+    if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    write_report(*command);
+  });
+}
+
+}  // namespace apps
