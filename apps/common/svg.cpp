@@ -68,8 +68,12 @@ std::string attribute(std::string_view name, std::string_view value) {
 }
 
 std::string text(Point at, std::string_view words, const std::string& attributes) {
+  return marked_text(at, escaped(words), attributes);
+}
+
+std::string marked_text(Point at, const std::string& markup, const std::string& attributes) {
   return "<text x=\"" + number(at.x) + "\" y=\"" + number(at.y) + "\"" + attributes_of(attributes) + ">" +
-         escaped(words) + "</text>\n";
+         markup + "</text>\n";
 }
 
 std::string line(Point from, Point to, const std::string& attributes) {

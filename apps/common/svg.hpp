@@ -34,6 +34,8 @@ std::string attribute(std::string_view name, std::string_view value);
 
 /// Elements; `attributes` are further ones, as written. `words` are escaped here.
 std::string text(Point at, std::string_view words, const std::string& attributes = "");
+/// The same with markup inside, such as tspans, as written.
+std::string marked_text(Point at, const std::string& markup, const std::string& attributes = "");
 std::string line(Point from, Point to, const std::string& attributes);
 /// Corners in any order of left, right and top, bottom.
 std::string rectangle(Point corner, Point opposite, const std::string& attributes);

@@ -158,12 +158,13 @@ std::string axes(const HeatMap& map, const Frame& frame) {
   for (const double delta : map.grid.delta) {
     const Point at{frame.at(delta, 0).x, frame.bottom()};
     out += line(at, {at.x, at.y + 6}, "stroke=\"#000000\"");
-    out += text({at.x, at.y + 22}, number(delta, 0), "text-anchor=\"middle\" font-size=\"14\"");
+    out +=
+        text({at.x, at.y + 22}, number(delta, 0), "class=\"axis\" text-anchor=\"middle\" font-size=\"14\"");
   }
   for (const double mu : map.grid.mu) {
     const Point at{frame.left, frame.at(0, mu).y};
     out += line(at, {at.x - 6, at.y}, "stroke=\"#000000\"");
-    out += text({at.x - 10, at.y + 5}, number(mu, 0), "text-anchor=\"end\" font-size=\"14\"");
+    out += text({at.x - 10, at.y + 5}, number(mu, 0), "class=\"axis\" text-anchor=\"end\" font-size=\"14\"");
   }
   out += text({frame.left + frame.width / 2, frame.bottom() + 46},
               "standard deviation of the frame rate \xCE\xB4 (frames/s)",
@@ -188,14 +189,23 @@ std::string colour_bar(const HeatMap& map, const Frame& frame) {
   for (int i = 0; i <= scores; ++i) {
     const double y = frame.top + height * (scores - i) / scores;
     out += line({x + 22, y}, {x + 27, y}, "stroke=\"#000000\"");
-    out += text({x + 32, y + 5}, number(map.scale_min + i, 0), "font-size=\"14\"");
+    out += text({x + 32, y + 5}, number(map.scale_min + i, 0), "class=\"axis\" font-size=\"14\"");
   }
   return out;
 }
 
-std::string interval(const char* name, double value, const std::array<double, 2>& ci, int decimals) {
-  return std::string(name) + " = " + number(value, decimals) + " [" + number(ci[0], decimals) + ", " +
-         number(ci[1], decimals) + "]";
+/// A number of the estimate with its place in the results.
+std::string number_of(const HeatMap& map, double value, int decimals, const std::string& member) {
+  return "<tspan" + field(map.estimate_field, member) + ">" + number(value, decimals) + "</tspan>";
+}
+
+/// "a = 23.4 [22.1, 24.6]".
+std::string interval(const HeatMap& map, const std::string& name, double value,
+                     const std::array<double, 2>& ci, int decimals) {
+  const std::string member = "/" + name;
+  return name + " = " + number_of(map, value, decimals, member) + " [" +
+         number_of(map, ci[0], decimals, member + "_ci/0") + ", " +
+         number_of(map, ci[1], decimals, member + "_ci/1") + "]";
 }
 
 std::string legend(const HeatMap& map, const Frame& frame) {
@@ -205,7 +215,7 @@ std::string legend(const HeatMap& map, const Frame& frame) {
   for (const double level : map.levels) {
     out += line({x, y}, {x + 34, y}, contour_style(level));
     out += text({x + 42, y + 5}, "contour at " + number(level, level == std::round(10 * level) / 10 ? 1 : 2),
-                "font-size=\"14\"");
+                "class=\"axis\" font-size=\"14\"");
     y += 26;
   }
   if (!map.points.empty()) {
@@ -215,11 +225,10 @@ std::string legend(const HeatMap& map, const Frame& frame) {
   }
   out += line({x, y}, {x + 34, y}, fit_style);
   out += text({x + 42, y + 5}, "\xCE\xBC = a exp(b \xCE\xB4)", "font-size=\"14\"");
-  out += text({x, y + 30}, interval("a", map.a, map.a_ci, 2),
-              "font-size=\"14\"" + field(map.estimate_field, "/a"));
-  out += text({x, y + 50}, interval("b", map.b, map.b_ci, 4),
-              "font-size=\"14\"" + field(map.estimate_field, "/b"));
-  out += text({x, y + 70}, number(100 * map.confidence, 0) + " % intervals", "font-size=\"12\"");
+  out += svg::marked_text({x, y + 30}, interval(map, "a", map.a, map.a_ci, 2), "font-size=\"14\"");
+  out += svg::marked_text({x, y + 50}, interval(map, "b", map.b, map.b_ci, 4), "font-size=\"14\"");
+  out +=
+      text({x, y + 70}, number(100 * map.confidence, 0) + " % intervals", "class=\"axis\" font-size=\"12\"");
   return out;
 }
 

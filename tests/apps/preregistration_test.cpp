@@ -1,0 +1,195 @@
+/// Preregistration: one hash over all that is fixed, and what differs from it later.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/stats/report/line_difference.hpp"
+#include "apps/stats/report/preregistration.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+using ::test::TemporaryFolder;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+report::BundleRequest both_tasks() {
+  report::BundleRequest request;
+  request.protocols = {"protocols/task1.toml", "protocols/task2.toml"};
+  request.plan.resamples = 200;
+  request.plan.seed = 7;
+  return request;
+}
+
+study::ProtocolRow row_of(const study::Protocol& protocol) {
+  study::ProtocolRow row;
+  row.name = protocol.name;
+  row.version = protocol.version;
+  row.sha256 = protocol.sha256;
+  row.text = protocol.text;
+  return row;
+}
+
+/// Both tasks answered under the protocols given, analysed under the bundle's plan.
+struct Study {
+  std::vector<study::ProtocolRow> rows;
+  Json results;
+};
+
+Study answered(const report::Bundle& bundle, const study::Protocol& task1, const study::Protocol& task2) {
+  auto one = made_study::task1(12), two = made_study::task2(12);
+  one.sha256 = task1.sha256;
+  two.sha256 = task2.sha256;
+  return {
+      {row_of(task1), row_of(task2)},
+      make_results({{one, two}, 0}, {"study.db", {TaskKind::Task1, TaskKind::Task2}, "", bundle.plan}).json};
+}
+
+study::Protocol protocol(const std::string& name) {
+  return study::read_protocol(base::resource("protocols/" + name));
+}
+
+TEST(Preregistration, ItsHashIsThatOfTheManifestAndTheManifestHoldsEveryFile) {
+  const TemporaryFolder folder;
+  const auto hash = report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto checked = test::run_shell("cd '" + (folder / "bundle").string() +
+                                       "' && sha256sum -c MANIFEST.sha256 && sha256sum MANIFEST.sha256");
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+  EXPECT_THAT(checked.out, HasSubstr(hash));
+  for (const auto& entry : fs::directory_iterator(folder / "bundle")) {
+    const auto name = entry.path().filename().string();
+    if (name != "MANIFEST.sha256") {
+      EXPECT_THAT(checked.out, HasSubstr(name + ": OK"));
+    }
+  }
+  const auto bundle = report::read_bundle(folder / "bundle");
+  EXPECT_EQ(bundle.sha256, hash);
+  EXPECT_THAT(bundle.altered, IsEmpty());
+  EXPECT_EQ(bundle.plan.plan.seed, 7u);
+  EXPECT_TRUE(bundle.protocols.contains(protocol("task1.toml").sha256));
+}
+
+TEST(Preregistration, FixesAllSixHypothesesWithTheirMargins) {
+  const TemporaryFolder folder;
+  auto request = both_tasks();
+  request.plan.margin_realism = 0.4;
+  report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  std::vector<std::string> ids;
+  std::vector<std::size_t> families;
+  for (const auto& hypothesis : bundle.hypotheses) {
+    ids.push_back(hypothesis.at("id"));
+    families.push_back(hypothesis.at("tests").size());
+  }
+  EXPECT_EQ(ids, (std::vector<std::string>{"H1", "H2", "H3", "H4", "H5", "H6"}));
+  EXPECT_EQ(families, (std::vector<std::size_t>{8, 8, 4, 1, 2, 2}));
+  std::set<double> margins;
+  for (const auto& test : bundle.hypotheses.at(1).at("tests"))
+    margins.insert(test.at("margin").get<double>());
+  EXPECT_EQ(margins, (std::set<double>{0.25, 0.4}));
+}
+
+TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), Json::array());
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", true}}));
+  EXPECT_TRUE(check.at("holds").get<bool>());
+}
+
+TEST(Preregistration, AChangedProtocolIsNamedLineByLine) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  auto text = protocol("task1.toml").text;
+  text.replace(text.find("duration_s = 30"), 15, "duration_s = 20");
+  const auto study = answered(bundle, study::parse_protocol(text, "task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_THAT(check.at("differences"), Contains("protocol task1, preregistered only: duration_s = 30"));
+  EXPECT_THAT(check.at("differences"), Contains("protocol task1, used only: duration_s = 20"));
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+  EXPECT_FALSE(check.at("holds").get<bool>());
+}
+
+TEST(Preregistration, AnotherMarginIsNamed) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  auto bundle = report::read_bundle(folder / "bundle");
+  bundle.plan.plan.margin_sickness = 0.5;
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+  EXPECT_THAT(check.at("differences").dump(), HasSubstr("H2, tests: preregistered"));
+}
+
+TEST(Preregistration, ATouchedFileTakesTheNameAway) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  auto plan = base::read_file(folder / "bundle/plan.toml", 1 << 20);
+  base::write_file_atomically(folder / "bundle/plan.toml", plan + "# \n");
+  fs::remove(folder / "bundle/PREREGISTRATION.txt");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  EXPECT_EQ(bundle.altered, (std::vector<std::string>{"PREREGISTRATION.txt", "plan.toml"}));
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", false}}));
+}
+
+TEST(Preregistration, AProtocolThatIsNotInItIsExploratory) {
+  const TemporaryFolder folder;
+  auto request = both_tasks();
+  request.protocols.pop_back();
+  report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", false}}));
+}
+
+TEST(Preregistration, IsNeverWrittenOverAndLeavesNothingHalfDone) {
+  const TemporaryFolder folder;
+  const auto hash = report::freeze_bundle(both_tasks(), folder / "bundle");
+  EXPECT_THAT([&] { report::freeze_bundle(both_tasks(), folder / "bundle"); },
+              ThrowsMessage<base::Error>(HasSubstr("never written over")));
+  EXPECT_EQ(report::read_bundle(folder / "bundle").sha256, hash);
+  auto request = both_tasks();
+  request.protocols.push_back("no_such_protocol.toml");
+  EXPECT_THROW(report::freeze_bundle(request, folder / "other"), base::Error);
+  request = both_tasks();
+  request.protocols[1] = request.protocols[0];
+  EXPECT_THROW(report::freeze_bundle(request, folder / "other"), base::Error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(Preregistration, AFolderThatIsNoBundleIsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+  base::write_file_atomically(folder / "MANIFEST.sha256", std::string(64, 'a') + "  ../secret\n");
+  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+  base::write_file_atomically(folder / "MANIFEST.sha256", "");
+  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+}
+
+TEST(LineDifference, FindsWhatOneOfTwoTextsHas) {
+  const auto found = report::line_difference("a\nb\nc\n", "a\nx\nc\ny");
+  EXPECT_EQ(found.only_first, (std::vector<std::string>{"b"}));
+  EXPECT_EQ(found.only_second, (std::vector<std::string>{"x", "y"}));
+  EXPECT_TRUE(report::line_difference("a\r\n\nb", "a\nb \n").only_first.empty());
+  EXPECT_EQ(report::line_difference("", "a").only_second.size(), 1u);
+}
+
+}  // namespace
+}  // namespace apps
