@@ -90,13 +90,13 @@ FamilyTest superiority(Contrast contrast, const AnalysisPlan& plan) {
 Result<EquivalenceTest> test_margins(Contrast& contrast, const AnalysisPlan& plan) {
   const auto both =
       equivalence_paired(contrast.pairs.x, contrast.pairs.y, {-contrast.margin, contrast.margin}, plan.alpha);
-  contrast.test.margin = contrast.margin;
   contrast.test.ci_confidence = 1 - 2 * plan.alpha;
   if (both) contrast.test.ci = both->ci;
   return both;
 }
 
 FamilyTest equivalence(Contrast contrast, const AnalysisPlan& plan) {
+  contrast.test.margin = contrast.margin;  // also of a test that is refused: it was fixed beforehand
   const auto t = two_sided_test(contrast, plan);
   if (!t) return {contrast.test};
   const auto both = test_margins(contrast, plan);
@@ -107,6 +107,7 @@ FamilyTest equivalence(Contrast contrast, const AnalysisPlan& plan) {
 }
 
 FamilyTest non_inferiority(Contrast contrast, const AnalysisPlan& plan) {
+  contrast.test.margin = contrast.margin;  // also of a test that is refused: it was fixed beforehand
   const auto t = two_sided_test(contrast, plan);
   if (!t) return {contrast.test};
   test_margins(contrast, plan);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "apps/stats/report/line_difference.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/results.hpp"
@@ -132,7 +134,8 @@ TEST(Preregistration, AnotherMarginIsNamed) {
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
   const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
   EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
-  EXPECT_THAT(check.at("differences").dump(), HasSubstr("H2, tests: preregistered"));
+  EXPECT_THAT(check.at("differences").dump(),
+              HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
 }
 
 TEST(Preregistration, ATouchedFileTakesTheNameAway) {

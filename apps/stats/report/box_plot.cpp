@@ -161,8 +161,10 @@ svg::Picture box_plot(const Field& task1, const Field& score) {
     for (const auto& b : group.brackets) picture.body += bracket(b, origin, top_bracket);
     const double last = x - step;
     picture.body += line({origin - step / 2 + 6, bottom + 46}, {last + step / 2 - 6, bottom + 46}, ink);
-    picture.body += text({(origin + last) / 2, bottom + 66}, "n* = " + group.n_star.words(),
-                         "text-anchor=\"middle\" font-size=\"14\"" + data_field(group.n_star));
+    picture.body += svg::marked_text(
+        {(origin + last) / 2, bottom + 66},
+        "n* = <tspan" + data_field(group.n_star) + ">" + svg::escaped(group.n_star.words()) + "</tspan>",
+        "text-anchor=\"middle\" font-size=\"14\"");
     origin = x + group_gap;
   }
   picture.body += line({left, axis.top}, {left, bottom}, ink);

@@ -74,6 +74,44 @@ bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, Json& d
   return false;
 }
 
+/// "H2, margin: preregistered 0.5, tested 0.4" for what differs between two parts; false when anything does.
+bool same_part(const std::string& name, const Json& planned, const Json& tested, Json& differences) {
+  bool same = true;
+  for (const auto& [key, value] : tested.items()) {
+    const Json before = planned.value(key, Json());
+    if (before == value) continue;
+    differences.push_back(name + ", " + key + ": preregistered " + before.dump() + ", tested " +
+                          value.dump());
+    same = false;
+  }
+  return same;
+}
+
+/// The same for a hypothesis, test by test.
+bool same_hypothesis(Json planned, Json tested, Json& differences) {
+  const std::string id = tested.at("id");
+  std::map<std::string, Json> before;
+  for (const Json& test : planned.at("tests")) before[test.at("label")] = test;
+  bool same = true;
+  for (const Json& test : tested.at("tests")) {
+    const std::string label = test.at("label"), name = id + ", " + label;
+    if (!before.contains(label)) {
+      differences.push_back(name + " was not preregistered");
+      same = false;
+    } else if (!same_part(name, before[label], test, differences)) {
+      same = false;
+    }
+    before.erase(label);
+  }
+  for (const auto& [label, test] : before) {
+    differences.push_back(id + ", " + label + " was preregistered and is not tested here");
+    same = false;
+  }
+  planned.erase("tests");
+  tested.erase("tests");
+  return same_part(id, planned, tested, differences) && same;
+}
+
 /// Whether the hypotheses of a task were tested as planned; adds what differs.
 bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& results, Json& differences) {
   bool same = true;
@@ -90,12 +128,7 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
       same = false;
       continue;
     }
-    for (const auto& [key, value] : now.items()) {
-      if (before->second.contains(key) && before->second[key] == value) continue;
-      differences.push_back(id + ", " + key + ": preregistered " + before->second.value(key, Json()).dump() +
-                            ", tested " + value.dump());
-      same = false;
-    }
+    same = same_hypothesis(before->second, now, differences) && same;
     planned.erase(before);
   }
   for (const auto& [id, hypothesis] : planned) {

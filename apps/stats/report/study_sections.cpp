@@ -82,10 +82,10 @@ std::string tests(const Field& root) {
   if (root["task2"].there()) out += "Preferences of Task 2 were tested by exact two-sided binomial tests. ";
   if (!root["hypotheses"].entries().empty()) {
     out += "Within each hypothesis Holm's correction held the family-wise error rate at " +
-           fixed(plan["alpha"], 2) + " (families of ";
+           fixed(plan["alpha"], 2) + " (tests in each family: ";
     bool first = true;
     for (const Field& h : root["hypotheses"].entries()) {
-      out += (first ? "" : ", ") + count(h["family"]) + " tests for " + words(h["id"]);
+      out += (first ? "" : ", ") + words(h["id"]) + " " + count(h["family"]);
       first = false;
     }
     out += "). ";

@@ -17,17 +17,31 @@ struct Verdict {
   const char* fill;
 };
 constexpr std::array<Verdict, 4> verdicts{{{"pass", "pass", "#0072b2"},
-                                           {"degraded", "degraded", "url(#timing-degraded)"},
-                                           {"fail", "fail", "url(#timing-fail)"},
+                                           {"degraded", "degraded", "degraded-hatch"},
+                                           {"fail", "fail", "fail-hatch"},
                                            {"unjudged", "not judged", "#ffffff"}}};
 
-constexpr const char* patterns =
-    "<pattern id=\"timing-degraded\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\"><rect "
-    "width=\"6\" "
-    "height=\"6\" fill=\"#e69f00\"/><path d=\"M-1,7 L7,-1\" stroke=\"#000000\" stroke-width=\"0.8\"/>"
-    "</pattern>\n<pattern id=\"timing-fail\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\"><rect "
-    "width=\"6\" height=\"6\" fill=\"#ffffff\"/><path d=\"M0,0 L6,6 M6,0 L0,6\" stroke=\"#a03d00\" "
-    "stroke-width=\"1.6\"/></pattern>\n";
+std::string pattern(const std::string& id, const std::string& ground, const std::string& strokes,
+                    const std::string& style) {
+  return "<pattern" + svg::attribute("id", id) +
+         " width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\">" +
+         svg::rectangle({0, 0}, {6, 6}, svg::attribute("fill", ground)) + svg::path(strokes, style) +
+         "</pattern>\n";
+}
+
+std::string patterns(const std::string& id) {
+  return pattern(id + "-degraded-hatch", svg::colour::orange, "M-1,7 L7,-1",
+                 "stroke=\"#000000\" stroke-width=\"0.8\"") +
+         pattern(id + "-fail-hatch", "#ffffff", "M0,0 L6,6 M6,0 L0,6",
+                 "stroke=\"#a03d00\" stroke-width=\"1.6\"");
+}
+
+/// A colour, or a pattern of the picture `id`.
+std::string fill_of(const Verdict& verdict, const std::string& id) {
+  const std::string fill = verdict.fill;
+  return svg::attribute("fill", fill.front() == '#' ? fill : "url(#" + id + "-" + fill + ")") +
+         " stroke=\"#000000\"";
+}
 
 /// Showings of a method at one n_*, over scenes.
 struct Line {
@@ -35,27 +49,25 @@ struct Line {
   double all() const { return n[0] + n[1] + n[2] + n[3]; }
 };
 
-std::string legend() {
+std::string legend(const std::string& id) {
   std::string out;
   double x = left;
   for (const auto& verdict : verdicts) {
-    out +=
-        svg::rectangle({x, 40}, {x + 20, 54}, svg::attribute("fill", verdict.fill) + " stroke=\"#000000\"") +
-        text({x + 26, 52}, verdict.words, "font-size=\"13\"");
+    out += svg::rectangle({x, 40}, {x + 20, 54}, fill_of(verdict, id)) +
+           text({x + 26, 52}, verdict.words, "font-size=\"13\"");
     x += 108;
   }
   return out;
 }
 
-std::string drawn(const std::string& name, const Line& line, double y) {
+std::string drawn(const std::string& id, const std::string& name, const Line& line, double y) {
   std::string out = text({left - 8, y + 13}, name, "class=\"axis\" text-anchor=\"end\" font-size=\"13\"");
   double before = 0;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     if (line.n[i] <= 0) continue;
     const double from = left + width * before / line.all();
     before += line.n[i];
-    out += svg::rectangle({from, y}, {left + width * before / line.all(), y + bar},
-                          svg::attribute("fill", verdicts[i].fill) + " stroke=\"#000000\"");
+    out += svg::rectangle({from, y}, {left + width * before / line.all(), y + bar}, fill_of(verdicts[i], id));
   }
   return out;
 }
@@ -77,10 +89,10 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
   picture.description =
       "A bar for each method and n*: the shares of its showings, over scenes, whose timing passed, was "
       "degraded, failed or could not be judged. The table below holds the counts of each cell.";
-  picture.definitions = patterns;
+  picture.definitions = patterns(picture.id);
   double y = top;
   for (const auto& name : order) {
-    picture.body += drawn(name, lines[name], y);
+    picture.body += drawn(picture.id, name, lines[name], y);
     y += row;
   }
   for (int i = 0; i <= 4; ++i) {
@@ -89,7 +101,7 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
                     text({x, y + 22}, svg::number(25 * i, 0) + " %",
                          "class=\"axis\" text-anchor=\"middle\" font-size=\"12\"");
   }
-  picture.body += text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") + legend();
+  picture.body += text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") + legend(picture.id);
   picture.height = y + 34;
   return picture;
 }
