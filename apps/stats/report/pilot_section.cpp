@@ -50,9 +50,27 @@ std::string estimates(const Field& pilot) {
                  words(e["label"]) + ", level " + fixed(e["level"], 1) +
                      (e["main"].yes() ? " <strong>(for the solver)</strong>" : ""),
                  e);
+  const bool listed = !pilot["estimators"].entries().empty();  // with the harmonic mean
   for (const char* mean : {"harmonic", "arithmetic"}) {
+    if (listed && std::string(mean) == "harmonic") continue;
     for (const Field& e : pilot["means"][mean].entries())
-      estimate_row(table, "contour of means, level " + fixed(e["level"], 1) + ", " + mean + " mean", e);
+      estimate_row(table,
+                   "contour of means with the " + std::string(mean) + " mean, level " + fixed(e["level"], 1),
+                   e);
+  }
+  return table.empty() ? "" : table.html();
+}
+
+std::string bands(const Field& pilot) {
+  Table table("The curve \xCE\xBC(\xCE\xB4) with its bands, frames/s",
+              {"\xCE\xB4", "\xCE\xBC", "CI at this \xCE\xB4", "band over all \xCE\xB4"});
+  std::string level;
+  for (const Field& point : pilot["bands"].entries()) {
+    const std::string here = svg::number(point["level"].number(), 4);
+    if (here != level) table.group("Level " + fixed(point["level"], 1));
+    level = here;
+    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), interval(point["ci"], 2),
+               interval(point["simultaneous_ci"], 2)});
   }
   return table.empty() ? "" : table.html();
 }
@@ -77,7 +95,8 @@ svg::Picture pilot_map(const Field& pilot) {
   for (const Field& e : pilot["means"]["harmonic"].entries()) {
     const double level = e["level"].number();
     map.levels.push_back(level);
-    if (level != pilot["level"].number()) continue;
+    // The points are the contour's: with other estimators beside it they are not what was fitted.
+    if (level != pilot["level"].number() || !pilot["estimators"].entries().empty()) continue;
     for (const Field& point : e["contour"]["points_delta_mu"].entries())
       map.points.push_back({point[0].number(), point[1].number()});
   }
@@ -113,11 +132,16 @@ std::string pilot_section(const Field& root) {
                "the fitted curve, as the paper's Fig.&nbsp;6.");
   body += estimates(pilot);
   if (pilot["lack_of_fit"].there())
-    body += paragraph("Lack of fit of the straight form: <i>p</i> " + p(pilot["lack_of_fit"]["p"]) + ". " +
-                      words(pilot["lack_of_fit"]["text"]));
-  body += paragraph(words(pilot["estimator"]) + ". " + words(pilot["interval"]["method"]) + " (" +
-                    count(pilot["interval"]["resamples"]) + " resamples, seed " +
-                    count(pilot["interval"]["seed"]) + "). " + words(pilot["means"]["note"]));
+    body +=
+        paragraph("Lack of fit: " +
+                  (pilot["lack_of_fit"]["text"].words().empty() ? "<i>p</i> " + p(pilot["lack_of_fit"]["p"])
+                                                                : words(pilot["lack_of_fit"]["text"])) +
+                  ".");
+  body += bands(pilot);
+  const Field resampling = pilot["bootstrap"].there() ? pilot["bootstrap"] : pilot["interval"];
+  body += paragraph(words(pilot["estimator"]) + ". " + words(pilot["interval"]["method"]) +
+                    " (bootstrap: " + count(resampling["resamples"]) + " resamples, seed " +
+                    count(resampling["seed"]) + "). " + words(pilot["means"]["note"]));
   return section("pilot", "Pilot: tolerance of frame rates", body + cells(pilot));
 }
 
