@@ -1,6 +1,6 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/stats/estimates_json.hpp"
 #include "apps/stats/pilot_fit.hpp"
 #include "stats/base/file.hpp"
 #include "stats/gsl_errors.hpp"
@@ -10,65 +10,25 @@ namespace apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using stats::PilotEstimate;
 
 constexpr const char* estimator =
-    "contour of mean scores per setting, bilinear interpolation, sampled at every whole frame/s of the "
-    "standard "
-    "deviation; least squares of mu = a exp(b delta)";
+    "least squares of all ratings (a participant's mean of each setting): E[score] = level + k u + m u delta "
+    "+ "
+    "q u^2, u = log mu - log a - b delta, at realised mu and delta";
 constexpr const char* interval_method =
-    "expanded percentile bootstrap (Hesterberg 2015), whole participants resampled";
+    "jackknife over participants with Student's t, for a on the log scale";
 constexpr const char* mean_caveat =
     "The paper does not say which mean its 23.68 and 0.02 refer to; settings drawn with a given arithmetic "
     "mean run "
     "at a lower harmonic one. The solver's tau uses the harmonic mean.";
 
-Json contour_json(const stats::Contour& contour) {
-  Json points = Json::array();
-  for (const auto& point : contour.points) points.push_back({point.delta, point.mu});
-  return {{"lines", contour.lines},
-          {"crossed", contour.crossed},
-          {"crossed_more_than_once", contour.crossed_twice},
-          {"above_grid", contour.above_grid},
-          {"below_grid", contour.below_grid},
-          {"on_node", contour.on_node},
-          {"points_delta_mu", points}};
-}
-
-/// a, b and their spread; null where undefined.
-void add_estimate(Json& json, const PilotEstimate& estimate) {
-  json["converged"] = static_cast<bool>(estimate.fit);
-  json["a"] = estimate.fit ? Json(estimate.fit->a) : Json();
-  json["b"] = estimate.fit ? Json(estimate.fit->b) : Json();
-  json["a_se"] = estimate.spread ? Json(estimate.spread->a_se) : Json();
-  json["b_se"] = estimate.spread ? Json(estimate.spread->b_se) : Json();
-  json["a_ci"] = estimate.spread ? Json(estimate.spread->a_ci) : Json();
-  json["b_ci"] = estimate.spread ? Json(estimate.spread->b_ci) : Json();
-}
-
-Json estimate_json(const PilotEstimate& estimate) {
-  Json json{{"status", estimate.fit && estimate.spread ? "ok" : "failed"},
-            {"reason", estimate.spread.reason()}};
-  add_estimate(json, estimate);
-  if (estimate.fit) {
-    Json fit{{"rss", estimate.fit->rss}, {"df", estimate.fit->df()}, {"points", estimate.fit->n}};
-    if (estimate.fit->covariance) {
-      fit["a_se"] = std::sqrt(estimate.fit->covariance->aa);
-      fit["b_se"] = std::sqrt(estimate.fit->covariance->bb);
-      fit["note"] = "of the curve through the contour's points alone; says nothing of the participants";
-    }
-    json["least_squares"] = fit;
-  }
-  if (estimate.spread) json["resamples_without_fit"] = estimate.spread->failed;
-  json["contour"] = contour_json(estimate.contour);
-  return json;
-}
-
-Json levels_json(const std::map<double, PilotEstimate>& estimates) {
+/// The paper's estimate at each level, the direct one with this mean inside.
+Json levels_json(const std::map<double, LevelFit>& estimates) {
   Json list = Json::array();
   for (const auto& [level, estimate] : estimates) {
-    Json json{{"level", level}};
-    json.update(estimate_json(estimate));
+    Json json{{"level", level}, {"estimator", "contour"}};
+    json.update(contour_estimate_json(estimate.contour));
+    json["direct"] = direct_json(estimate.direct);
     list.push_back(json);
   }
   return list;
@@ -115,7 +75,7 @@ void add_provenance(Json& json) {
 
 Json failed_fit_json(double level, const std::string& reason) {
   Json json{{"format", 1}, {"status", "failed"}, {"reason", reason}, {"level", level}};
-  add_estimate(json, {});
+  add_estimate(json, {stats::Refusal{reason}, stats::Refusal{reason}});
   json["n_participants"] = 0;
   json["n_ratings"] = 0;
   json["flags"] = Json::array();
@@ -136,11 +96,15 @@ Json fit_json(const PilotFit& fit) {
   json["flags"] = Json::array();
   for (const auto& flag : fit.flags) json["flags"].push_back({{"code", flag.code}, {"text", flag.text}});
   json["estimator"] = estimator;
-  json["interval"] = {{"method", interval_method},
-                      {"confidence", fit.bootstrap.confidence},
-                      {"resamples", fit.bootstrap.resamples},
-                      {"seed", fit.bootstrap.seed}};
-  json["level5"] = estimate_json(fit.harmonic.at(5.0));
+  json["interval"] = {{"method", interval_method}, {"confidence", fit.bootstrap.confidence}};
+  json["bootstrap"] = {{"resamples", fit.bootstrap.resamples}, {"seed", fit.bootstrap.seed}};
+  json["scale_min"] = fit.data.scale_min;
+  json["scale_max"] = fit.data.scale_max;
+  if (fit.ok()) json["relative_half_width"] = fit.relative_half_width();
+  json["level5"] = direct_json(fit.harmonic.at(5.0).direct);
+  json["estimators"] = estimators_json(fit);
+  json["lack_of_fit"] = lack_of_fit_json(fit.chosen().direct);
+  json["bands"] = bands_json(fit);
   json["means"] = {{"note", mean_caveat},
                    {"harmonic", levels_json(fit.harmonic)},
                    {"arithmetic", levels_json(fit.arithmetic)}};

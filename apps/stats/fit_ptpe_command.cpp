@@ -1,6 +1,7 @@
 /// vip-stats fit-ptpe: from the ratings of a pilot to the solver's file.
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -10,7 +11,9 @@
 #include <optional>
 #include <string>
 
+#include "apps/stats/calibration_history.hpp"
 #include "apps/stats/commands.hpp"
+#include "apps/stats/estimates_json.hpp"
 #include "apps/stats/heat_map.hpp"
 #include "apps/stats/pilot_data.hpp"
 #include "apps/stats/pilot_fit.hpp"
@@ -26,34 +29,65 @@ namespace {
 struct FitCommand {
   std::string database, out, json, svg, truth, exclude = "fail";
   double level = 4;
+  double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
+  bool force = false;
   PilotSelection selection;
   stats::BootstrapOptions bootstrap;
+
+  bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
 };
 
-void print_estimate(const char* name, const stats::PilotEstimate& estimate) {
-  if (!estimate.fit) {
-    std::printf("  %-30s %s\n", name, estimate.fit.reason().c_str());
+/// One line: a, b and their intervals, or the reason why there are none.
+void print_estimate(double level, const char* name, const std::string& reason, double a, double b,
+                    const std::array<double, 2>* a_ci, const std::array<double, 2>* b_ci) {
+  std::printf("  level %-4.3g %-26s ", level, name);
+  if (!reason.empty() && !a_ci) {
+    std::printf("%s\n", reason.c_str());
     return;
   }
-  std::printf("  %-30s a = %.2f frames/s", name, estimate.fit->a);
-  if (estimate.spread) std::printf(" [%.2f, %.2f]", estimate.spread->a_ci[0], estimate.spread->a_ci[1]);
-  std::printf(", b = %.4f s/frame", estimate.fit->b);
-  if (estimate.spread) std::printf(" [%.4f, %.4f]", estimate.spread->b_ci[0], estimate.spread->b_ci[1]);
+  std::printf("a = %.2f [%.2f, %.2f] frames/s, b = %.4f [%.4f, %.4f] s/frame\n", a, (*a_ci)[0], (*a_ci)[1], b,
+              (*b_ci)[0], (*b_ci)[1]);
+}
+
+void print_estimate(double level, const char* name, const stats::Result<stats::CurveSpread>& spread) {
+  if (!spread) return print_estimate(level, name, spread.reason(), 0, 0, nullptr, nullptr);
+  print_estimate(level, name, "", spread->curve.a(), spread->curve.b, &spread->a_ci, &spread->b_ci);
+}
+
+void print_contour(double level, const char* name, const stats::PilotEstimate& contour) {
+  if (!contour.spread) return print_estimate(level, name, contour.spread.reason(), 0, 0, nullptr, nullptr);
+  print_estimate(level, name, "", contour.fit->a, contour.fit->b, &contour.spread->a_ci,
+                 &contour.spread->b_ci);
+}
+
+/// The curve at the deviations shown, and whether the straight form would do.
+void print_curve(const PilotFit& fit) {
+  const auto& direct = fit.chosen().direct;
+  if (!direct.jackknife) return;
+  std::printf("  the direct curve at level %.3g:", fit.level);
+  for (const double delta : fit.deltas) {
+    const auto point = direct.jackknife->band(delta);
+    std::printf("%s mu(%g) = %.1f [%.1f, %.1f]", delta == fit.deltas.front() ? "" : ",", delta, point.mu,
+                point.pointwise[0], point.pointwise[1]);
+  }
   std::printf("\n");
+  const auto test = lack_of_fit_json(direct);
+  if (test.contains("text")) std::printf("  lack of fit: %s\n", test["text"].get<std::string>().c_str());
 }
 
 void print_fit(const PilotFit& fit) {
   std::printf(
       "%d participants, %zu ratings of %zu settings\nmu = a exp(b delta) with %.0f %% intervals over "
-      "participants:\n",
+      "participants; the solver gets the direct estimate:\n",
       fit.participants, fit.data.ratings.size(), fit.settings, 100 * fit.bootstrap.confidence);
   for (const auto& [level, estimate] : fit.harmonic) {
-    char name[48];
-    std::snprintf(name, sizeof name, "level %.3g, harmonic mean", level);
-    print_estimate(name, estimate);
-    std::snprintf(name, sizeof name, "level %.3g, arithmetic mean", level);
-    print_estimate(name, fit.arithmetic.at(level));
+    print_estimate(level, "direct", estimate.direct.jackknife);
+    print_contour(level, "contour (the paper's)", estimate.contour);
+    print_estimate(level, "ordinal mixed", estimate.ordinal.jackknife);
+    print_estimate(level, "direct, arithmetic mean", fit.arithmetic.at(level).direct.jackknife);
+    print_contour(level, "contour, arithmetic mean", fit.arithmetic.at(level).contour);
   }
+  print_curve(fit);
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }
 
@@ -61,8 +95,11 @@ void print_fit(const PilotFit& fit) {
 void check_outputs(const FitCommand& command) {
   std::map<std::filesystem::path, std::string> taken{
       {std::filesystem::weakly_canonical(command.database), "the database"}};
-  for (const auto& [option, path] : std::map<std::string, std::string>{
-           {"--out", command.out}, {"--json", command.json}, {"--svg", command.svg}}) {
+  const auto history = command.out.empty() ? "" : history_of(command.out).string();
+  for (const auto& [option, path] : std::map<std::string, std::string>{{"--out", command.out},
+                                                                       {"the record of --out", history},
+                                                                       {"--json", command.json},
+                                                                       {"--svg", command.svg}}) {
     if (path.empty()) continue;
     const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
     if (!added)
@@ -84,12 +121,53 @@ void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
 /// fit.json, and the same for people; with a truth also whether it was recovered.
 void report(const FitCommand& command, const PilotFit& fit, const std::optional<stats::PtpeModel>& truth) {
   auto json = fit_json(fit);
+  json["solver_file"] = {{"max_relative_half_width", command.max_width},
+                         {"too_wide", fit.ok() && command.too_wide(fit)},
+                         {"forced", command.force}};
   std::optional<Recovery> recovery;
   if (truth && fit.ok()) recovery = check_recovery(fit, *truth);
   if (recovery) json["truth"] = recovery_json(*recovery);
   write_json(command, json);
   print_fit(fit);
   if (recovery) std::printf("%s", format_recovery(fit, *recovery).c_str());
+}
+
+/// A curve that the participants leave this open would only pretend to be a calibration.
+void refuse_too_wide(const FitCommand& command, const PilotFit& fit) {
+  if (!command.too_wide(fit) || command.force) return;
+  char problem[160];
+  std::snprintf(problem, sizeof problem,
+                "the interval is too wide for a calibration: mu(delta) is open by up to +-%.0f %%, the limit "
+                "is +-%.0f %%",
+                100 * fit.relative_half_width(), 100 * command.max_width);
+  throw base::Error(command.database, problem,
+                    "collect more participants, or set --max-width, or --force; no configuration and no "
+                    "figure were written");
+}
+
+/// The record first: a calibration that is in force is always in it.
+void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
+  const auto text = sim::format_ptpe_file(ptpe_file(fit));
+  const auto main = fit.main();
+  append_calibration(command.out, text,
+                     {{"database", std::filesystem::path(command.database).filename().string()},
+                      {"protocol", fit.data.protocol_name},
+                      {"protocol_sha256", fit.data.protocol_sha256},
+                      {"estimator", "direct"},
+                      {"level", fit.level},
+                      {"a", main.fit->a},
+                      {"b", main.fit->b},
+                      {"a_ci", main.spread->a_ci},
+                      {"b_ci", main.spread->b_ci},
+                      {"n_participants", fit.participants},
+                      {"n_simulated", fit.data.simulated_participants},
+                      {"test_data", fit.data.test_data},
+                      {"exclude", command.exclude},
+                      {"relative_half_width", fit.relative_half_width()},
+                      {"max_relative_half_width", command.max_width},
+                      {"forced", command.force && command.too_wide(fit)},
+                      {"version", base::version()}});
+  base::write_file_atomically(command.out, text);
 }
 
 void fit_ptpe(FitCommand& command) {
@@ -107,10 +185,9 @@ void fit_ptpe(FitCommand& command) {
   const auto fit = fit_pilot(*data, command.level, command.bootstrap);
   report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fit.reason);
+  if (!command.out.empty()) refuse_too_wide(command, fit);
   if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
-  if (!command.out.empty()) {
-    base::write_file_atomically(command.out, sim::format_ptpe_file(ptpe_file(fit)));
-  }
+  if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
 }  // namespace
@@ -121,7 +198,14 @@ void add_fit_ptpe_command(CLI::App& app) {
   auto* positional = fit->add_option("database", command->database, "The study's database");
   fit->add_option("--db", command->database, "The same as an option")->excludes(positional);
   fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
-  fit->add_option("--out", command->out, "File for the solver (TOML), written on success only");
+  fit->add_option("--out", command->out,
+                  "File for the solver (TOML), written on success only; every one is kept in "
+                  "FILE.history.jsonl");
+  fit->add_option("--max-width", command->max_width,
+                  "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  fit->add_flag("--force", command->force, "Write the solver's file although the curve is wider");
   fit->add_option("--json", command->json,
                   "File for every number of the fit, written whenever the database can be read");
   fit->add_option("--svg", command->svg,

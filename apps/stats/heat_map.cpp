@@ -261,11 +261,11 @@ HeatMap heat_map_of(const PilotFit& fit) {
   map.scale_min = fit.data.scale_min;
   map.scale_max = fit.data.scale_max;
   for (const auto& [level, estimate] : fit.harmonic) map.levels.push_back(level);
-  map.points = fit.main().contour.points;
-  map.a = fit.main().fit->a;
-  map.b = fit.main().fit->b;
-  map.a_ci = fit.main().spread->a_ci;
-  map.b_ci = fit.main().spread->b_ci;
+  const auto main = fit.main();
+  map.a = main.fit->a;
+  map.b = main.fit->b;
+  map.a_ci = main.spread->a_ci;
+  map.b_ci = main.spread->b_ci;
   map.confidence = fit.bootstrap.confidence;
   return map;
 }

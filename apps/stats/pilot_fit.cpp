@@ -73,16 +73,36 @@ void flag_data(std::vector<FitFlag>& flags, const PilotData& data, const stats::
   }
 }
 
-void flag_spread(std::vector<FitFlag>& flags, const PilotEstimate& main) {
-  if (!main.spread) return;
-  if (main.spread->failed > 0) {
+void flag_resamples(std::vector<FitFlag>& flags, const PilotEstimate& contour) {
+  if (!contour.spread) return;
+  if (contour.spread->failed > 0) {
+    flags.push_back({"resamples_without_fit",
+                     counted(contour.spread->failed, "resample") + " without a contour left out"});
+  }
+  if (contour.spread->extremes) {
     flags.push_back(
-        {"resamples_without_fit", counted(main.spread->failed, "resample") + " without a fit left out"});
+        {"few_participants", "the contour's intervals end at the outermost resamples and are too narrow"});
   }
-  if (main.spread->extremes) {
-    flags.push_back({"few_participants", "the intervals end at the outermost resamples and are too narrow"});
+}
+
+std::string list(const std::vector<double>& numbers) {
+  std::string out;
+  for (const double number : numbers) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%s%g", out.empty() ? "" : ", ", number);
+    out += text;
   }
-  if (main.spread->b_ci[0] <= 0 && main.spread->b_ci[1] >= 0) {
+  return out;
+}
+
+void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direct) {
+  if (!direct.out_of_reach.empty()) {
+    flags.push_back({"out_of_reach", "at standard deviations of " + list(direct.out_of_reach) +
+                                         " the curve lies outside the frame rates shown; those settings are "
+                                         "left out and the curve is extrapolated there"});
+  }
+  if (!direct.jackknife) return;
+  if (direct.jackknife->b_ci[0] <= 0 && direct.jackknife->b_ci[1] >= 0) {
     flags.push_back({"b_holds_zero", "the interval of b holds 0: no effect of the fluctuation is shown"});
   }
 }
@@ -96,7 +116,7 @@ std::string unusable(const PilotFit& fit, const PilotData& data, const stats::Pi
            std::to_string(static_cast<int>(data.scale_max));
   }
   if (table.all_equal()) return "all ratings are equal: there is no contour";
-  const auto& main = fit.main();
+  const auto main = fit.main();
   if (!main.fit) return main.fit.reason();
   if (!main.spread) return main.spread.reason();
   if (!(main.fit->a >= 1e-3 && main.fit->a <= 1e4 && std::abs(main.fit->b) <= 1)) {
@@ -106,7 +126,30 @@ std::string unusable(const PilotFit& fit, const PilotData& data, const stats::Pi
   return "";
 }
 
+LevelFit fit_level(const PilotData& data, const stats::PilotTable& table, PilotMean mean, double level,
+                   const stats::BootstrapOptions& options) {
+  LevelFit fit;
+  fit.direct = stats::estimate_direct(table.observations(mean), level, options);
+  fit.contour = stats::estimate_pilot(table, mean, level, options);
+  if (mean == PilotMean::Harmonic)
+    fit.ordinal = stats::estimate_ordinal_pilot(data.ratings, mean, level, options.confidence);
+  return fit;
+}
+
 }  // namespace
+
+MainEstimate PilotFit::main() const {
+  const auto& direct = chosen().direct;
+  if (!direct.fit) return {stats::Refusal{direct.fit.reason()}, stats::Refusal{direct.fit.reason()}};
+  const MainFit fit{direct.fit->curve.a(), direct.fit->curve.b};
+  if (!direct.jackknife) return {fit, stats::Refusal{direct.jackknife.reason()}};
+  const auto& spread = *direct.jackknife;
+  return {fit, MainSpread{spread.a_ci, spread.b_ci, spread.a_se(), spread.b_se()}};
+}
+
+double PilotFit::relative_half_width() const {
+  return chosen().direct.jackknife->largest_relative_half_width(deltas);
+}
 
 PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& bootstrap) {
   const stats::PilotTable table(data.ratings);
@@ -116,30 +159,33 @@ PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& 
   fit.participants = table.participants();
   fit.settings = table.settings();
   fit.grid = table.grid(PilotMean::Harmonic);
+  fit.deltas = fit.grid.delta;
   const std::set<double> levels{4.0, 5.0, level};
   Progress progress("resampling participants",
-                    2 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
+                    4 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
   std::size_t done = 0;
   auto options = bootstrap;
   options.progress = [&](int) { progress.update(++done); };
   for (const double at : levels) {
-    fit.harmonic[at] = stats::estimate_pilot(table, PilotMean::Harmonic, at, options);
-    fit.arithmetic[at] = stats::estimate_pilot(table, PilotMean::Arithmetic, at, options);
+    fit.harmonic[at] = fit_level(data, table, PilotMean::Harmonic, at, options);
+    fit.arithmetic[at] = fit_level(data, table, PilotMean::Arithmetic, at, options);
   }
   fit.reason = unusable(fit, data, table);
   flag_data(fit.flags, data, table);
-  flag_contour(fit.flags, fit.main().contour);
-  flag_spread(fit.flags, fit.main());
+  flag_direct(fit.flags, fit.chosen().direct);
+  flag_contour(fit.flags, fit.chosen().contour.contour);
+  flag_resamples(fit.flags, fit.chosen().contour);
   fit.data = std::move(data);
   return fit;
 }
 
 sim::PtpeFile ptpe_file(const PilotFit& fit) {
   sim::PtpeFile file;
-  file.model = {fit.main().fit->a, fit.main().fit->b};
+  const auto main = fit.main();
+  file.model = {main.fit->a, main.fit->b};
   file.level = fit.level;
-  file.a_ci = fit.main().spread->a_ci;
-  file.b_ci = fit.main().spread->b_ci;
+  file.a_ci = main.spread->a_ci;
+  file.b_ci = main.spread->b_ci;
   file.n_participants = fit.participants;
   file.n_simulated = fit.data.simulated_participants;
   file.test_data = fit.data.test_data;

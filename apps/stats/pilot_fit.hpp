@@ -1,6 +1,7 @@
 #pragma once
 /// vip-stats fit-ptpe: everything between the ratings and the files.
 
+#include <array>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,6 +9,8 @@
 
 #include "apps/stats/pilot_data.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/ptpe/direct_fit.hpp"
+#include "stats/ptpe/ordinal_pilot.hpp"
 #include "stats/ptpe/pilot.hpp"
 
 namespace apps {
@@ -18,22 +21,47 @@ struct FitFlag {
   std::string text;
 };
 
+/// All estimates at one level, with one of the realised means as predictor.
+struct LevelFit {
+  stats::DirectEstimate direct;  ///< the main one
+  stats::PilotEstimate contour;  ///< the paper's
+  stats::OrdinalPilotEstimate ordinal;
+};
+
+struct MainFit {
+  double a = 0, b = 0;
+};
+struct MainSpread {
+  std::array<double, 2> a_ci{}, b_ci{};
+  double a_se = 0, b_se = 0;
+};
+/// What goes to the solver.
+struct MainEstimate {
+  stats::Result<MainFit> fit;
+  stats::Result<MainSpread> spread;
+};
+
 /// The estimates at the level wished and at 4.0 and 5.0, with the harmonic and with the arithmetic realised
-/// mean.
+/// mean. The ordinal one is made with the harmonic mean only.
 struct PilotFit {
   PilotData data;
   double level = 4;
   stats::BootstrapOptions bootstrap;
   int participants = 0;
   std::size_t settings = 0;
-  stats::ScoreGrid grid;                                        ///< harmonic
-  std::map<double, stats::PilotEstimate> harmonic, arithmetic;  ///< by level
+  stats::ScoreGrid grid;                            ///< harmonic
+  std::vector<double> deltas;                       ///< nominal, ascending
+  std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
   std::vector<FitFlag> flags;
   std::string reason;  ///< why there is no usable fit; empty = there is one
 
   bool ok() const { return reason.empty(); }
-  /// The one that goes to the solver: level wished, harmonic mean, as the solver's own mu.
-  const stats::PilotEstimate& main() const { return harmonic.at(level); }
+  const LevelFit& chosen() const { return harmonic.at(level); }
+  /// The direct estimate with its jackknife: level wished, harmonic mean, as the solver's own mu.
+  MainEstimate main() const;
+  /// Largest half width of the curve's 95 % band over the deltas shown, as a share of mu(delta). The fit is
+  /// ok().
+  double relative_half_width() const;
 };
 
 /// `level` is finite; outside the rating scale there is no fit.

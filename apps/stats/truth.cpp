@@ -29,12 +29,14 @@ stats::PtpeModel parse_truth(const std::string& observer) {
 }
 
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth) {
-  const auto& spread = *fit.main().spread;
+  const auto main = fit.main();
+  const auto& spread = *main.spread;
   return {truth, holds(spread.a_ci, truth.a), holds(spread.b_ci, truth.b)};
 }
 
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery) {
-  const auto& spread = *fit.main().spread;
+  const auto main = fit.main();
+  const auto& spread = *main.spread;
   char head[80];
   std::snprintf(head, sizeof head, "against the observer's truth (level %.3g, harmonic mean):\n", fit.level);
   return head + line("a", spread.a_ci, recovery.a_held, recovery.truth.a) +
