@@ -39,6 +39,16 @@ struct ExponentialFit {
 Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> weights = {});
 
+/// Profile-likelihood intervals of a and b (Bates and Watts 1988, section 6.1): where the least sum of
+/// squares with the parameter held there exceeds the minimum by t^2 rss / df. An end that is never reached is
+/// infinite.
+struct ExponentialProfile {
+  std::array<double, 2> a{}, b{};
+};
+/// Of the same pairs as the fit. Refused as fit_exponential; with two pairs; and with no residuals.
+Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::span<const double> y,
+                                               std::span<const double> weights = {}, double level = 0.95);
+
 /// estimate -+ t(1 - (1-level)/2, df) se, df >= 1.
 std::array<double, 2> wald_interval(double estimate, double se, int df, double level = 0.95);
 

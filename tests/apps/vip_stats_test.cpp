@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "apps/stats/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
@@ -96,6 +99,91 @@ TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
   EXPECT_EQ(file.protocol_sha256, study::test::pilot().sha256);
   EXPECT_TRUE(study::test::bytes_of(folder / "heat.svg").starts_with("<?xml"));
   EXPECT_EQ(study::test::bytes_of(folder / "study.db"), before);
+}
+
+TEST(VipStatsE2e, ReportsAllThreeEstimators) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
+  const auto json_path = (folder / "fit.json").string();
+  const auto outcome = vip_stats("fit-ptpe " + (folder / "study.db").string() + " --json " + json_path);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  const auto json = read_json(json_path);
+  std::map<std::string, int> levels;
+  for (const auto& entry : json.at("estimators")) {
+    ++levels[entry.at("code")];
+    if (entry.at("main") == true && entry.at("level") == 4) {
+      EXPECT_EQ(entry.at("a"), json.at("a"));
+      EXPECT_EQ(entry.at("b_ci"), json.at("b_ci"));
+    }
+  }
+  EXPECT_EQ(levels, (std::map<std::string, int>{{"contour", 2}, {"direct", 2}, {"ordinal", 2}}));
+  EXPECT_EQ(json.at("bands").size(), 2u * 21);
+  EXPECT_EQ(json.at("bands")[0].at("ci"), json.at("a_ci"));
+  EXPECT_TRUE(json.at("lack_of_fit").at("p").is_number());
+  for (const char* words : {"direct", "contour (the paper's)", "ordinal mixed", "lack of fit", "mu(20)"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words << outcome.out;
+}
+
+TEST(VipStatsE2e, RefusesATooWideIntervalUnlessForced) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  const std::string fit = "fit-ptpe " + at("study.db") + " --resamples 100 --max-width 0.01 --out " +
+                          at("fitted.toml") + " --json " + at("fit.json") + " --svg " + at("heat.svg");
+  const auto refused = vip_stats(fit);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.out.find("too wide"), std::string::npos) << refused.out;
+  EXPECT_NE(refused.out.find("--force"), std::string::npos) << refused.out;
+  for (const char* name : {"fitted.toml", "fitted.toml.history.jsonl", "heat.svg"})
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(read_json(folder / "fit.json").at("solver_file").at("too_wide"), true);
+  ASSERT_EQ(vip_stats(fit + " --force").exit_code, 0);
+  EXPECT_NO_THROW(sim::read_ptpe_file(folder / "fitted.toml"));
+  const auto record = nlohmann::json::parse(base::read_file(folder / "fitted.toml.history.jsonl", 1 << 20));
+  EXPECT_EQ(record.at("forced"), true);
+}
+
+std::vector<nlohmann::json> read_lines(const std::filesystem::path& path) {
+  std::istringstream text(base::read_file(path, 1 << 20));
+  std::vector<nlohmann::json> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
+}
+
+TEST(VipStatsE2e, KeepsEveryCalibration) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
+  const auto toml = folder / "fitted.toml", history = folder / "fitted.toml.history.jsonl";
+  const auto fit = [&](const std::string& level) {
+    return vip_stats("fit-ptpe " + (folder / "study.db").string() + " --resamples 100 --force --level " +
+                     level + " --out " + toml.string());
+  };
+  ASSERT_EQ(fit("4").exit_code, 0);
+  const auto first = study::test::bytes_of(toml);
+  ASSERT_EQ(fit("4.5").exit_code, 0);
+  auto lines = read_lines(history);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].at("level"), 4);
+  EXPECT_EQ(lines[0].at("file"), first);
+  EXPECT_EQ(lines[1].at("file"), study::test::bytes_of(toml));
+  EXPECT_EQ(lines[1].at("a").get<double>(), sim::read_ptpe_file(toml).model.a);
+  // A file changed by hand is taken down before it is replaced.
+  base::write_file_atomically(toml, first + "# by hand\n");
+  ASSERT_EQ(fit("4").exit_code, 0);
+  lines = read_lines(history);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[2].at("found"), true);
+  EXPECT_EQ(lines[2].at("file"), first + "# by hand\n");
+  // A record that was tampered with stops everything.
+  const auto newest = study::test::bytes_of(toml);
+  auto text = study::test::bytes_of(history);
+  text[text.find("pilot")] = 'P';
+  base::write_file_atomically(history, text);
+  const auto refused = fit("4.5");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.out.find("history.jsonl:2"), std::string::npos) << refused.out;
+  EXPECT_EQ(study::test::bytes_of(toml), newest);
+  EXPECT_EQ(study::test::bytes_of(history), text);
 }
 
 TEST(VipStatsE2e, SaysWhetherTheIntervalsHoldTheObserversTruth) {
