@@ -33,12 +33,15 @@ struct TaskAnswer {
   std::optional<int> score;
 };
 
+/// TaskTrial::excluded of a trial that the protocol's policy left out after an interruption.
+inline constexpr const char* interrupted_reason = "interrupted";
+
 struct TaskTrial {
   int position = 0;   ///< 0-based order among the session's trials
   std::string kind;   ///< "stimulus", "practice" or "repeat"
   TaskShowing first;  ///< first or only one
   std::optional<TaskShowing> second;
-  std::optional<std::string> excluded;  ///< the experimenter's reason
+  std::optional<std::string> excluded;  ///< the experimenter's reason, or interrupted_reason
   std::vector<TaskAnswer> answers;      ///< on scales and choices, in the order of the page
   /// Of a repeat: position of the trial with the same stimuli in the same order.
   std::optional<int> repeats;

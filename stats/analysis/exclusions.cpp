@@ -130,6 +130,9 @@ void exclude_trials(std::vector<Exclusion>& out, const Visit& visit, const Exclu
       if (!trial->by_experimenter.empty()) {
         exclusion.rule = "experimenter";
         exclusion.reason = trial->by_experimenter;
+      } else if (trial->interrupted) {
+        exclusion.rule = "interruption";
+        exclusion.reason = "interrupted, and the protocol shows no trial again";
       } else if (fails_timing(*trial, rules.timing)) {
         exclusion.rule = "timing";
         exclusion.reason = std::string("timing verdict ") +

@@ -22,6 +22,7 @@ struct TrialRecord {
   int position = 0;                            ///< 0-based
   TrialTiming timing = TrialTiming::Unjudged;  ///< the worse of a pair's two
   std::string timing_reason;                   ///< why it is not a pass
+  bool interrupted = false;                    ///< left out by the protocol's policy after an interruption
   std::string by_experimenter;                 ///< the reason given; empty: not excluded by hand
   double answer = unanswered;                  ///< main rating, or 1 / 2 for the interval chosen
   int answers = 0;                             ///< questions answered about it
@@ -39,7 +40,8 @@ struct Exclusion {
   std::string participant;
   int visit = 1;
   int position = -1;   ///< of the trial; -1: the whole visit
-  std::string rule;    ///< "experimenter", "timing", "catch", "repeat", "straight_lining" or "incomplete"
+  std::string rule;    ///< "experimenter", "interruption", "timing", "catch", "repeat", "straight_lining" or
+                       ///< "incomplete"
   std::string reason;  ///< with the figures that made it so
   int answers = 0;     ///< answers that no longer count
 

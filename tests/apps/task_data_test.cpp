@@ -103,12 +103,16 @@ TEST(TaskData, FailedTimingAndTheExperimenterTakeTrialsOut) {
   protocol.sessions[0].trials[3].second->verdict = study::Verdict::Fail;
   protocol.sessions[0].trials[3].second->reason = "40 frames late";
   protocol.sessions[1].trials[7].excluded = "looked away";
+  protocol.sessions[2].trials[0].excluded = study::interrupted_reason;
+  for (auto& answer : protocol.sessions[2].trials[0].answers) answer.score.reset();
   const auto data = select(of(protocol), TaskKind::Task2);
-  ASSERT_THAT(data.exclusions, SizeIs(2));
+  ASSERT_THAT(data.exclusions, SizeIs(3));
   EXPECT_EQ(data.exclusions[0].reason, "timing verdict fail: 40 frames late");
   EXPECT_EQ(data.exclusions[1].rule, "experimenter");
-  EXPECT_THAT(data.choices, SizeIs(58));
-  EXPECT_EQ(data.flow.trials_excluded, 2);
+  EXPECT_EQ(data.exclusions[2].rule, "interruption");
+  EXPECT_EQ(data.exclusions[2].answers, 0);
+  EXPECT_THAT(data.choices, SizeIs(57));
+  EXPECT_EQ(data.flow.trials_excluded, 2) << "of those answered";
 }
 
 TEST(TaskData, NoRuleSeesMethodsOrScenes) {

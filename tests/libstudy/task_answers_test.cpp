@@ -183,6 +183,28 @@ TEST_F(LabSession, AnAnswerThatWasSetAsideDoesNotCount) {
   EXPECT_TRUE(read().trials.at(3).first.played);
 }
 
+TEST_F(LabSession, AnInterruptionBetweenTwoPagesLosesNoAnswer) {
+  const std::int64_t id = trial_id(3);
+  store_.repeat_trial(open_session(store_).id, id, "");
+  const auto unit = [&] {
+    for (const OpenUnit& one : open_session(store_).units) {
+      if (one.trial && one.trial_id == id) return one;
+    }
+    throw std::logic_error("the trial is done");
+  };
+  const OpenSession session = open_session(store_);
+  const int judged = test::show(store_, session, unit(), 4);
+  keep(store_, session, unit(), judged,
+       {{"realism", 6}, {"disorientation", 0}, {"unrealism", 1}, {"dizziness", 2}, {"confusion", 3}}, false);
+  const int again = test::show(store_, session, unit(), 4);
+  ASSERT_GT(again, judged);
+  keep(store_, session, unit(), again, {{"fms", 2}}, true);
+  const TaskTrial trial = read().trials.at(3);
+  EXPECT_EQ(trial.answers.at(0).score, 6);
+  EXPECT_EQ(trial.answers.at(5).score, 2);
+  EXPECT_TRUE(trial.first.played);
+}
+
 TEST_F(LabSession, ExclusionsCarryTheExperimentersReason) {
   store_.exclude_trial(open_session(store_).id, trial_id(5), "looked away");
   const TaskSession session = read();

@@ -90,7 +90,9 @@ stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial,
     out.timing = timing_of(*trial.second);
     out.timing_reason = trial.second->reason;
   }
-  if (trial.excluded) out.by_experimenter = trial.excluded->empty() ? "no reason given" : *trial.excluded;
+  out.interrupted = trial.excluded == study::interrupted_reason;
+  if (trial.excluded && !out.interrupted)
+    out.by_experimenter = trial.excluded->empty() ? "no reason given" : *trial.excluded;
   out.answer = answer_to(trial, question);
   out.answers =
       static_cast<int>(std::count_if(trial.answers.begin(), trial.answers.end(),
