@@ -9,7 +9,8 @@ using sqlite::Statement;
 
 namespace {
 
-// The last answer counts, with the showing it judged; without an answer, the last showing played.
+// The last answer counts, with the showing it judged, unless it was set aside; without an answer, the last
+// showing played.
 constexpr const char* ratings_sql =
     "SELECT s.participant, p.name, p.sha256, s.test_data OR p.test_data, u.kind, t.position, "
     "c.mean_fps, c.sd_fps, c.duration_s, q.scale_min, q.scale_max, a.score, "
@@ -22,7 +23,8 @@ constexpr const char* ratings_sql =
     "JOIN ask k ON k.protocol_id = p.protocol_id AND k.block = u.block "
     "JOIN question q ON q.question_id = k.question_id AND q.kind = 'scale' AND q.personal = 0 "
     "LEFT JOIN response a ON a.response_id = (SELECT r.response_id FROM response r "
-    "WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id ORDER BY r.attempt DESC LIMIT 1) "
+    "WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
+    "AND r.attempt > t.set_aside ORDER BY r.attempt DESC LIMIT 1) "
     "LEFT JOIN presentation v ON v.trial_id = t.trial_id AND v.interval = 0 AND v.state = 'played' "
     "AND v.attempt = coalesce(a.attempt, (SELECT max(l.attempt) FROM presentation l "
     "WHERE l.trial_id = t.trial_id AND l.state = 'played')) "
