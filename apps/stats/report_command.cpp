@@ -70,8 +70,12 @@ Json document(const ReportCommand& command) {
     request.plan = read_plan(command.plan);
   }
   Results results = study_results(request);
-  for (const auto& missing : results.missing)
-    results.json[task_name(missing.task)] = {{"refused", missing.reason}};
+  // A task that the study never had stays absent; one without results says why.
+  for (const auto& protocol : study::read_tasks(command.database).protocols) {
+    for (const auto& missing : results.missing)
+      if ((missing.task == TaskKind::Task2) == protocol.pairs)
+        results.json[task_name(missing.task)] = {{"refused", missing.reason}};
+  }
   if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
   if (bundle)
     results.json["preregistration"] =

@@ -7,7 +7,7 @@ namespace {
 // Colours keep a contrast of at least 7 to 1 against the page; print drops the coloured grounds.
 constexpr const char* style = R"(
 :root { color-scheme: light; }
-body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; color: #111; background: #fff; margin: 0 auto; max-width: 62rem; padding: 1rem 1.5rem 4rem; }
+body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; color: #111; background: #fff; margin: 0 auto; max-width: 62rem; padding: 1rem 1.5rem 4rem; overflow-wrap: anywhere; }
 h1 { font-size: 1.8rem; line-height: 1.2; margin: 1rem 0 .3rem; }
 h2 { font-size: 1.35rem; margin: 2.6rem 0 .6rem; border-bottom: 2px solid #0072b2; padding-bottom: .2rem; }
 h3 { font-size: 1.08rem; margin: 1.8rem 0 .4rem; }
@@ -17,7 +17,7 @@ a:focus, [tabindex]:focus { outline: 3px solid #d55e00; outline-offset: 2px; }
 .skip:focus { position: static; }
 nav ul { columns: 2; padding-left: 1.2rem; }
 .wide { overflow-x: auto; margin: .8rem 0 1.2rem; }
-table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; }
+table { border-collapse: collapse; overflow-wrap: normal; font-size: .82rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: bold; padding: .3rem 0; caption-side: top; }
 th, td { padding: .22rem .6rem .22rem 0; text-align: left; vertical-align: top; }
 thead th { border-top: 2px solid #111; border-bottom: 1px solid #111; vertical-align: bottom; }

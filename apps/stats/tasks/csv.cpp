@@ -157,13 +157,13 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder) 
       {"timing", results.at("timing")},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
-  if (results.contains("task1")) {
+  if (results.contains("task1") && !results.at("task1").contains("refused")) {
     const Json& task = results.at("task1");
     for (const char* list : {"participant_means", "cells", "by_scene", "comparisons", "omnibus", "retest"})
       files.emplace_back(std::string("task1_") + list, task.at(list));
     files.emplace_back("task1_ordinal", effects_of(task.at("ordinal")));
   }
-  if (results.contains("task2")) {
+  if (results.contains("task2") && !results.at("task2").contains("refused")) {
     const Json& task = results.at("task2");
     for (const char* list : {"choices", "pairs", "by_scene"})
       files.emplace_back(std::string("task2_") + list, task.at(list));
