@@ -10,5 +10,6 @@ void add_fit_ptpe_command(CLI::App& app);
 void add_task_commands(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_preregister_command(CLI::App& app);
+void add_power_command(CLI::App& app);
 
 }  // namespace apps

@@ -5,6 +5,7 @@
 #include <gsl/gsl_sf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -138,18 +139,38 @@ double student_p(double t, double df, Alternative alternative) {
   return 2 * student_upper(std::abs(t), df);
 }
 
-double student_upper_quantile(double p, double df) {
-  use_gsl_codes();
-  require_df(df);
-  require(p > 0 && p < 1, "a probability must lie between 0 and 1");
-  if (p > 0.5) return -student_upper_quantile(1 - p, df);
-  if (p == 0.5) return 0;
+namespace {
+
+/// p < 0.5.
+double solve_upper_quantile(double p, double df) {
   // On the logarithm of t the logarithm of the tail is nearly straight far out, and smooth everywhere.
   const auto excess = [&](double log_t) { return log_ratio(student_tail(std::exp(log_t), df), p); };
   double low = -1, high = 1;
   while (excess(low) < 0) low *= 2;
   while (excess(high) > 0) high *= 2;
   return std::exp(find_root(excess, low, high));
+}
+
+}  // namespace
+
+double student_upper_quantile(double p, double df) {
+  use_gsl_codes();
+  require_df(df);
+  require(p > 0 && p < 1, "a probability must lie between 0 and 1");
+  if (p > 0.5) return -student_upper_quantile(1 - p, df);
+  if (p == 0.5) return 0;
+  // A table of tests of equally many people asks for the same few intervals again and again.
+  struct Known {
+    double p = 0, df = 0, value = 0;
+  };
+  thread_local std::array<Known, 4> known;
+  thread_local std::size_t next = 0;
+  for (const Known& one : known) {
+    if (one.p == p && one.df == df) return one.value;
+  }
+  Known& one = known[next++ % known.size()];
+  one = {p, df, solve_upper_quantile(p, df)};
+  return one.value;
 }
 
 double noncentral_t_lower(double t, double df, double ncp) {

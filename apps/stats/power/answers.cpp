@@ -1,0 +1,159 @@
+#include "apps/stats/power/answers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libstudy/design/random.hpp"
+#include "libstudy/observer/observer.hpp"
+#include "libstudy/pacing/schedule.hpp"
+#include "stats/base/error.hpp"
+#include "stats/fps_window.hpp"
+#include "stats/ptpe/ptpe.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr int sickness_items = 4;
+constexpr double rounding_variance = 1.0 / 12;
+
+/// The numbers of one participant: 0 to 9 are the person's own, then ten for each trial.
+class Draws {
+ public:
+  Draws(std::uint64_t key, int participant)
+      : key_(study::counter_random(key, static_cast<std::uint64_t>(participant))) {}
+  double person(int which) const { return study::normal_of(key_, static_cast<std::uint64_t>(which)); }
+  double normal(const ShownTrial& trial, int which) const {
+    return study::normal_of(key_, counter(trial, which));
+  }
+  double uniform(const ShownTrial& trial, int which) const {
+    return study::uniform_of(key_, counter(trial, which));
+  }
+
+ private:
+  /// A trial is known by its position, which no participant has twice.
+  static std::uint64_t counter(const ShownTrial& trial, int which) {
+    return 10 * (static_cast<std::uint64_t>(trial.position) + 1) + static_cast<std::uint64_t>(which);
+  }
+  std::uint64_t key_;
+};
+
+const study::Question& question(const study::Protocol& protocol, const char* id) {
+  for (const auto& [block, one] : study::all_questions(protocol)) {
+    if (one->id == id) return *one;
+  }
+  throw base::Error("protocol " + protocol.name, "does not ask \"" + std::string(id) + "\"",
+                    "use a protocol of Task 1");
+}
+
+double latent_variance(const char* option, double wanted, double rounding) {
+  if (wanted > rounding) return wanted - rounding;
+  throw base::Error(option, "is less than what rounding to whole scores makes by itself",
+                    "give a larger one, or --answers continuous");
+}
+
+double answer(const Task1Scatter& scatter, double latent, double low, double high) {
+  if (scatter.answers == AnswerScale::Continuous) return latent;
+  return std::clamp(std::round(latent), low, high);
+}
+
+double choose_first(double preferred, double bias) {
+  return 1 / (1 + (1 - preferred) / preferred * std::exp(bias));
+}
+
+}  // namespace
+
+Task1Scatter task1_scatter(const PowerRequest& request) {
+  Task1Scatter out;
+  out.answers = request.answers;
+  const double rounding = request.answers == AnswerScale::Likert ? rounding_variance : 0;
+  const double realism = request.sd_realism * request.sd_realism / 2;
+  const double sickness = request.sd_sickness * request.sd_sickness / 2;
+  out.participant_realism = Task1Scatter::participant_share * request.sd_realism;
+  out.participant_sickness = Task1Scatter::participant_share * request.sd_sickness;
+  out.noise_realism = std::sqrt(latent_variance("--sd", realism, rounding));
+  // Half of the variance is the report's, half the items'.
+  out.noise_sickness = std::sqrt(sickness / 2);
+  out.noise_item =
+      std::sqrt(latent_variance("--sd-sickness", sickness / 2, rounding / sickness_items) * sickness_items);
+  const auto& scale = question(request.protocol, "realism");
+  const auto& item = question(request.protocol, "dizziness");
+  out.realism_min = scale.scale_min;
+  out.realism_max = scale.scale_max;
+  out.item_min = item.scale_min;
+  out.item_max = item.scale_max;
+  return out;
+}
+
+Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors& factors,
+                          const Scenario& truth, const Task1Scatter& scatter, std::uint64_t key) {
+  Task1Answers out;
+  out.realism.reserve(trials.size());
+  out.sickness.reserve(trials.size());
+  for (const auto& trial : trials) {
+    const auto& place = factors.cells[static_cast<std::size_t>(trial.first)];
+    const auto cell = static_cast<std::size_t>(place.n_star) * factors.methods.size() +
+                      static_cast<std::size_t>(place.method);
+    const Draws draws(key, trial.participant);
+    const double realism = truth.realism[cell] + scatter.participant_realism * draws.person(0) +
+                           scatter.noise_realism * draws.normal(trial, 0);
+    const double report = truth.sickness[cell] + scatter.participant_sickness * draws.person(1) +
+                          scatter.noise_sickness * draws.normal(trial, 1);
+    double sickness = 0;
+    for (int item = 0; item < sickness_items; ++item) {
+      const double latent = report + scatter.noise_item * draws.normal(trial, 2 + item);
+      sickness += answer(scatter, latent, scatter.item_min, scatter.item_max) / sickness_items;
+    }
+    out.realism.push_back({trial.participant, place.scene, place.n_star, place.method,
+                           answer(scatter, realism, scatter.realism_min, scatter.realism_max)});
+    out.sickness.push_back({trial.participant, place.scene, place.n_star, place.method, sickness});
+  }
+  return out;
+}
+
+std::vector<stats::PairChoice> answer_task2(std::span<const ShownTrial> trials, const ShownFactors& factors,
+                                            const Scenario& truth, double interval_bias, std::uint64_t key) {
+  std::vector<stats::PairChoice> out;
+  out.reserve(trials.size());
+  for (const auto& trial : trials) {
+    const auto& first = factors.cells[static_cast<std::size_t>(trial.first)];
+    const auto& second = factors.cells[static_cast<std::size_t>(trial.second)];
+    const double preferred = truth.preferred[static_cast<std::size_t>(first.method) * factors.methods.size() +
+                                             static_cast<std::size_t>(second.method)];
+    const Draws draws(key, trial.participant);
+    out.push_back({trial.participant, first.scene, first.method, second.method,
+                   draws.uniform(trial, 0) < choose_first(preferred, interval_bias), trial.position});
+  }
+  return out;
+}
+
+std::vector<RealisedSetting> realised_settings(const study::Protocol& protocol) {
+  std::vector<RealisedSetting> out;
+  for (const auto& cell : protocol.design.cells) {
+    const auto schedule = study::compile_schedule(cell.setting, study::for_display(protocol.pacing, 0), 1);
+    const auto moments = stats::fps_moments(schedule.intervals_s);
+    out.push_back({cell.setting.mean, cell.setting.sd, moments.mean, moments.mean_arithmetic, moments.sd});
+  }
+  return out;
+}
+
+std::vector<stats::PilotRating> answer_pilot(std::span<const ShownTrial> trials,
+                                             std::span<const RealisedSetting> settings,
+                                             const study::PtpeObserverParameters& observer, double scale_min,
+                                             double scale_max, std::uint64_t key) {
+  std::vector<stats::PilotRating> out;
+  out.reserve(trials.size());
+  for (const auto& trial : trials) {
+    const auto& seen = settings[static_cast<std::size_t>(trial.first)];
+    const Draws draws(key, trial.participant);
+    const double tau = stats::ptpe_tolerance({observer.a, observer.b}, seen.harmonic, seen.sd);
+    const double latent = (scale_min + scale_max) / 2 + observer.slope * tau +
+                          observer.participant_sd * draws.person(0) + observer.noise * draws.normal(trial, 0);
+    out.push_back({trial.participant, seen.mu, seen.delta, seen.harmonic, seen.arithmetic, seen.sd,
+                   std::clamp(std::round(latent), scale_min, scale_max)});
+  }
+  return out;
+}
+
+}  // namespace apps

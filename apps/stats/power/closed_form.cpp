@@ -1,0 +1,65 @@
+#include "apps/stats/power/closed_form.hpp"
+
+#include <cmath>
+
+#include "stats/inference/power.hpp"
+
+namespace apps {
+
+namespace {
+
+using stats::Alternative;
+using stats::HypothesisKind;
+
+/// Truths are sums of decimal fractions.
+constexpr double rounding = 1e-9;
+
+std::optional<double> value_of(const stats::Result<double>& result) {
+  return result ? std::optional(*result) : std::nullopt;
+}
+
+}  // namespace
+
+bool higher_is_better(const stats::HypothesisTest& test) { return test.score == "realism"; }
+
+bool claim_is_true(HypothesisKind kind, const stats::HypothesisTest& test, double truth) {
+  const double better = higher_is_better(test) ? truth : -truth;
+  switch (kind) {
+    case HypothesisKind::Superiority:
+      return better > rounding;
+    case HypothesisKind::Equivalence:
+      return std::abs(truth) < test.margin.value_or(0) - rounding;
+    case HypothesisKind::NonInferiority:
+      return better > -test.margin.value_or(0) + rounding;
+    case HypothesisKind::Preference:
+      break;
+  }
+  return truth > 0.5 + rounding;
+}
+
+std::optional<double> closed_form_power(const PowerRequest& request, HypothesisKind kind,
+                                        const stats::HypothesisTest& test, double truth, int n) {
+  const double alpha = request.plan.plan.alpha, margin = test.margin.value_or(0);
+  const double sd = higher_is_better(test) ? request.sd_realism : request.sd_sickness;
+  const double better = higher_is_better(test) ? truth : -truth;
+  switch (kind) {
+    case HypothesisKind::Superiority:  // two-sided, and in the right direction
+      return value_of(stats::t_power(n, better / sd, alpha / 2, stats::Design::Paired, Alternative::Greater));
+    case HypothesisKind::Equivalence:
+      return value_of(stats::tost_power(n, {-margin, margin, sd, truth, alpha}));
+    case HypothesisKind::NonInferiority:
+      return value_of(
+          stats::t_power(n, (better + margin) / sd, alpha, stats::Design::Paired, Alternative::Greater));
+    case HypothesisKind::Preference:
+      break;
+  }
+  if (request.interval_bias != 0) return {};
+  // Of the symmetric two-sided test, the side claimed is the one-sided test at half the level. H6 is
+  // one-sided.
+  const bool one_sided = test.a == "HiRes";
+  const auto power =
+      stats::binomial_power(n, truth, 0.5, one_sided ? alpha : alpha / 2, Alternative::Greater);
+  return power ? std::optional(power->power) : std::nullopt;
+}
+
+}  // namespace apps

@@ -1,0 +1,162 @@
+#include "apps/stats/power/pilot_power.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "apps/stats/power/answers.hpp"
+#include "libstudy/design/random.hpp"
+#include "stats/base/error.hpp"
+#include "stats/ptpe/direct_fit.hpp"
+
+namespace apps {
+
+namespace {
+
+/// One pilot's estimate of one coefficient.
+struct Estimate {
+  double value = 0, se = 0;
+  std::array<double, 2> ci{};
+  double half_width() const { return (ci[1] - ci[0]) / 2; }
+};
+
+struct Pilot {
+  bool fitted = false, interval = false;
+  Estimate a, b;
+};
+
+const study::Question& rating_of(const study::Protocol& protocol) {
+  for (const auto& block : protocol.blocks) {
+    if (block.kind != study::BlockKind::Stimulus) continue;
+    for (const auto& question : block.questions) {
+      if (question.kind == study::AnswerKind::Scale) return question;
+    }
+  }
+  throw base::Error("protocol " + protocol.name, "asks no score about its settings",
+                    "add a question of kind \"scale\" to its block of kind \"stimulus\"");
+}
+
+/// `level`: the scale's midpoint, where the observer's curve runs.
+Pilot estimate(std::span<const stats::PilotRating> ratings, double level, const PowerRequest& request) {
+  Pilot out;
+  const auto observations = stats::PilotTable(ratings).observations(stats::PilotMean::Harmonic);
+  stats::BootstrapOptions options;
+  options.resamples = 0;
+  options.confidence = request.plan.plan.confidence;
+  const auto direct = stats::estimate_direct(observations, level, options);
+  out.fitted = static_cast<bool>(direct.fit);
+  out.interval = static_cast<bool>(direct.jackknife);
+  if (!out.interval) return out;
+  out.a = {direct.jackknife->curve.a(), direct.jackknife->a_se(), direct.jackknife->a_ci};
+  out.b = {direct.jackknife->curve.b, direct.jackknife->b_se(), direct.jackknife->b_ci};
+  return out;
+}
+
+/// Standard deviation of values; divisor n - 1.
+Estimated sd_of(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = mean_of(values).value;
+  double m2 = 0, m4 = 0;
+  for (const double x : values) {
+    m2 += std::pow(x - mean, 2) / n;
+    m4 += std::pow(x - mean, 4) / n;
+  }
+  const double sd = std::sqrt(m2 * n / (n - 1));
+  // The delta method on the variance's own standard error.
+  return {sd, sd > 0 ? std::sqrt(std::max(0.0, m4 - m2 * m2) / n) / (2 * sd) : 0};
+}
+
+using Coefficient = std::function<const Estimate&(const Pilot&)>;
+
+std::optional<CoefficientPoint> describe(const std::vector<Pilot>& pilots, const Coefficient& coefficient,
+                                         double truth, std::optional<double> precision,
+                                         const PowerRequest& request) {
+  std::vector<double> values, errors, widths;
+  std::int64_t held = 0, reached = 0;
+  for (const auto& pilot : pilots) {
+    if (!pilot.interval) continue;
+    const auto& one = coefficient(pilot);
+    values.push_back(one.value);
+    errors.push_back(one.se);
+    widths.push_back(one.half_width());
+    held += one.ci[0] <= truth && truth <= one.ci[1] ? 1 : 0;
+    reached += precision && widths.back() <= *precision ? 1 : 0;
+  }
+  if (values.size() < 2) return {};
+  CoefficientPoint out;
+  out.mean = mean_of(values);
+  out.sd = sd_of(values);
+  out.se = quantile_of(errors, 0.5);
+  out.half_width = quantile_of(widths, 0.5);
+  out.half_width_wished = quantile_of(widths, request.power);
+  out.coverage = share_of(held, static_cast<int>(values.size()));
+  if (precision) out.reached = share_of(reached, static_cast<int>(pilots.size()));
+  return out;
+}
+
+PilotPoint describe(const std::vector<Pilot>& pilots, const PowerRequest& request) {
+  const auto count = [&](auto has) { return std::count_if(pilots.begin(), pilots.end(), has); };
+  const int studies = static_cast<int>(pilots.size());
+  return {share_of(count([](const Pilot& one) { return one.fitted; }), studies),
+          share_of(count([](const Pilot& one) { return one.interval; }), studies),
+          describe(
+              pilots, [](const Pilot& one) -> const Estimate& { return one.a; }, request.observer.a,
+              request.precision_a, request),
+          describe(
+              pilots, [](const Pilot& one) -> const Estimate& { return one.b; }, request.observer.b,
+              request.precision_b, request)};
+}
+
+/// The first n from which `reached` holds to the end.
+std::optional<int> lasting(const PowerRequest& request, const std::vector<PilotPoint>& curve,
+                           const std::function<bool(const PilotPoint&)>& reached) {
+  std::optional<int> out;
+  for (std::size_t i = curve.size(); i-- > 0 && reached(curve[i]);) out = request.n[i];
+  return out;
+}
+
+void find_n(PilotPower& power, const PowerRequest& request) {
+  const auto often = [&](const std::optional<CoefficientPoint>& one) {
+    return one && one->reached && one->reached->value >= request.power;
+  };
+  const auto half = [&](const std::optional<CoefficientPoint>& one) {
+    return one && one->reached && one->reached->value >= 0.5;
+  };
+  const auto& curve = power.curve;
+  power.n_for_a = lasting(request, curve, [&](const PilotPoint& at) { return often(at.a); });
+  power.n_for_b = lasting(request, curve, [&](const PilotPoint& at) { return often(at.b); });
+  power.n_for_a_median = lasting(request, curve, [&](const PilotPoint& at) { return half(at.a); });
+  power.n_for_b_median = lasting(request, curve, [&](const PilotPoint& at) { return half(at.b); });
+  if (power.n_for_a && power.n_for_b) power.n_for_both = std::max(*power.n_for_a, *power.n_for_b);
+}
+
+}  // namespace
+
+PilotPower simulate_pilot_power(const PowerRequest& request) {
+  const auto& question = rating_of(request.protocol);
+  const double level = 0.5 * (question.scale_min + question.scale_max);
+  const auto settings = realised_settings(request.protocol);
+  const std::uint64_t own =
+      study::random_key(request.protocol.sha256 + "\npower " + std::to_string(request.seed));
+  std::vector<std::vector<Pilot>> pilots(request.n.size());
+  for (auto& one : pilots) one.resize(static_cast<std::size_t>(request.studies));
+  for_each_study(request.studies, "pilots", [&](int study) {
+    const std::uint64_t key = study::counter_random(own, static_cast<std::uint64_t>(study));
+    const auto trials = planned_trials(request.protocol, key, request.n.back());
+    const auto ratings =
+        answer_pilot(trials, settings, request.observer, question.scale_min, question.scale_max, key);
+    for (std::size_t i = 0; i < request.n.size(); ++i) {
+      const auto end = std::partition_point(
+          ratings.begin(), ratings.end(),
+          [&](const stats::PilotRating& rating) { return rating.participant < request.n[i]; });
+      pilots[i][static_cast<std::size_t>(study)] = estimate({ratings.begin(), end}, level, request);
+    }
+  });
+  PilotPower out;
+  for (const auto& of_n : pilots) out.curve.push_back(describe(of_n, request));
+  find_n(out, request);
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,13 @@
+#pragma once
+/// Power over the number of participants, drawn from the JSON of power_json().
+
+#include <string>
+
+#include "apps/stats/tasks/json_parts.hpp"
+
+namespace apps {
+
+/// Task 1 and 2: a panel for each hypothesis with a line for each world; pilot: half widths of a and b.
+std::string power_svg(const Json& json);
+
+}  // namespace apps

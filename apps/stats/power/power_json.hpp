@@ -1,0 +1,20 @@
+#pragma once
+/// The results of a power calculation as JSON ("vip-power/1", docs/statistics.md) and as a table. What is
+/// drawn and printed is taken from the JSON.
+
+#include <string>
+#include <vector>
+
+#include "apps/stats/power/pilot_power.hpp"
+#include "apps/stats/power/task_power.hpp"
+#include "apps/stats/tasks/json_parts.hpp"
+
+namespace apps {
+
+Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);
+Json power_json(const PowerRequest& request, const PilotPower& pilot);
+
+/// One line for each figure and n.
+std::string power_csv(const Json& json);
+
+}  // namespace apps

@@ -1,0 +1,79 @@
+#include "apps/stats/power/request.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr int least_n = 2, most_n = 2000;
+
+[[noreturn]] void fail_participants(const std::string& text, const std::string& problem) {
+  throw base::Error("--n " + text, problem, "write LOW:HIGH, LOW:HIGH:STEP or one number, such as --n 10:60");
+}
+
+int whole(const std::string& text, std::string_view part) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+  if (error != std::errc() || end != part.data() + part.size())
+    fail_participants(text, "\"" + std::string(part) + "\" is not a whole number");
+  return value;
+}
+
+bool asks(const study::Protocol& protocol, const std::string& id) {
+  const auto questions = study::all_questions(protocol);
+  return std::any_of(questions.begin(), questions.end(),
+                     [&](const auto& question) { return question.second->id == id; });
+}
+
+}  // namespace
+
+const char* power_kind_name(PowerKind kind) {
+  switch (kind) {
+    case PowerKind::Task1:
+      return "task1";
+    case PowerKind::Task2:
+      return "task2";
+    case PowerKind::Pilot:
+      break;
+  }
+  return "pilot";
+}
+
+PowerKind power_kind(const study::Protocol& protocol) {
+  if (protocol.design.pairs) return PowerKind::Task2;
+  if (protocol.design.timing == study::TimingSource::Settings) return PowerKind::Pilot;
+  for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"}) {
+    if (!asks(protocol, id)) {
+      throw base::Error("protocol " + protocol.name, "does not ask \"" + std::string(id) + "\"",
+                        "power knows the pilot (mean_fps and sd_fps), Task 1 (realism and the four items of "
+                        "cybersickness) and Task 2 (pairs)");
+    }
+  }
+  return PowerKind::Task1;
+}
+
+std::vector<int> parse_participants(const std::string& text) {
+  std::vector<std::string_view> parts;
+  for (std::string_view rest = text;;) {
+    const auto colon = rest.find(':');
+    parts.push_back(rest.substr(0, colon));
+    if (colon == std::string_view::npos) break;
+    rest.remove_prefix(colon + 1);
+  }
+  if (parts.size() > 3) fail_participants(text, "has too many parts");
+  const int low = whole(text, parts[0]);
+  const int high = parts.size() > 1 ? whole(text, parts[1]) : low;
+  const int step = parts.size() > 2 ? whole(text, parts[2]) : 1;
+  if (low < least_n || high > most_n) fail_participants(text, "numbers of participants go from 2 to 2000");
+  if (high < low) fail_participants(text, "ends below its start");
+  if (step < 1) fail_participants(text, "needs a step of 1 or more");
+  std::vector<int> out;
+  for (int n = low; n <= high; n += step) out.push_back(n);
+  return out;
+}
+
+}  // namespace apps

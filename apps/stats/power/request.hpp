@@ -1,0 +1,54 @@
+#pragma once
+/// What a power calculation is asked.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/stats/tasks/plan_file.hpp"
+#include "libstudy/observer/ptpe_observer.hpp"
+#include "libstudy/protocol/protocol.hpp"
+
+namespace apps {
+
+/// What a protocol's trials are good for.
+enum class PowerKind { Task1, Task2, Pilot };
+/// "task1", "task2", "pilot".
+const char* power_kind_name(PowerKind kind);
+/// base::Error when the protocol shows neither settings, nor pairs of methods, nor methods that are rated.
+PowerKind power_kind(const study::Protocol& protocol);
+
+/// How simulated people answer Task 1.
+enum class AnswerScale {
+  Likert,     ///< whole scores within the question's scale
+  Continuous  ///< unrounded and unbounded, for which the closed forms hold exactly
+};
+
+struct PowerRequest {
+  study::Protocol protocol;
+  std::string file;    ///< of the protocol, as given
+  std::vector<int> n;  ///< participants, ascending
+  int studies = 2000;  ///< simulated for each number of participants and world
+  std::uint64_t seed = 1;
+  PlanInForce plan;                 ///< margins, level
+  double power = 0.8;               ///< wished
+  std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; without repeats
+
+  /// Task 1: difference in standard deviations of the paired differences; Task 2: true preference of the
+  /// better method.
+  std::optional<double> effect;
+  std::optional<double> difference;  ///< Task 1: the same in points of realism
+  AnswerScale answers = AnswerScale::Likert;
+  double sd_realism = 1.3;  ///< of the difference between two methods' answers of one person, points
+  double sd_sickness = 0.65;
+  double interval_bias = 0;  ///< Task 2: log odds in favour of the second interval
+
+  study::PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
+  std::optional<double> precision_a, precision_b;       ///< wished half widths: frames/s, s/frame
+};
+
+/// "10:60", "10:60:5" or "26" as numbers of participants, from 2 to 2,000. base::Error otherwise.
+std::vector<int> parse_participants(const std::string& text);
+
+}  // namespace apps

@@ -1,0 +1,41 @@
+#include "apps/stats/power/shown.hpp"
+
+#include <algorithm>
+
+#include "libstudy/design/plan.hpp"
+
+namespace apps {
+
+namespace {
+
+int index_or_add(std::vector<std::string>& list, const std::string& item) {
+  const auto found = std::find(list.begin(), list.end(), item);
+  if (found != list.end()) return static_cast<int>(found - list.begin());
+  list.push_back(item);
+  return static_cast<int>(list.size()) - 1;
+}
+
+}  // namespace
+
+ShownFactors::ShownFactors(const study::Design& design) {
+  for (const auto& cell : design.cells)
+    cells.push_back({index_or_add(scenes, cell.stimulus.scene), index_or_add(n_stars, cell.stimulus.n_star),
+                     index_or_add(methods, cell.stimulus.method)});
+}
+
+std::vector<ShownTrial> planned_trials(const study::Protocol& protocol, std::uint64_t seed, int n) {
+  const int slots = study::slot_count(protocol);
+  std::vector<ShownTrial> out;
+  for (int participant = 0; participant < n; ++participant) {
+    // The least taken slot comes next: 0, 1, ..., then from the start.
+    const auto plan =
+        study::make_plan(protocol, "P" + std::to_string(participant + 1), seed, participant % slots);
+    for (const auto& trial : plan.trials) {
+      if (protocol.blocks[static_cast<std::size_t>(trial.block)].kind == study::BlockKind::Stimulus)
+        out.push_back({participant, trial.first, trial.second.value_or(-1), trial.position});
+    }
+  }
+  return out;
+}
+
+}  // namespace apps

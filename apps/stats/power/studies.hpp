@@ -1,0 +1,28 @@
+#pragma once
+/// Simulated studies side by side, and what is counted over them.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace apps {
+
+/// Runs `simulate` for each study, on all threads, in any order, with a progress bar. The first exception
+/// ends it and is thrown on.
+void for_each_study(int studies, const std::string& label, const std::function<void(int)>& simulate);
+
+/// A figure and its Monte-Carlo standard error.
+struct Estimated {
+  double value = 0, se = 0;
+};
+
+/// k of n. The error is that of (k + 1) of (n + 2), so that no study in which nothing happened claims none.
+Estimated share_of(std::int64_t k, int n);
+/// Mean of values in the order given; at least two.
+Estimated mean_of(std::span<const double> values);
+/// Sample quantile; its error is half the distance between the order statistics one binomial standard
+/// deviation to either side. At least two values.
+Estimated quantile_of(std::span<const double> values, double share);
+
+}  // namespace apps

@@ -1,0 +1,296 @@
+#include "apps/stats/power/task_power.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "apps/stats/power/answers.hpp"
+#include "apps/stats/power/closed_form.hpp"
+#include "libstudy/design/random.hpp"
+#include "stats/analysis/task2.hpp"
+
+namespace apps {
+
+namespace {
+
+/// Sums of whole numbers do not depend on their order, and so not on threads.
+constexpr double estimate_unit = 1e-9;
+
+struct TestCount {
+  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0, estimates = 0, estimate_units = 0;
+  int participants_least = 1 << 30, participants_most = 0;
+
+  void add(const TestCount& other) {
+    holds += other.holds;
+    uncorrected += other.uncorrected;
+    against += other.against;
+    refused += other.refused;
+    estimates += other.estimates;
+    estimate_units += other.estimate_units;
+    participants_least = std::min(participants_least, other.participants_least);
+    participants_most = std::max(participants_most, other.participants_most);
+  }
+};
+
+struct HypothesisCount {
+  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;
+  std::vector<TestCount> tests;
+};
+
+/// One hypothesis of one scenario. Its words and tests come from the analysis itself.
+struct Judged {
+  const Scenario* scenario = nullptr;
+  stats::Hypothesis hypothesis;
+  std::vector<double> truths;
+  std::vector<bool> claims;
+  std::vector<HypothesisCount> counts;  ///< by n
+};
+
+TestCount count_test(const stats::Hypothesis& hypothesis, const stats::HypothesisTest& test) {
+  TestCount out;
+  out.holds = test.holds ? 1 : 0;
+  out.against = test.against ? 1 : 0;
+  out.refused = test.p ? 0 : 1;
+  out.participants_least = out.participants_most = static_cast<int>(test.n);
+  if (test.estimate) {
+    out.estimates = 1;
+    out.estimate_units = std::llround(*test.estimate / estimate_unit);
+  }
+  bool right = true;
+  if (hypothesis.kind == stats::HypothesisKind::Superiority)
+    right = test.estimate && (higher_is_better(test) ? *test.estimate > 0 : *test.estimate < 0);
+  if (hypothesis.kind == stats::HypothesisKind::Preference) right = test.estimate && *test.estimate > 0.5;
+  out.uncorrected = test.p && *test.p < hypothesis.alpha && right ? 1 : 0;
+  return out;
+}
+
+HypothesisCount count_hypothesis(const stats::Hypothesis& hypothesis, const std::vector<bool>& claims) {
+  HypothesisCount out;
+  out.supported = hypothesis.status == stats::HypothesisStatus::Supported ? 1 : 0;
+  out.any = hypothesis.confirmed > 0 ? 1 : 0;
+  out.paper = hypothesis.paper_supported ? 1 : 0;
+  for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
+    out.tests.push_back(count_test(hypothesis, hypothesis.tests[i]));
+    if (hypothesis.tests[i].holds && !claims[i]) out.any_false = 1;
+  }
+  return out;
+}
+
+void add_count(HypothesisCount& sum, const HypothesisCount& one) {
+  sum.supported += one.supported;
+  sum.any += one.any;
+  sum.any_false += one.any_false;
+  sum.paper += one.paper;
+  sum.tests.resize(one.tests.size());
+  for (std::size_t i = 0; i < one.tests.size(); ++i) sum.tests[i].add(one.tests[i]);
+}
+
+/// True difference a - b, or preference for a.
+double truth_of(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test) {
+  const auto index = [](const std::vector<std::string>& list, const std::string& item) {
+    return static_cast<std::size_t>(std::find(list.begin(), list.end(), item) - list.begin());
+  };
+  const std::size_t count = factors.methods.size();
+  const std::size_t a = index(factors.methods, test.a), b = index(factors.methods, test.b);
+  if (a == count || b == count) return scenario.preferred.empty() ? 0 : 0.5;
+  if (!scenario.preferred.empty()) return scenario.preferred[a * count + b];
+  const auto& means = test.score == "realism" ? scenario.realism : scenario.sickness;
+  const std::size_t row = index(factors.n_stars, test.n_star) * count;
+  return means[row + a] - means[row + b];
+}
+
+/// Answers of participants 0 to n - 1; all stand by participant.
+template <class Answer>
+std::span<const Answer> of_first(const std::vector<Answer>& answers, int n) {
+  const auto end = std::partition_point(answers.begin(), answers.end(),
+                                        [n](const Answer& one) { return one.participant < n; });
+  return {answers.begin(), end};
+}
+
+class Simulation {
+ public:
+  explicit Simulation(const PowerRequest& request)
+      : request_(request),
+        factors_(request.protocol.design),
+        worlds_(make_worlds(request, factors_)),
+        key_(study::random_key(request.protocol.sha256 + "\npower " + std::to_string(request.seed))) {
+    if (!request.protocol.design.pairs) scatter_ = task1_scatter(request);
+    prepare();
+  }
+
+  std::vector<WorldPower> run() {
+    std::mutex guard;
+    for_each_study(request_.studies, "studies", [&](int study) {
+      const auto counts = simulate(study);
+      const std::lock_guard lock(guard);
+      for (std::size_t i = 0; i < judged_.size(); ++i) {
+        for (std::size_t n = 0; n < request_.n.size(); ++n) add_count(judged_[i].counts[n], counts[i][n]);
+      }
+    });
+    std::vector<WorldPower> out;
+    auto next = judged_.begin();
+    for (const auto& world : worlds_) {
+      out.push_back({world.id, world.words, {}});
+      for (const auto& scenario : world.scenarios) {
+        for (std::size_t i = 0; i < scenario.hypotheses.size(); ++i)
+          out.back().hypotheses.push_back(describe(*next++));
+      }
+    }
+    return out;
+  }
+
+ private:
+  /// Judges answers to nothing, which names every hypothesis and its tests.
+  void prepare() {
+    for (const auto& world : worlds_) {
+      for (const auto& scenario : world.scenarios) {
+        for (auto& hypothesis : analyse(scenario, {}, 0)) {
+          Judged one{&scenario, std::move(hypothesis), {}, {}, {}};
+          for (auto& test : one.hypothesis.tests) {
+            if (one.hypothesis.kind == stats::HypothesisKind::Equivalence ||
+                one.hypothesis.kind == stats::HypothesisKind::NonInferiority)
+              test.margin = higher_is_better(test) ? request_.plan.plan.margin_realism
+                                                   : request_.plan.plan.margin_sickness;
+            one.truths.push_back(truth_of(scenario, factors_, test));
+            one.claims.push_back(claim_is_true(one.hypothesis.kind, test, one.truths.back()));
+          }
+          one.counts.resize(request_.n.size());
+          judged_.push_back(std::move(one));
+        }
+      }
+    }
+  }
+
+  /// All answers of one study in one scenario, by participant.
+  struct Answers {
+    Task1Answers task1;
+    std::vector<stats::PairChoice> task2;
+  };
+
+  Answers answer(const Scenario& scenario, std::span<const ShownTrial> trials, std::uint64_t key) const {
+    if (request_.protocol.design.pairs)
+      return {{}, answer_task2(trials, factors_, scenario, request_.interval_bias, key)};
+    return {answer_task1(trials, factors_, scenario, scatter_, key), {}};
+  }
+
+  /// The scenario's hypotheses for the first n participants.
+  std::vector<stats::Hypothesis> analyse(const Scenario& scenario, const Answers& answers, int n) const {
+    auto all = request_.protocol.design.pairs ? analyse_task2(answers, n) : analyse_task1(answers, n);
+    std::erase_if(all, [&](const stats::Hypothesis& one) {
+      return std::find(scenario.hypotheses.begin(), scenario.hypotheses.end(), one.id) ==
+             scenario.hypotheses.end();
+    });
+    return all;
+  }
+
+  std::vector<stats::Hypothesis> analyse_task1(const Answers& answers, int n) const {
+    const auto& plan = request_.plan.plan;
+    const stats::ScoreTable realism(
+        {"realism", "", true, scatter_.realism_min, scatter_.realism_max, true, {}, plan.margin_realism},
+        of_first(answers.task1.realism, n), n, factors_.n_stars, factors_.methods);
+    const stats::ScoreTable sickness(
+        {"sickness", "", true, scatter_.item_min, scatter_.item_max, false, {}, plan.margin_sickness},
+        of_first(answers.task1.sickness, n), n, factors_.n_stars, factors_.methods);
+    return stats::task1_hypotheses(realism, sickness, plan, "");
+  }
+
+  std::vector<stats::Hypothesis> analyse_task2(const Answers& answers, int n) const {
+    const auto& plan = request_.plan.plan;
+    const auto pairs =
+        stats::count_preferences(of_first(answers.task2, n), static_cast<int>(factors_.methods.size()), plan);
+    return stats::task2_hypotheses(pairs, factors_.methods, plan, "");
+  }
+
+  /// Counts by judged hypothesis and n.
+  std::vector<std::vector<HypothesisCount>> simulate(int study) const {
+    const std::uint64_t key = study::counter_random(key_, static_cast<std::uint64_t>(study));
+    const auto trials = planned_trials(request_.protocol, key, request_.n.back());
+    std::vector<std::vector<HypothesisCount>> out(judged_.size());
+    std::size_t first = 0;
+    for (const auto& world : worlds_) {
+      for (const auto& scenario : world.scenarios) {
+        const Answers answers = answer(scenario, trials, key);
+        for (const int n : request_.n) {
+          std::size_t judged = first;
+          for (const auto& hypothesis : analyse(scenario, answers, n)) {
+            out[judged].push_back(count_hypothesis(hypothesis, judged_[judged].claims));
+            ++judged;
+          }
+        }
+        first += scenario.hypotheses.size();
+      }
+    }
+    return out;
+  }
+
+  TestPower describe_test(const Judged& judged, std::size_t index) const {
+    const auto& test = judged.hypothesis.tests[index];
+    TestPower out{test.label,           test.score,           test.n_star, test.a, test.b,
+                  judged.truths[index], judged.claims[index], test.margin, {},     {}};
+    const int studies = request_.studies;
+    for (std::size_t n = 0; n < request_.n.size(); ++n) {
+      const auto& count = judged.counts[n].tests[index];
+      TestPoint point;
+      point.holds = share_of(count.holds, studies);
+      point.uncorrected = share_of(count.uncorrected, studies);
+      point.against = share_of(count.against, studies);
+      point.refused = share_of(count.refused, studies);
+      if (count.estimates > 0)
+        point.mean_estimate =
+            static_cast<double>(count.estimate_units) * estimate_unit / static_cast<double>(count.estimates);
+      point.participants_least = count.participants_least;
+      point.participants_most = count.participants_most;
+      if (count.participants_least == count.participants_most)
+        point.closed_form =
+            closed_form_power(request_, judged.hypothesis.kind, test, out.truth, count.participants_most);
+      out.curve.push_back(point);
+    }
+    if (out.claim_true) out.n_for_power = lasting([&](std::size_t n) { return out.curve[n].holds.value; });
+    return out;
+  }
+
+  HypothesisPower describe(const Judged& judged) const {
+    const auto& hypothesis = judged.hypothesis;
+    HypothesisPower out{hypothesis.id,
+                        hypothesis.title,
+                        hypothesis.rule,
+                        hypothesis.paper_rule,
+                        hypothesis.kind,
+                        0,
+                        {},
+                        {},
+                        {}};
+    for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
+      out.tests.push_back(describe_test(judged, i));
+      out.claims_true += judged.claims[i] ? 1 : 0;
+    }
+    for (const auto& count : judged.counts)
+      out.curve.push_back({share_of(count.supported, request_.studies), share_of(count.any, request_.studies),
+                           share_of(count.any_false, request_.studies),
+                           share_of(count.paper, request_.studies)});
+    if (out.claims_true == static_cast<int>(out.tests.size()))
+      out.n_for_power = lasting([&](std::size_t n) { return out.curve[n].supported.value; });
+    return out;
+  }
+
+  /// The first n from which the wished power is reached to the end.
+  template <class Power>
+  std::optional<int> lasting(Power power) const {
+    std::optional<int> out;
+    for (std::size_t n = request_.n.size(); n-- > 0 && power(n) >= request_.power;) out = request_.n[n];
+    return out;
+  }
+
+  const PowerRequest& request_;
+  ShownFactors factors_;
+  std::vector<World> worlds_;
+  std::uint64_t key_;
+  Task1Scatter scatter_;
+  std::vector<Judged> judged_;
+};
+
+}  // namespace
+
+std::vector<WorldPower> simulate_task_power(const PowerRequest& request) { return Simulation(request).run(); }
+
+}  // namespace apps

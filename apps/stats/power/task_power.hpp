@@ -1,0 +1,64 @@
+#pragma once
+/// Power of H1 to H6: studies on the protocol's own plan, answered by simulated people and judged by the
+/// analysis that the real data meet.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/stats/power/studies.hpp"
+#include "apps/stats/power/worlds.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps {
+
+/// A test at one number of participants.
+struct TestPoint {
+  Estimated holds;        ///< share of studies in which it holds, corrected
+  Estimated uncorrected;  ///< p < alpha in the direction claimed, without Holm
+  Estimated against;      ///< holds in the other direction
+  Estimated refused;      ///< has no p
+  /// Power of the uncorrected test for normal differences (Task 1) or exactly (Task 2); none where the plan
+  /// gives different studies different numbers of pairs, or with interval bias.
+  std::optional<double> closed_form;
+  double mean_estimate = 0;  ///< mean difference of answers, or share chosen, over studies that have one
+  int participants_least = 0, participants_most = 0;  ///< who gave both answers
+};
+
+struct TestPower {
+  std::string label, score, n_star, a, b;
+  double truth = 0;         ///< true difference a - b, or true preference for a
+  bool claim_true = false;  ///< whether what the test claims is so
+  std::optional<double> margin;
+  std::vector<TestPoint> curve;    ///< as PowerResults::n
+  std::optional<int> n_for_power;  ///< see HypothesisPower
+};
+
+struct HypothesisPoint {
+  Estimated supported;  ///< every test holds
+  Estimated any;        ///< at least one does
+  Estimated any_false;  ///< at least one does whose claim is false: the family's error rate
+  Estimated paper;      ///< the paper's own, uncorrected rule would have confirmed it
+};
+
+struct HypothesisPower {
+  std::string id, title, rule, paper_rule;
+  stats::HypothesisKind kind = stats::HypothesisKind::Superiority;
+  int claims_true = 0;  ///< of its tests
+  std::vector<HypothesisPoint> curve;
+  /// The first n from which `supported` reaches the power wished at every n asked for; none where the claim
+  /// is not wholly true or the power is not reached.
+  std::optional<int> n_for_power;
+  std::vector<TestPower> tests;
+};
+
+struct WorldPower {
+  std::string id, words;
+  std::vector<HypothesisPower> hypotheses;
+};
+
+/// Task 1 or 2. Equal for any number of threads. Studies of different size share their first participants,
+/// and worlds share their random numbers, so that curves are smooth and differences between worlds sharp.
+std::vector<WorldPower> simulate_task_power(const PowerRequest& request);
+
+}  // namespace apps
