@@ -73,7 +73,7 @@ TEST(PowerParticipants, RangesAndWhatIsNone) {
 }
 
 TEST(Power, PreferenceOf70PercentWith26People) {
-  auto request = task2({"effect"}, 4000);
+  auto request = task2({"effect"}, 2000);
   request.effect = 0.7;
   const auto worlds = apps::simulate_task_power(request);
   expect_closed_forms(worlds);
@@ -86,7 +86,7 @@ TEST(Power, PreferenceOf70PercentWith26People) {
 }
 
 TEST(Power, EquivalenceWithinHalfAPointWith26People) {
-  auto request = task1({"null"}, 1500);
+  auto request = task1({"null"}, 800);
   const auto worlds = apps::simulate_task_power(request);
   expect_closed_forms(worlds);
   const auto& h2 = worlds[0].hypotheses[1];
@@ -96,13 +96,13 @@ TEST(Power, EquivalenceWithinHalfAPointWith26People) {
 }
 
 TEST(Power, DifferencesAndMarginsFollowTheFormulas) {
-  auto request = task1({"effect", "margin"}, 1000);
+  auto request = task1({"effect", "margin"}, 400);
   request.effect = 0.6;
   expect_closed_forms(apps::simulate_task_power(request));
 }
 
 TEST(Power, WholeScoresLieNearTheFormulas) {
-  auto request = task1({"effect"}, 1000);
+  auto request = task1({"effect"}, 600);
   request.effect = 0.6;
   request.answers = apps::AnswerScale::Likert;
   // Steps of a point and the scale's ends change the power by up to this much at 26 people.
@@ -110,8 +110,8 @@ TEST(Power, WholeScoresLieNearTheFormulas) {
 }
 
 TEST(Power, FalseClaimsHoldInNoMoreThanAlphaOfStudies) {
-  auto first = task1({"null", "margin"}, 1000);
-  auto second = task2({"null"}, 4000);
+  auto first = task1({"null", "margin"}, 400);
+  auto second = task2({"null"}, 1500);
   for (const auto* request : {&first, &second}) {
     for (const auto& world : apps::simulate_task_power(*request)) {
       for (const auto& hypothesis : world.hypotheses) {
@@ -204,7 +204,7 @@ TEST(PowerPlan, RandomAssignmentLosesPairs) {
 
 TEST(PowerPilot, PrecisionGrowsWithPeople) {
   auto request = request_for("protocols/ptpe_pilot.toml", {8, 24}, 80);
-  request.precision_a = 2.5;
+  request.precision_a = 3;  // between the median half widths of 8 and of 24 people
   request.precision_b = 0.009;
   const auto power = apps::simulate_pilot_power(request);
   ASSERT_EQ(power.curve.size(), 2u);
