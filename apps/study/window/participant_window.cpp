@@ -185,7 +185,7 @@ bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Chec
   question.anchors = {{1, words_.stop_no}, {2, words_.stop_yes}};
   const While here(in_page_);
   show_cursor(true);
-  PageView view(gui_, words_, words_.stop_title, words_.stop_text);
+  PageView view(gui_, words_, words_.stop_title, words_.stop_text, "stop");
   PageState state({&question, 1}, 0, clock.now_ns());
   while (!state.confirmed()) {
     poll(poll_s);
@@ -232,16 +232,19 @@ study::Wish ParticipantWindow::wait_while_minimised(const std::function<study::W
     const study::Wish other = others ? others() : study::Wish::GoOn;
     if (other == study::Wish::Stop || other == study::Wish::EndSession) return other;
   }
+  away_ = false;
   forget_input();
   show_black();
-  return study::Wish::NotShown;
+  return study::Wish::GoOn;
 }
 
 study::Wish ParticipantWindow::wish(const std::function<study::Wish()>& others) {
   const study::Wish wish = others ? others() : study::Wish::GoOn;
   if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
   if (in_page_ || wish != study::Wish::GoOn) return wish;
-  if (window_.take_minimised()) return wait_while_minimised(others);
+  if (away_) return wait_while_minimised(others);
+  away_ = window_.take_minimised();
+  if (away_) return study::Wish::NotShown;  // the cut is kept first, then the window is waited for
   const auto keys = window_.take_keys();
   if (std::find(keys.begin(), keys.end(), GLFW_KEY_ESCAPE) == keys.end()) return wish;
   const auto check = [&others] {

@@ -71,6 +71,7 @@ class ParticipantWindow {
   Gamepad gamepad_;
   bool in_page_ = false;  ///< Esc is answered there
   bool stop_wished_ = false;
+  bool away_ = false;  ///< the last wish was NotShown: the window may still be minimised
 };
 
 }  // namespace apps
