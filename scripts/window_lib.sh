@@ -21,11 +21,17 @@ screen_of() {  # screen_of FILE SIZE: opens a virtual screen, writes its number 
 
 alive() { kill -0 "$session" 2>/dev/null; }
 key() { for k in "$@"; do xdotool key "$k"; sleep 0.08; done; }
+# What the picture has at X Y: red, green and blue from 0 to 255.
+pixel() { import -window root -crop "1x1+$1+$2" -depth 8 rgb:- | od -An -v -tu1 | xargs; }
 shoot() { import -window root "$out/$1.png"; }
 click() { xdotool mousemove "$1" "$2"; sleep 0.06; xdotool click 1; sleep 0.1; }
 # The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
 button_y=$((height - height * 80 / 1000))
 click_on() { click $((width / 2)) "$button_y"; }
+
+bake_dam() {  # bake_dam FILE: a second of the dam with its pictures, unless it is there
+  [ -f "$1" ] || "$study" bake data/scenes/single_dam.toml --method HiRes --n-star 512 --frames 60 --pictures 640x360 --out "$1"
+}
 
 failed=0
 expect() {  # expect WHAT WANTED GOT

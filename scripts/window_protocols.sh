@@ -4,8 +4,9 @@
 # usage: scripts/window_protocols.sh [--out FOLDER] [PROTOCOL ...]   default: out/window_protocols, and the four named below
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database, exports and logs go to FOLDER/PROTOCOL.
 #
-# Shortened, so that a session takes two to four minutes: n_* of 32 and 64 (live fluid on a CPU), stimuli of 1.5 s, rests of
-# 30 and 60 s last 2 s, the two minutes between scenes 3 s. Units, questions, black pauses and the shortest reading times stay.
+# Shortened, so that a session takes two to four minutes on two cores: live fluid has n_* of 64 and 128 and stimuli of 0.3 s,
+# drawn by the processor at a third of a second a frame; the pilot plays a bake, 1.5 s each. Rests of 30 and 60 s last 2 s, black
+# pauses of 5 s one, the two minutes between scenes 3 s. Units, questions, other pauses and shortest reading times stay.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=out/window_protocols
@@ -19,19 +20,26 @@ fi
 protocol=$1
 out=$folder/$protocol
 study=${VIP_STUDY:-build/dev/bin/vip-study}
-size=${VIP_SCREEN:-1280x720}
+size=${VIP_SCREEN:-800x450}
 . scripts/window_lib.sh
 db=$out/study.db
 rm -rf "$out"/study.db* "$out"/*.png "$out"/{csv,bids,psych-ds} "$out"/{events,log,given}
-sed -e 's/"16k"/"32"/; s/"32k"/"64"/' -e '/^n_star/s/"32k"/"64"/' -e 's/"rest [0-9]*"/"rest 2"/' \
+sed -e 's/"16k"/"64"/; s/"32k"/"128"/' -e '/^n_star/s/"32k"/"128"/' -e 's/"rest [0-9]*"/"rest 2"/' -e 's/"black 5"/"black 1"/g' \
   -e 's/^between_groups_s = [0-9]*/between_groups_s = 3/' "protocols/$protocol.toml" >"$out/$protocol.toml"
+
+seconds=0.3 stimulus=()
+if [ "$protocol" = ptpe_pilot ]; then
+  bake_dam "$folder/dam.bake"
+  seconds=1.5 stimulus=(--stimulus "$folder/dam.bake")
+fi
 
 screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
 begun=$SECONDS
 "$study" run "$out/$protocol.toml" --db "$db" --participant P01 --display window --gaze mouse --station test \
-  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds 1.5 --seed 5 --events >"$out/events" 2>"$out/log" </dev/null &
+  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds "$seconds" "${stimulus[@]}" --seed 5 --events \
+  >"$out/events" 2>"$out/log" </dev/null &
 session=$!
 
 ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
@@ -66,6 +74,12 @@ give() {  # give KIND MAX ANSWER: to the question that has the focus, and on to 
   fi
 }
 
+picture_once() {  # picture_once NAME: half a second from now, the first time it comes
+  case $pictured in *" $1 "*) return 0 ;; esac
+  pictured+=" $1 "
+  sleep 0.5
+  shoot "$(printf '%02d_%s' "$position" "$1")"
+}
 confirm() { if [ $((position % 2)) = 0 ]; then click_on; else key Return; fi; }
 stuck() { shoot stuck; echo "window_protocols: $protocol is stuck at unit $position ($kind $block)${1:+, $1}" >&2; exit 1; }
 
@@ -109,18 +123,24 @@ settled() {
 position=-1 page=0 pages=1 trial=0 wanted=0 kind='' block='' pictured=' ' stimuli=0
 moved=$SECONDS
 while alive; do
-  [ $((SECONDS - moved)) -lt 60 ] || stuck
+  [ $((SECONDS - moved)) -lt 300 ] || stuck
   read -r what _ at now_kind now_block < <(tail -n 1 "$out/events" 2>/dev/null; echo) || true
-  [ "${what:-}" = begins ] || { sleep 0.1; continue; }
+  if [ "${what:-}" != begins ]; then  # between two units: where a trial ends in a rest, it is on now
+    [ "$trial" = 0 ] || ! grep -q '^steps = .*"rest ' "$out/$protocol.toml" || picture_once rest
+    sleep 0.1
+    continue
+  fi
   if [ "$at" != "$position" ]; then
     position=$at kind=$now_kind block=$now_block page=0 pages=1 wanted=0 moved=$SECONDS
     trial=$(ask "select trial_id is not null from unit where position = $position")
     [ "$trial" = 0 ] || pages=${#asks[@]}
-    [ "$trial" = 1 ] || [ "$kind" != stimulus ] || kind=break
+    if [ "$trial" = 0 ] && [ "$kind" = stimulus ]; then  # the pause between two groups, which asks nothing
+      kind=break block=
+      picture_once break_countdown
+    fi
   fi
   if [ "$trial" = 1 ] && [ "$stimuli" -lt 2 ] &&
-    [ "$(ask "select count(*) from presentation where state = 'running'")" = 1 ]; then
-    sleep 0.7
+    [ "$(ask "select count(*) from presentation where state = 'running'")" = 1 ] && [ "$(pixel $((width / 2)) $((height / 2)))" != "0 0 0" ]; then
     stimuli=$((stimuli + 1))
     shoot "$(printf '%02d_stimulus_%d' "$position" "$stimuli")"
     continue
@@ -129,10 +149,7 @@ while alive; do
     if [ "$trial" = 1 ]; then answer_page "'${asks[page]// /\',\'}'"; else answer_page ""; fi
     page=$((page + 1)) moved=$SECONDS
   else
-    case "$kind$pictured" in *" rest "*) ;; stimulus*)
-      [ "$page" -lt "$pages" ] || ! grep -q '"rest' "$out/$protocol.toml" || { sleep 0.5; shoot "$(printf '%02d_rest' "$position")"; pictured+=" rest "; } ;;
-    esac
-    sleep 0.1
+    sleep 0.2
   fi
 done
 status=0
