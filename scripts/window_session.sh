@@ -62,7 +62,7 @@ answer() {  # answer KIND ID: what is done while such a unit is on; again and ag
 
 under_way() { tail -n 1 "$out/events" 2>/dev/null || true; }
 shot=
-give_up=$((SECONDS + 240))
+give_up=$((SECONDS + 600))
 while alive; do
   [ $SECONDS -lt $give_up ] || { shoot stuck; echo "window_session: stuck at: $(under_way)" >&2; exit 1; }
   read -r what _ position kind id < <(under_way; echo) || true
