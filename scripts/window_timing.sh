@@ -90,7 +90,7 @@ for ((i = 0; i < 2 * $(nproc); ++i)); do
   (while :; do :; done) &
   loops+=("$!")
 done
-trap 'kill "${loops[@]}" 2>/dev/null; leave' EXIT
+trap 'kill "${loops[@]}" 2>/dev/null || true; leave' EXIT
 begin nice -n 5
 end
 kill "${loops[@]}"
