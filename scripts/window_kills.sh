@@ -10,20 +10,14 @@ out=${1:-out/window_kills} kills=${2:-50} seed=${3:-1}
 study=${VIP_STUDY:-build/dev/bin/vip-study}
 size=${VIP_SCREEN:-800x450}
 
-if [ "${VIP_SCREEN_READY:-}" != yes ]; then
-  for tool in xvfb-run xdotool sqlite3; do
-    command -v "$tool" >/dev/null || { echo "window_kills: $tool is missing; run scripts/setup.sh" >&2; exit 1; }
-  done
-  VIP_SCREEN_READY=yes exec xvfb-run -a -s "-noreset -screen 0 ${size}x24" "$0" "$out" "$kills" "$seed"
-fi
-
+. scripts/window_lib.sh
 mkdir -p "$out/copy"
 rm -f "$out"/{kills,full}.* "$out"/copy/*
-export OMP_WAIT_POLICY=passive LC_ALL=C
-if [ ! -f "$out/dam.bake" ]; then
-  "$study" bake data/scenes/single_dam.toml --method HiRes --n-star 512 --frames 60 --pictures 640x360 \
-    --out "$out/dam.bake"
-fi
+export LC_ALL=C
+bake_dam "$out/dam.bake"
+screen_of "$out/screen" "$size"
+DISPLAY=:$(cat "$out/screen")
+export DISPLAY
 
 failures=0
 fail() { echo "FAILED  $name, $stage: $*"; failures=$((failures + 1)); }
@@ -130,12 +124,11 @@ text = "That was all."
 END
 }
 
-width=${size%x*} height=${size#*x}
 # A key that finds no window is lost, as it would be; the unit is still on and is answered again.
 key() { for k in "$@"; do xdotool key "$k" || true; sleep 0.06; done; }
 # The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
 click_on() {
-  xdotool mousemove $((width / 2)) $((height - height * 80 / 1000)) || true
+  xdotool mousemove $((width / 2)) "$button_y" || true
   sleep 0.06
   xdotool click 1 || true
   sleep 0.08
@@ -152,8 +145,6 @@ answer() {  # answer KIND: what a person does while such a unit is on, again and
   esac
 }
 
-session=
-alive() { kill -0 "$session" 2>/dev/null; }
 start() {  # start COMMAND ...: one process of the session; its events go to a file of their own
   : >"$out/$name.events"
   "$study" "$@" --db "$db" --events >"$out/$name.events" 2>"$out/$name.log" &
@@ -178,8 +169,6 @@ sit() {  # sit SECONDS: the person answers until the process ends, however it do
   ended=0
   wait "$session" 2>/dev/null || ended=$?
 }
-trap 'kill -9 $session 2>/dev/null || true' EXIT
-
 # What stands in a file after a kill is read from a copy, so that the next process finds the file as it was left.
 copy() {
   rm -f "$out"/copy/*
@@ -317,5 +306,4 @@ wanted "exit status of the resume" 0 "$ended"
 check
 check_whole "$(ask "select count(*) from trial")"
 [ $failures -ne 0 ] || echo "ok      a full disk within a trial: clear error, $said steps kept, resume goes on to the end"
-trap - EXIT
 [ $failures -eq 0 ]

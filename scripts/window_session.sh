@@ -8,20 +8,12 @@ out=${1:-out/window_session}
 study=${VIP_STUDY:-build/dev/bin/vip-study}
 size=${VIP_SCREEN:-1280x720}
 
-if [ "${VIP_SCREEN_READY:-}" != yes ]; then
-  for tool in xvfb-run xdotool import sqlite3; do
-    command -v "$tool" >/dev/null || { echo "window_session: $tool is missing; run scripts/setup.sh" >&2; exit 1; }
-  done
-  VIP_SCREEN_READY=yes exec xvfb-run -a -s "-screen 0 ${size}x24" "$0" "$out"
-fi
-
-mkdir -p "$out"
+. scripts/window_lib.sh
 rm -f "$out"/study.db* "$out"/*.png "$out"/{events,keys}
-export OMP_WAIT_POLICY=passive
-if [ ! -f "$out/dam.bake" ]; then
-  "$study" bake data/scenes/single_dam.toml --method HiRes --n-star 512 --frames 60 --pictures 640x360 \
-    --out "$out/dam.bake"
-fi
+bake_dam "$out/dam.bake"
+screen_of "$out/screen" "$size"
+DISPLAY=:$(cat "$out/screen")
+export DISPLAY
 
 # The demonstration with one method, which a bake can show.
 sed -e 's/^method = .*/method = ["HiRes"]/' -e 's/^order = "constrained".*/order = "shuffle"/' -e '/^never_adjacent/d' \
@@ -33,16 +25,8 @@ exec 3<>"$out/keys"  # the experimenter's keyboard
   --station test --screen-width-mm 520 --viewing-distance-mm 600 --stimulus "$out/dam.bake" --trial-seconds 2 \
   --seed 3 --events --console <&3 >"$out/events" 2>"$out/log" &
 session=$!
-trap 'kill $session 2>/dev/null || true' EXIT
-
-width=${size%x*} height=${size#*x}
-alive() { kill -0 "$session" 2>/dev/null; }
-key() { for k in "$@"; do xdotool key "$k"; sleep 0.08; done; }
-shoot() { import -window root "$out/$1.png"; }
-click() { xdotool mousemove "$1" "$2"; sleep 0.06; xdotool click 1; sleep 0.1; }
-# The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
-click_on() { click $((width / 2)) $((height - height * 80 / 1000)); }
-
+# A key meant for one page must not fall on the next, which takes keys 300 ms later.
+still_on() { [ "$(under_way)" = "begins P01 $position $kind $id" ]; }
 answer() {  # answer KIND ID: what is done while such a unit is on; again and again until it is over
   case $1 in
     instructions | debrief)
@@ -59,9 +43,9 @@ answer() {  # answer KIND ID: what is done while such a unit is on; again and ag
       click_on ;;
     fms) key Right Return Return ;;
     practice | stimulus | repeat)  # while the stimulus is on, these keys count for nothing
-      key 5 Return 1 Return
+      for k in 5 Return 1 Return; do still_on && key "$k"; done
       [ "$1" != practice ] || shoot trial_answers
-      click_on ;;
+      still_on && click_on ;;
     catch) key 2 Return ;;
     ssq)
       key 1 Return 0 Return 3 Return
@@ -78,7 +62,7 @@ answer() {  # answer KIND ID: what is done while such a unit is on; again and ag
 
 under_way() { tail -n 1 "$out/events" 2>/dev/null || true; }
 shot=
-give_up=$((SECONDS + 240))
+give_up=$((SECONDS + 600))
 while alive; do
   [ $SECONDS -lt $give_up ] || { shoot stuck; echo "window_session: stuck at: $(under_way)" >&2; exit 1; }
   read -r what _ position kind id < <(under_way; echo) || true
@@ -103,40 +87,32 @@ while alive; do
       key 1 Return
     fi
   fi
-  answer "$kind" "$id"
+  answer "$kind" "$id" || true
 done
 status=0
 wait "$session" || status=$?
-trap - EXIT
+session=
 cat "$out/log" >&2
 [ $status -eq 0 ] || { echo "window_session: vip-study ended with $status" >&2; exit 1; }
 
 ask() { sqlite3 "$out/study.db" "$1"; }
-failed=0
-expect() {  # expect WHAT WANTED SQL
-  local got
-  got=$(ask "$3")
-  if [ "$got" = "$2" ]; then printf 'ok      %s: %s\n' "$1" "$got"; else
-    printf 'FAILED  %s: %s instead of %s\n' "$1" "$got" "$2"
-    failed=1
-  fi
-}
-expect "units left" 0 "select count(*) from unit where state <> 'done'"
-expect "trials without an answer" 0 "select count(*) from trial t where not exists (select 1 from unit u join response r using (unit_id) where u.trial_id = t.trial_id)"
-expect "session is done" done "select state from session"
-expect "gaze source" mouse "select gaze_source from session"
-expect "answers to SSQ" 16 "select count(*) from response join unit using (unit_id) where kind = 'ssq'"
-expect "first answers to SSQ" "1 0 3" "select group_concat(score, ' ') from (select score from response join unit using (unit_id) where kind = 'ssq' order by response_id limit 3)"
-expect "attention" 2 "select score from response join unit using (unit_id) where kind = 'catch'"
-expect "remark" "It was pleasant" "select words from response join unit using (unit_id) where kind = 'question'"
-expect "presentations without a verdict" 0 "select count(*) from presentation where state = 'played' and verdict is null"
-expect "cut by the question whether to stop" 1 "select count(*) from presentation where state = 'interrupted'"
-expect "note" 1 "select count(*) from note where words like '%the door opened'"
-expect "excluded trials" 1 "select count(*) from trial where excluded = 'somebody spoke'"
-expect "shown again at the end" 1 "select count(*) from presentation where attempt > 1 and state = 'played' and trial_id = (select trial_id from unit where trial_id is not null order by position desc limit 1)"
-expect "revealing is logged" 1 "select count(*) from event where kind = 'setting revealed'"
-expect "pre-flight list is kept" 1 "select count(*) from event where kind = 'preflight'"
-expect "personal answers in the database" 0 "select count(*) from response where words like '%splashes%'"
+expect_sql() { expect "$1" "$2" "$(ask "$3")"; }
+expect_sql "units left" 0 "select count(*) from unit where state <> 'done'"
+expect_sql "trials without an answer" 0 "select count(*) from trial t where not exists (select 1 from unit u join response r using (unit_id) where u.trial_id = t.trial_id)"
+expect_sql "session is done" done "select state from session"
+expect_sql "gaze source" mouse "select gaze_source from session"
+expect_sql "answers to SSQ" 16 "select count(*) from response join unit using (unit_id) where kind = 'ssq'"
+expect_sql "first answers to SSQ" "1 0 3" "select group_concat(score, ' ') from (select score from response join unit using (unit_id) where kind = 'ssq' order by response_id limit 3)"
+expect_sql "attention" 2 "select score from response join unit using (unit_id) where kind = 'catch'"
+expect_sql "remark" "It was pleasant" "select words from response join unit using (unit_id) where kind = 'question'"
+expect_sql "presentations without a verdict" 0 "select count(*) from presentation where state = 'played' and verdict is null"
+expect_sql "cut by the question whether to stop" 1 "select count(*) from presentation where state = 'interrupted'"
+expect_sql "note" 1 "select count(*) from note where words like '%the door opened'"
+expect_sql "excluded trials" 1 "select count(*) from trial where excluded = 'somebody spoke'"
+expect_sql "shown again at the end" 1 "select count(*) from presentation where attempt > 1 and state = 'played' and trial_id = (select trial_id from unit where trial_id is not null order by position desc limit 1)"
+expect_sql "revealing is logged" 1 "select count(*) from event where kind = 'setting revealed'"
+expect_sql "pre-flight list is kept" 1 "select count(*) from event where kind = 'preflight'"
+expect_sql "personal answers in the database" 0 "select count(*) from response where words like '%splashes%'"
 personal=$(sqlite3 "$out/study.db.personal" "select group_concat(answer, ';') from (select * from $(sqlite3 "$out/study.db.personal" "select name from sqlite_master where type = 'table' limit 1") order by question)" || true)
 case $personal in
   *30*Waves*) echo "ok      personal answers stand in their own file" ;;
@@ -144,14 +120,8 @@ case $personal in
 esac
 
 # A display that is lost in the middle of a trial, and the session resumed on another one.
-screen_of() {  # screen_of FILE: starts a virtual screen and prints its number
-  : >"$1"
-  Xvfb -displayfd 3 -screen 0 800x600x24 3>"$1" >/dev/null 2>&1 &
-  screen=$!
-  until [ -s "$1" ]; do sleep 0.1; done
-}
 rm -f "$out"/lost.db* "$out/lost_events"
-screen_of "$out/screen"
+screen_of "$out/screen" 800x600
 DISPLAY=:$(cat "$out/screen") "$study" run "$out/protocol.toml" --db "$out/lost.db" --participant P02 --observer random \
   --display window --size 640x360 --stimulus "$out/dam.bake" --trial-seconds 4 --events >"$out/lost_events" 2>"$out/lost_log" &
 session=$!
@@ -160,12 +130,13 @@ sleep 4
 kill -9 "$screen"
 status=0
 wait "$session" || status=$?
+session=
 [ $status -eq 1 ] && grep -q "the display is gone" "$out/lost_log" || { echo "FAILED  no clear error"; cat "$out/lost_log"; failed=1; }
 lost() { sqlite3 "$out/lost.db" "$1"; }
 answers=$(lost "select count(*) from response")
 [ "$(lost "select state from presentation order by presentation_id desc limit 1")" = interrupted ] ||
   { echo "FAILED  the cut trial is not marked"; failed=1; }
-screen_of "$out/screen"
+screen_of "$out/screen" 800x600
 DISPLAY=:$(cat "$out/screen") "$study" resume --db "$out/lost.db" >>"$out/lost_events" 2>>"$out/lost_log" || failed=1
 kill "$screen"
 echo "        $answers answers before the display was lost, $(lost "select count(*) from response") in the end"

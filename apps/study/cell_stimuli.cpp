@@ -40,6 +40,14 @@ const study::StimulusSpec& only_stimulus(const study::Protocol& protocol, const 
   return cells.front().stimulus;
 }
 
+/// Before anybody sits down, not when the cell's turn comes.
+void check_words(const study::Protocol& protocol) {
+  for (const study::Cell& cell : protocol.design.cells) {
+    sim::parse_method(cell.stimulus.method);
+    sim::parse_n_star(cell.stimulus.n_star);
+  }
+}
+
 std::string describe_live(const study::Protocol& protocol, const std::string& backend) {
   std::string text = "live on " + sim::backend_name(sim::choose_backend(backend));
   std::set<std::string> scenes;
@@ -67,6 +75,7 @@ CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& proto
   } else if (options.display == "none") {
     stimulus_ = std::make_unique<study::NullStimulus>(protocol.content.content_step_s);
   } else {
+    check_words(protocol);
     live_ = true;
   }
   description_ = live_ ? describe_live(protocol, options.backend) : stimulus_->description();

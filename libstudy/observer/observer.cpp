@@ -39,8 +39,8 @@ std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> q
   return out;
 }
 
-void Observer::pause(PauseKind, double seconds, Clock& clock, const Check& check) {
-  const std::int64_t until = clock.now_ns() + std::llround(seconds * 1e9);
+void Observer::pause(const Pause& pause, Clock& clock, const Check& check) {
+  const std::int64_t until = clock.now_ns() + std::llround(pause.seconds * 1e9);
   for (;;) {
     if (check) check();
     if (clock.now_ns() >= until) return;

@@ -17,7 +17,7 @@ class Observer : public Participant {
   void read(const Block&, double, Clock&, const Check&) final {}
   std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                const Occasion& occasion, Clock& clock, const Check& check) final;
-  void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) final;
+  void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
   /// Answers a question that leaves a choice: never of kind Text, never one with `accept`. `judges`: it is
   /// the first question on this page about what was shown. A score of the question's.

@@ -41,6 +41,12 @@ enum class PauseKind {
   Break   ///< a countdown, then until the participant wishes to go on
 };
 
+struct Pause {
+  PauseKind kind = PauseKind::Black;
+  double seconds = 0;
+  std::string title{}, text{};  ///< shown with the countdown; empty: whatever the display says at such a time
+};
+
 /// Asked often while a person may be waiting; throws Stopped to end the session there.
 using Check = std::function<void()>;
 
@@ -62,8 +68,8 @@ class Participant {
                                        const Occasion& occasion, Clock& clock, const Check& check) = 0;
   /// Called before each showing of a trial; may throw Left.
   virtual void before_trial(const Occasion&) {}
-  /// Waits `seconds` on `clock`, and for a Break until the participant goes on.
-  virtual void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) = 0;
+  /// Waits on `clock`, and for a Break until the participant goes on.
+  virtual void pause(const Pause& pause, Clock& clock, const Check& check) = 0;
 };
 
 }  // namespace study

@@ -28,7 +28,9 @@ struct Running {
 };
 
 /// Thrown to cut a trial and show it again.
-struct TrialAgain {};
+struct TrialAgain {
+  std::string reason;  ///< for the log
+};
 
 /// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial.
 inline void heed(const Running& run, bool in_trial) {
@@ -38,7 +40,10 @@ inline void heed(const Running& run, bool in_trial) {
     case Wish::EndSession:
       throw Ending{EarlyEnd::Stopped, "ended by the experimenter"};
     case Wish::RepeatTrial:
-      if (in_trial) throw TrialAgain{};
+      if (in_trial) throw TrialAgain{"wish of the experimenter"};
+      break;
+    case Wish::NotShown:
+      if (in_trial) throw TrialAgain{"the screen did not show it"};
       break;
     case Wish::Pause:
     case Wish::GoOn:

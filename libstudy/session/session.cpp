@@ -33,7 +33,7 @@ class SessionRun {
   void wait_while_paused() {
     const auto check = [this] { heed(run_, false); };
     for (check(); run_.wish() == Wish::Pause;)
-      run_.parts.participant.pause(PauseKind::Black, pause_look_s, run_.parts.clock, check);
+      run_.parts.participant.pause({PauseKind::Black, pause_look_s}, run_.parts.clock, check);
   }
 
   std::optional<Ending> page(const OpenUnit& unit) {
@@ -45,16 +45,16 @@ class SessionRun {
         run_.parts.participant.read(block, block.seconds, run_.parts.clock, check);
         break;
       case BlockKind::Rest:
-        pause(PauseKind::Rest, block.seconds, check);
+        pause({PauseKind::Rest, block.seconds, block.title, block.text}, check);
         break;
       case BlockKind::Break:
-        pause(PauseKind::Break, block.seconds, check);
+        pause({PauseKind::Break, block.seconds, block.title, block.text}, check);
         break;
       case BlockKind::Black:
-        pause(PauseKind::Black, block.seconds, check);
+        pause({PauseKind::Black, block.seconds}, check);
         break;
       case BlockKind::Stimulus:  // between two groups
-        pause(PauseKind::Break, block.between_groups_s, check);
+        pause({PauseKind::Break, block.between_groups_s}, check);
         break;
       default: {
         auto ends = questioning_.ask(unit, 0, block.questions, run_.occasion(unit), true, check);
@@ -67,8 +67,8 @@ class SessionRun {
     return {};
   }
 
-  void pause(PauseKind kind, double seconds, const Check& check) {
-    run_.parts.participant.pause(kind, seconds, run_.parts.clock, check);
+  void pause(const Pause& pause, const Check& check) {
+    run_.parts.participant.pause(pause, run_.parts.clock, check);
   }
 
   const Running& run_;
@@ -87,7 +87,7 @@ void check_personal(const Running& run) {
 }
 
 void rest_after_stop(const Running& run) {
-  run.parts.participant.pause(PauseKind::Break, stop_rest_s, run.parts.clock, [&run] {
+  run.parts.participant.pause({PauseKind::Break, stop_rest_s}, run.parts.clock, [&run] {
     if (run.wish() == Wish::Stop) throw Stopped();
   });
 }

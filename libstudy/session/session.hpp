@@ -53,6 +53,7 @@ enum class Wish {
   Stop,         ///< end the program; the session can be resumed
   EndSession,   ///< a rest, then no further unit (Store::end_session)
   RepeatTrial,  ///< cut this trial and show it again
+  NotShown,     ///< likewise, because the screen did not show it, as when the window was minimised
   Pause         ///< before the next unit, until the wish changes
 };
 

@@ -77,17 +77,18 @@ std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const Planned
 
 std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   Showing showing{unit, unit.attempts + 1, {}, intervals_of(*unit.trial), {}};
-  for (;; again(showing)) {
+  for (;;) {
     showing.occasion = run_.occasion(unit);
     try {
       return play_steps(showing);
-    } catch (const TrialAgain&) {
+    } catch (const TrialAgain& cut) {
+      again(showing, cut.reason);
     }
   }
 }
 
-void TrialPlayer::again(Showing& showing) {
-  run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, "wish of the experimenter");
+void TrialPlayer::again(Showing& showing, const std::string& reason) {
+  run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, reason);
   showing.unit.answered.clear();
   ++showing.attempt;
   showing.verdicts.clear();
@@ -115,7 +116,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
         if (auto ends = ask(showing, i)) return ends;
         break;
       case StepKind::Rest:
-        run_.parts.participant.pause(PauseKind::Rest, step.seconds, run_.parts.clock, check);
+        run_.parts.participant.pause({PauseKind::Rest, step.seconds}, run_.parts.clock, check);
         break;
     }
   }
@@ -127,11 +128,11 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
   const Check check = [this] { heed(run_, true); };
   const std::int64_t begun_ns = run_.now_ns();
   if (stimulus_follows && !showing.ready) {
-    run_.parts.participant.pause(PauseKind::Black, 0, run_.parts.clock, check);
+    run_.parts.participant.pause({PauseKind::Black, 0}, run_.parts.clock, check);
     make_ready(showing);
   }
   const double gone_s = 1e-9 * static_cast<double>(run_.now_ns() - begun_ns);
-  run_.parts.participant.pause(PauseKind::Black, std::max(0.0, seconds - gone_s), run_.parts.clock, check);
+  run_.parts.participant.pause({PauseKind::Black, std::max(0.0, seconds - gone_s)}, run_.parts.clock, check);
 }
 
 void TrialPlayer::make_ready(Showing& showing) {

@@ -29,7 +29,7 @@ class TrialPlayer {
   };
 
   std::optional<Ending> play_steps(Showing& showing);
-  void again(Showing& showing);
+  void again(Showing& showing, const std::string& reason);
   std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
   const Cell& cell(const OpenUnit& unit, int interval) const;
   void black(Showing& showing, double seconds, bool stimulus_follows);

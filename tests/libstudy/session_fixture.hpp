@@ -68,11 +68,14 @@ class Scripted final : public Participant {
     occasions.push_back(occasion);
     return out;
   }
-  void pause(PauseKind kind, double seconds, Clock& clock, const Check& check) override {
+  void pause(const Pause& pause, Clock& clock, const Check& check) override {
     const char* names[] = {"black", "rest", "break"};
-    if (seconds > 0)
-      seen.push_back(names[static_cast<int>(kind)] + (" " + std::to_string(std::lround(seconds))));
-    wait(seconds, clock, check);
+    if (pause.seconds > 0) {
+      seen.push_back(names[static_cast<int>(pause.kind)] +
+                     (" " + std::to_string(std::lround(pause.seconds))));
+      if (!pause.title.empty() || !pause.text.empty()) seen.back() += " '" + pause.title + "' " + pause.text;
+    }
+    wait(pause.seconds, clock, check);
   }
 
   std::map<std::string, Answer> says;
@@ -88,9 +91,9 @@ class Scripted final : public Participant {
 };
 
 /// pairs() at one frame rate for all, shown by its own clock, with a rest within each trial; `policy`: its
-/// on_interruption.
-inline Protocol paced_pairs(const std::string& policy = "") {
-  std::string text = pairs_toml;
+/// on_interruption; `more`: further blocks.
+inline Protocol paced_pairs(const std::string& policy = "", const std::string& more = "") {
+  std::string text = pairs_toml + more;
   const auto replace = [&](const std::string& from, const std::string& to) {
     text.replace(text.find(from), from.size(), to);
   };

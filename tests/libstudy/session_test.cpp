@@ -137,6 +137,26 @@ TEST(Session, EachFrameHoldsTauWhenAModelIsInForce) {
             0);
 }
 
+TEST(Session, RestsAndBreaksBringTheirWords) {
+  OneSession one(paced_pairs("", R"(
+[[block]]
+kind = "rest"
+id = "silent"
+seconds = 3
+
+[[block]]
+kind = "break"
+id = "half_way"
+title = "Half way"
+text = "Look away."
+seconds = 4
+)"));
+  one.run();
+  ASSERT_GE(one.person.seen.size(), 2u);
+  EXPECT_EQ(*(one.person.seen.end() - 2), "rest 3");
+  EXPECT_EQ(one.person.seen.back(), "break 4 'Half way' Look away.");
+}
+
 TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   OneSession one(paced_pairs());
   one.run();
@@ -257,6 +277,15 @@ TEST(Session, ATrialIsRepeatedOnWishAndBothShowingsStay) {
   EXPECT_EQ(one.count("presentation WHERE state = 'interrupted'"), 2);
   EXPECT_EQ(one.count("presentation WHERE state = 'played'"), 8);
   EXPECT_EQ(one.count("response WHERE attempt = 3"), 2);
+  EXPECT_EQ(one.row().state, "done");
+}
+
+TEST(Session, ATrialThatTheScreenDidNotShowIsShownAgain) {
+  OneSession one(paced_pairs());
+  one.run(wish_at_frame_5(Wish::NotShown, 1));
+  EXPECT_EQ(one.count("presentation WHERE state = 'interrupted' AND attempt = 1"), 1);
+  EXPECT_EQ(one.count("presentation WHERE state = 'played' AND attempt = 2"), 2);
+  EXPECT_EQ(one.count("note WHERE words = 'the screen did not show it'"), 1);
   EXPECT_EQ(one.row().state, "done");
 }
 

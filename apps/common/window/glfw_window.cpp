@@ -92,6 +92,10 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
     if (action == GLFW_PRESS) self->keys_.push_back(key);
   });
+  glfwSetWindowIconifyCallback(window_, [](GLFWwindow* window, int minimised) {
+    auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    if (minimised == GLFW_TRUE) self->was_minimised_ = true;
+  });
 }
 
 GlfwWindow::~GlfwWindow() {
@@ -101,6 +105,10 @@ GlfwWindow::~GlfwWindow() {
 }
 
 bool GlfwWindow::asked_to_close() const { return glfwWindowShouldClose(window_) != 0; }
+
+bool GlfwWindow::minimised() const { return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE; }
+
+bool GlfwWindow::take_minimised() { return std::exchange(was_minimised_, false) || minimised(); }
 
 GlfwWindow::Size GlfwWindow::size() const {
   Size out;

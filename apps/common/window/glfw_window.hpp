@@ -44,6 +44,9 @@ class GlfwWindow {
   /// Keys pressed since the last call, as GLFW numbers them: none is lost when frames are slow. A key held
   /// down counts once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
+  /// Whether it was minimised at any time since the last call, or is now: nobody saw what was drawn then.
+  bool take_minimised();
+  bool minimised() const;
   /// The monitor it fills or, of a window, the primary one.
   Monitor monitor() const;
   /// The display itself is gone: nothing can be drawn any more.
@@ -53,6 +56,7 @@ class GlfwWindow {
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
   std::vector<int> keys_;
+  bool was_minimised_ = false;
 };
 
 /// Whether a compositor stands between windows and the screen. Needs a window that lives.

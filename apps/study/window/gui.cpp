@@ -21,7 +21,7 @@ namespace colour {
 const unsigned background = IM_COL32(38, 38, 40, 255), panel = IM_COL32(48, 48, 51, 255),
                button = IM_COL32(70, 71, 75, 255), hovered = IM_COL32(90, 92, 97, 255),
                chosen = IM_COL32(38, 112, 186, 255), text = IM_COL32(232, 232, 232, 255),
-               dim = IM_COL32(168, 168, 170, 255), faint = IM_COL32(112, 112, 115, 255),
+               dim = IM_COL32(168, 168, 170, 255), faint = IM_COL32(140, 140, 143, 255),
                warning = IM_COL32(236, 168, 92, 255);
 }  // namespace colour
 
@@ -125,7 +125,37 @@ float draw_centred(const std::string& words, ImVec2 at, float width, unsigned co
   return at.y;
 }
 
-void draw_countdown(const Gui& gui, const std::string& words, int left_s) {
+namespace {
+
+/// Each line of a text centred about x, an empty one as half a line; returns the y below them.
+float draw_paragraphs(const std::string& text, ImVec2 at, float width, unsigned colour) {
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) {
+    if (line.empty()) at.y += 0.5F * ImGui::GetTextLineHeight();
+    at.y = draw_centred(line, at, width, colour);
+  }
+  return at.y;
+}
+
+/// Digits, title and text from y down; returns the y below them.
+float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWords& words, float y) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float middle = screen.x / 2, column = std::min(0.86F * screen.x, 36 * gui.size_px());
+  ImGui::PushFont(font);
+  y = draw_centred(left, {middle, y}, screen.x, colour::dim) + 0.4F * gui.size_px();
+  ImGui::PopFont();
+  ImGui::PushFont(gui.title());
+  y = draw_centred(words.title, {middle, y}, column, colour::dim) + 0.6F * gui.size_px();
+  ImGui::PopFont();
+  ImGui::PushFont(gui.body());
+  y = draw_paragraphs(words.text, {middle, y}, column, colour::dim);
+  ImGui::PopFont();
+  return y;
+}
+
+}  // namespace
+
+void draw_countdown(const Gui& gui, const PauseWords& words, int left_s) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(screen);
@@ -133,14 +163,12 @@ void draw_countdown(const Gui& gui, const std::string& words, int left_s) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoInputs);
   char left[32];
   std::snprintf(left, sizeof left, "%d:%02d", left_s / 60, left_s % 60);
-  ImGui::PushFont(gui.huge());
-  const float height = ImGui::GetTextLineHeight();
-  draw_centred(left, {screen.x / 2, (screen.y - height) / 2}, screen.x, colour::dim);
-  ImGui::PopFont();
-  ImGui::PushFont(gui.body());
-  draw_centred(words, {screen.x / 2, (screen.y + height) / 2 + 0.4F * gui.size_px()}, 0.8F * screen.x,
-               colour::faint);
-  ImGui::PopFont();
+  // What is drawn below the window is measured and not seen.
+  const auto height = [&](ImFont* font) {
+    return draw_pause(gui, font, left, words, 2 * screen.y) - 2 * screen.y;
+  };
+  ImFont* const font = height(gui.huge()) < 0.94F * screen.y ? gui.huge() : gui.body();
+  draw_pause(gui, font, left, words, std::max(0.03F * screen.y, (screen.y - height(font)) / 2));
   ImGui::End();
 }
 

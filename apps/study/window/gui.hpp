@@ -45,7 +45,14 @@ class Gui {
 /// Words centred about x, wrapped to a width, from y down; returns the y below them.
 float draw_centred(const std::string& words, ImVec2 top_centre, float width, unsigned colour);
 
-/// Words and the minutes and seconds left, in the middle of the window.
-void draw_countdown(const Gui& gui, const std::string& words, int left_s);
+/// What stands with a countdown: a line, and a text of paragraphs parted by empty lines. Either may be empty.
+struct PauseWords {
+  std::string title, text;
+  bool none() const { return title.empty() && text.empty(); }
+};
+
+/// The words and the minutes and seconds left, in the middle of the window; small digits make room for a long
+/// text.
+void draw_countdown(const Gui& gui, const PauseWords& words, int left_s);
 
 }  // namespace apps

@@ -64,7 +64,7 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::Begin("page", nullptr, plain);
   const float top = 1.4F * size, bottom = screen.y - 5.4F * size;
   ImGui::SetCursorPos({0, top});
-  ImGui::BeginChild("body", {screen.x, bottom - top}, false, ImGuiWindowFlags_NoNav);
+  ImGui::BeginChild(layer_, {screen.x, bottom - top}, false, ImGuiWindowFlags_NoNav);
   draw_body(state, now_ns);
   const bool more = ImGui::GetScrollY() < ImGui::GetScrollMaxY() - 1;
   ImGui::EndChild();
@@ -79,6 +79,8 @@ void PageView::draw_body(PageState& state, std::int64_t now_ns) {
   const float size = gui_.size_px(), room = ImGui::GetContentRegionAvail().y;
   const float left = (ImGui::GetWindowWidth() - column_) / 2;
   ImGui::SetCursorPos({left, std::max(0.0F, 0.42F * (room - height_))});
+  if (!begun_) ImGui::SetScrollY(0);  // where the page before was scrolled to
+  begun_ = true;
   if (scroll_lines_ != 0) ImGui::SetScrollY(ImGui::GetScrollY() + scroll_lines_ * 3 * size);
   scroll_lines_ = 0;
   const float begun = ImGui::GetCursorPosY();
@@ -177,7 +179,7 @@ bool PageView::score_button(const PageState& state, std::size_t i, int score, co
   const ImVec2 at{left_aligned ? from.x + 0.6F * size : from.x + (width - extent.x) / 2,
                   from.y + (height - extent.y) / 2};
   list.AddText(nullptr, 0, at, colour::text, label.c_str(), nullptr, wrap);
-  return clicked && armed_;
+  return clicked && armed_ && ImGui::GetMousePos().y > pinned_until_;
 }
 
 void PageView::draw_scale(PageState& state, std::size_t i, std::int64_t now_ns) {
@@ -293,7 +295,10 @@ void PageView::draw_matrix(PageState& state, std::size_t first, std::size_t end,
   const float size = gui_.size_px(), count = static_cast<float>(scores.size());
   const float label = 0.4F * column_, cell = std::min((column_ - label) / count, 6.5F * size);
   const float x = ImGui::GetCursorScreenPos().x, left = x + column_ - cell * count, gap = 0.2F * size;
+  const float head = ImGui::GetCursorScreenPos().y;
   draw_anchors(model, left, cell);
+  const float edge = ImGui::GetWindowPos().y, head_height = ImGui::GetCursorScreenPos().y - head;
+  if (head < edge) pinned_until_ = edge + head_height;
   for (std::size_t i = first; i < end; ++i) {
     const float top = ImGui::GetCursorScreenPos().y + 0.15F * size;
     const std::string& words = state.question(i).text;
@@ -311,6 +316,18 @@ void PageView::draw_matrix(PageState& state, std::size_t first, std::size_t end,
     ImGui::Dummy({1, 1});
     follow_focus(state, i, top);
   }
+  if (head < edge && ImGui::GetCursorScreenPos().y > edge + 2 * head_height) pin_anchors(model, left, cell);
+  pinned_until_ = -1;
+}
+
+/// A table whose words have left the window at the top keeps them in sight.
+void PageView::pin_anchors(const Question& question, float left, float cell) {
+  const ImVec2 cursor = ImGui::GetCursorScreenPos(), edge = ImGui::GetWindowPos();
+  ImGui::GetWindowDrawList()->AddRectFilled(edge, {edge.x + ImGui::GetWindowWidth(), pinned_until_},
+                                            colour::background);
+  ImGui::SetCursorScreenPos({cursor.x, edge.y});
+  draw_anchors(question, left, cell);
+  ImGui::SetCursorScreenPos(cursor);
 }
 
 void PageView::draw_footer(PageState& state, std::int64_t now_ns) {

@@ -13,8 +13,9 @@ namespace apps {
 
 class PageView {
  public:
-  PageView(Gui& gui, const DeskWords& words, std::string title, std::string text)
-      : gui_(gui), words_(words), title_(std::move(title)), text_(std::move(text)) {}
+  /// layer: pages above one another have one each, so that the lower one stays scrolled as it is.
+  PageView(Gui& gui, const DeskWords& words, std::string title, std::string text, const char* layer = "body")
+      : gui_(gui), words_(words), title_(std::move(title)), text_(std::move(text)), layer_(layer) {}
 
   /// Draws into the current frame of the Gui.
   void draw(PageState& state, std::int64_t now_ns);
@@ -30,6 +31,7 @@ class PageView {
   void draw_question(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_scale(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_anchors(const study::Question& question, float left, float cell);
+  void pin_anchors(const study::Question& question, float left, float cell);
   void draw_list(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_number(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_words(PageState& state, std::size_t i, std::int64_t now_ns);
@@ -43,6 +45,10 @@ class PageView {
   Gui& gui_;
   const DeskWords& words_;
   std::string title_, text_;
+  const char* layer_;
+  bool begun_ = false;  ///< was drawn before
+  float pinned_until_ =
+      -1;             ///< lower edge of the words pinned above a table, px; clicks above it are not its rows'
   float column_ = 0;  ///< width of the text, px
   float height_ = 0;  ///< of the content as last drawn, px
   float scroll_lines_ = 0;

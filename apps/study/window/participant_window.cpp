@@ -112,6 +112,7 @@ void ParticipantWindow::show_cursor(bool shown) {
 void ParticipantWindow::forget_input() {
   glfwPollEvents();
   window_.take_keys();
+  window_.take_minimised();
   gamepad_.forget();
 }
 
@@ -172,6 +173,7 @@ std::vector<study::TimedAnswer> ParticipantWindow::run_page(const std::string& t
     glfwSwapBuffers(window_.get());
   }
   show_black();
+  window_.take_minimised();  // that the page was away for a while does no harm
   return state.answers();
 }
 
@@ -183,7 +185,7 @@ bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Chec
   question.anchors = {{1, words_.stop_no}, {2, words_.stop_yes}};
   const While here(in_page_);
   show_cursor(true);
-  PageView view(gui_, words_, words_.stop_title, words_.stop_text);
+  PageView view(gui_, words_, words_.stop_title, words_.stop_text, "stop");
   PageState state({&question, 1}, 0, clock.now_ns());
   while (!state.confirmed()) {
     poll(poll_s);
@@ -195,7 +197,7 @@ bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Chec
   return state.answers()[0].answer.score == 2;
 }
 
-void ParticipantWindow::wait(const std::string& words, std::int64_t until_ns, const study::Clock& clock,
+void ParticipantWindow::wait(const PauseWords& words, std::int64_t until_ns, const study::Clock& clock,
                              const study::Check& check) {
   const While here(in_page_);
   show_black();
@@ -213,7 +215,7 @@ void ParticipantWindow::wait(const std::string& words, std::int64_t until_ns, co
       drawn_s = -1;
     }
     const int whole_s = static_cast<int>(std::ceil(left_s));
-    if (words.empty() || whole_s == drawn_s) continue;
+    if (words.none() || whole_s == drawn_s) continue;
     drawn_s = whole_s;
     gui_.begin(black);
     draw_countdown(gui_, words, whole_s);
@@ -224,10 +226,25 @@ void ParticipantWindow::wait(const std::string& words, std::int64_t until_ns, co
   if (drawn_s >= 0) show_black();
 }
 
+study::Wish ParticipantWindow::wait_while_minimised(const std::function<study::Wish()>& others) {
+  while (window_.minimised()) {
+    poll(poll_s);
+    const study::Wish other = others ? others() : study::Wish::GoOn;
+    if (other == study::Wish::Stop || other == study::Wish::EndSession) return other;
+  }
+  away_ = false;
+  forget_input();
+  show_black();
+  return study::Wish::GoOn;
+}
+
 study::Wish ParticipantWindow::wish(const std::function<study::Wish()>& others) {
   const study::Wish wish = others ? others() : study::Wish::GoOn;
   if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
   if (in_page_ || wish != study::Wish::GoOn) return wish;
+  if (away_) return wait_while_minimised(others);
+  away_ = window_.take_minimised();
+  if (away_) return study::Wish::NotShown;  // the cut is kept first, then the window is waited for
   const auto keys = window_.take_keys();
   if (std::find(keys.begin(), keys.end(), GLFW_KEY_ESCAPE) == keys.end()) return wish;
   const auto check = [&others] {

@@ -33,8 +33,8 @@ class ParticipantWindow {
   std::vector<study::TimedAnswer> run_page(const std::string& title, const std::string& text,
                                            std::span<const study::Question> questions, double least_s,
                                            const study::Clock& clock, const study::Check& check);
-  /// Black until then, with words in the middle and the time left when there are any.
-  void wait(const std::string& words, std::int64_t until_ns, const study::Clock& clock,
+  /// Black until then, with the time left and the words when there are any.
+  void wait(const PauseWords& words, std::int64_t until_ns, const study::Clock& clock,
             const study::Check& check);
   /// Black, handed over now.
   void show_black();
@@ -43,7 +43,8 @@ class ParticipantWindow {
   /// display is gone.
   void poll(double wait_s);
   /// To be asked by the session: what `others` wish, else the end of the session if the participant said so.
-  /// Esc during a stimulus asks here; the trial is then over or shown again.
+  /// Esc during a stimulus asks here; the trial is then over or shown again. It is shown again too when the
+  /// window was minimised during a stimulus, once it is back.
   study::Wish wish(const std::function<study::Wish()>& others);
 
   GlfwWindow& window() { return window_; }
@@ -60,6 +61,8 @@ class ParticipantWindow {
   bool ask_to_stop(const study::Clock& clock, const study::Check& check);
   void show_cursor(bool shown);
   void forget_input();
+  /// Until the window is back, or others wish the end.
+  study::Wish wait_while_minimised(const std::function<study::Wish()>& others);
 
   GlfwWindow window_;
   GlfwWindow::Size size_;
@@ -68,6 +71,7 @@ class ParticipantWindow {
   Gamepad gamepad_;
   bool in_page_ = false;  ///< Esc is answered there
   bool stop_wished_ = false;
+  bool away_ = false;  ///< the last wish was NotShown: the window may still be minimised
 };
 
 }  // namespace apps

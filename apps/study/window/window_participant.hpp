@@ -20,7 +20,7 @@ class WindowParticipant final : public study::Participant {
   std::vector<study::TimedAnswer> ask(const study::Block& block, std::span<const study::Question> questions,
                                       const study::Occasion& occasion, study::Clock& clock,
                                       const study::Check& check) override;
-  void pause(study::PauseKind kind, double seconds, study::Clock& clock, const study::Check& check) override;
+  void pause(const study::Pause& pause, study::Clock& clock, const study::Check& check) override;
 
  private:
   std::shared_ptr<ParticipantWindow> window_;
