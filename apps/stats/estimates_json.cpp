@@ -44,8 +44,8 @@ void add_curve(Json& json, const stats::Curve* curve) {
   json["b"] = curve ? Json(curve->b) : Json();
 }
 
-Json estimator_entry(const char* code, const char* label, double level) {
-  return {{"code", code}, {"label", label}, {"main", std::string(code) == "direct"}, {"level", level}};
+Json estimator_entry(const char* code, const char* label, double level, bool main = false) {
+  return {{"code", code}, {"label", label}, {"main", main}, {"level", level}};
 }
 
 Json ordinal_json(Json json, const stats::OrdinalPilotEstimate& estimate) {
@@ -121,7 +121,7 @@ Json contour_estimate_json(const stats::PilotEstimate& estimate) {
 Json estimators_json(const PilotFit& fit) {
   Json list = Json::array();
   for (const auto& [level, at] : fit.harmonic) {
-    auto direct = estimator_entry("direct", "direct model of all ratings", level);
+    auto direct = estimator_entry("direct", "direct model of all ratings", level, level == fit.level);
     direct.update(direct_json(at.direct));
     list.push_back(direct);
     auto contour = estimator_entry("contour", "contour of means (the paper's)", level);

@@ -172,8 +172,10 @@ void add_run_command(CLI::App& app) {
                  "Where frames go: a window (a person's), drawn without a window, or nowhere (an observer's)")
       ->check(CLI::IsMember({"window", "headless", "none"}));
   sub.add_option("--gaze", command->run.gaze,
-                 "Where one is taken to look: the middle of the picture, the mouse, or not known")
-      ->check(CLI::IsMember({"fixed", "mouse", "none"}));
+                 "Where one is taken to look: the middle of the picture, the mouse, or not known; tracked: "
+                 "an observer's, "
+                 "kept as if a tracker had told it")
+      ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,
                  "Width of the picture on the screen; gives the camera's angle");

@@ -32,6 +32,9 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
     throw base::Error("--clock virtual", "does not wait for a window", "use --clock real");
   if (options.gaze == "mouse" && options.display != "window")
     throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
+  if (options.gaze == "tracked" && options.observer.empty())
+    throw base::Error("--gaze tracked", "needs an eye tracker, and none can be read",
+                      "use --gaze fixed or mouse; an --observer may be taken as tracked");
   if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
     throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
                       "use --clock real");

@@ -104,6 +104,7 @@ TEST_F(StudyCommandsE2e, APersonNeedsANameAWindowAndRealTime) {
   expect_error(asks({"--participant", "P1", "--display", "none"}), "shows nothing to a person");
   expect_error(asks({"--participant", "P1", "--clock", "virtual"}), "does not wait for a person");
   expect_error(asks({"--observer", "random", "--gaze", "mouse"}), "needs a window");
+  expect_error(asks({"--participant", "P1", "--gaze", "tracked"}), "needs an eye tracker");
   expect_error(asks({"--observer", "random", "--screen-width-mm", "500"}), "only together");
   expect_error(asks({"--observer", "nobody"}), "is not a kind of observer");
 }
