@@ -104,6 +104,16 @@ std::string protocols_text(const Field& study) {
   return out;
 }
 
+std::string pilot_text(const Field& pilot) {
+  if (!pilot["protocol"].there()) return {};
+  std::string out = "The protocol of the pilot was " + words(pilot["protocol"]["name"]) +
+                    " (SHA-256 <span class=\"hash\">" + words(pilot["protocol"]["sha256"]) + "</span>). ";
+  if (pilot["status"].words() != "ok") return out;
+  return out + count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) +
+         " ratings of " + count(pilot["n_settings"]) + " settings. Estimator of a and b: " +
+         words(pilot["estimator"]) + "; intervals: " + words(pilot["interval"]["method"]) + ". ";
+}
+
 std::string exclusions_table(const Field& root) {
   Table table("All that was left out",
               {"Participant", "Task", "Visit", "Trial", "Rule", "Reason", "Decided by", "Answers lost"});
@@ -119,7 +129,8 @@ std::string exclusions_table(const Field& root) {
 
 std::string head_section(const Field& root) {
   const Field study = root["study"];
-  std::string names;
+  const Field pilot = root["pilot"]["protocol"];
+  std::string names = pilot.there() ? words(pilot["name"]) : "";
   for (const Field& protocol : study["protocols"].entries())
     names += (names.empty() ? "" : ", ") + words(protocol["name"]);
   std::string out = "<h1>Results of " +
@@ -139,7 +150,7 @@ std::string head_section(const Field& root) {
 
 std::string methods_section(const Field& root) {
   const Field study = root["study"];
-  std::string text = protocols_text(study) + people(root["flow"]);
+  std::string text = pilot_text(root["pilot"]) + protocols_text(study) + people(root["flow"]);
   if (study["gaze"].there()) text += "Sessions by source of gaze: " + counts(study["gaze"]) + ". ";
   if (study["displays"].there()) text += "Sessions by display: " + counts(study["displays"]) + ". ";
   if (root["plan"]["exclusions"].there()) text += exclusion_rules(root["plan"]["exclusions"]);
