@@ -110,8 +110,9 @@ std::string pilot_text(const Field& pilot) {
                     " (SHA-256 <span class=\"hash\">" + words(pilot["protocol"]["sha256"]) + "</span>). ";
   if (pilot["status"].words() != "ok") return out;
   return out + count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) +
-         " ratings of " + count(pilot["n_settings"]) + " settings. Estimator of a and b: " +
-         words(pilot["estimator"]) + "; intervals: " + words(pilot["interval"]["method"]) + ". ";
+         " ratings of " + count(pilot["n_settings"]) +
+         " settings. Estimator of a and b: " + words(pilot["estimator"]) +
+         "; intervals: " + words(pilot["interval"]["method"]) + ". ";
 }
 
 std::string exclusions_table(const Field& root) {
