@@ -170,8 +170,10 @@ expect "session" done "$(ask "select state from session")"
 expect "units" "$units" "$(ask "select count(*) from unit")"
 expect "units done" "$units" "$(ask "select count(*) from unit where state = 'done'")"
 expect "trials answered" "$trials" "$(ask "select count(*) from trial where state = 'answered'")"
+# The break between two groups is a unit of the trials' block that asks nothing.
 expect "questions without an answer" 0 "$(ask "select count(*) from unit u join ask a using (block) join question q using (question_id)
-  where not q.personal and not exists (select 1 from response r where r.unit_id = u.unit_id and r.question_id = q.question_id
+  where not q.personal and not (u.kind = 'stimulus' and u.trial_id is null)
+  and not exists (select 1 from response r where r.unit_id = u.unit_id and r.question_id = q.question_id
   and (r.score is not null or r.words is not null))")"
 ask "select u.position, q.code, r.score from response r join unit u using (unit_id) join question q using (question_id)
   join ask a on a.block = u.block and a.question_id = q.question_id order by u.position, a.place" >"$out/kept"
