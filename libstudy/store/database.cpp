@@ -13,7 +13,7 @@ using sqlite::Open;
 
 namespace {
 
-constexpr std::array step_files{"001_initial.sql", "002_blocks.sql"};
+constexpr std::array step_files{"001_initial.sql", "002_blocks.sql", "003_permissions.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 constexpr std::uintmax_t smallest_page_bytes = 512;
 

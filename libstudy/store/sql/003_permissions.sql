@@ -1,0 +1,63 @@
+-- Step 3. What people allowed and where they looked; which exports hold whom; what is still to be cleaned beside the file.
+
+-- The experimenter's changes to what was answered to the questions gaze_kept and data_shared; the last one counts.
+CREATE TABLE permission_change (
+  permission_change_id INTEGER PRIMARY KEY, -- order of changes
+  session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
+  what TEXT NOT NULL CHECK (what IN ('gaze', 'sharing')), -- gaze: kept in this database; sharing: part of public exports
+  granted INTEGER NOT NULL CHECK (granted IN (0, 1)), -- 1: allowed, 0: refused
+  utc TEXT NOT NULL -- when
+) STRICT;
+CREATE INDEX permission_change_of_session ON permission_change (session_id);
+
+-- What holds for each session. granted: 1 allowed, 0 refused or asked and not answered yet, empty: the protocol does not ask.
+CREATE VIEW permission AS
+  SELECT s.session_id, s.person, w.what, coalesce(
+    (SELECT c.granted FROM permission_change c WHERE c.session_id = s.session_id AND c.what = w.what
+      ORDER BY c.permission_change_id DESC LIMIT 1),
+    (SELECT coalesce(r.score = 1, 0) FROM response r JOIN unit u USING (unit_id) JOIN question q USING (question_id)
+      WHERE u.session_id = s.session_id AND q.code = w.code ORDER BY r.response_id DESC LIMIT 1),
+    (SELECT 0 FROM question q WHERE q.protocol_id = s.protocol_id AND q.code = w.code)) AS granted
+  FROM session s CROSS JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w;
+
+-- Samples of where the participant looked, at the rate at which they came. Only of those who allowed it.
+CREATE TABLE gaze (
+  presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
+  sample_index INTEGER NOT NULL CHECK (sample_index >= 0), -- from 0
+  source TEXT NOT NULL CHECK (source IN ('tracker', 'mouse')), -- tracker: an eye tracker; mouse: the pointer, which people often do not look at
+  sampled_ns INTEGER NOT NULL, -- when the sample came, after the presentation's start_ns, ns
+  device_ns INTEGER, -- the device's own time stamp; empty: it gives none, ns
+  valid INTEGER NOT NULL CHECK (valid IN (0, 1)), -- 1: the source knew where; 0: a blink, or off the picture
+  x REAL, -- from the left edge, as a share of the picture's width; empty: not known
+  y REAL, -- from the top edge, as a share of the picture's height; empty: not known
+  PRIMARY KEY (presentation_id, sample_index)
+) STRICT, WITHOUT ROWID;
+
+-- Files and folders outside the database that hold data of people, written down before the first byte of them is.
+CREATE TABLE export (
+  export_id INTEGER PRIMARY KEY, -- row number
+  kind TEXT NOT NULL, -- csv, bids, psych-ds, or the command that wrote it
+  path TEXT NOT NULL, -- where: absolute, without links
+  host TEXT NOT NULL, -- name of the computer; empty: not known
+  utc TEXT NOT NULL -- when
+) STRICT;
+
+CREATE TABLE export_person (
+  export_id INTEGER NOT NULL REFERENCES export, -- export
+  person TEXT NOT NULL, -- participant in it, as in session
+  PRIMARY KEY (export_id, person)
+) STRICT, WITHOUT ROWID;
+
+-- What a withdrawal or a merge has still to do in files beside this one: written with its commit, deleted when done.
+CREATE TABLE chore (
+  chore_id INTEGER PRIMARY KEY, -- order
+  kind TEXT NOT NULL CHECK (kind IN ('forget', 'rename')), -- forget: delete a person; rename: give a code instead of another
+  person TEXT NOT NULL, -- person concerned
+  participant TEXT NOT NULL, -- code under which files beside this one know the person
+  code TEXT NOT NULL, -- code as given at the station
+  renamed TEXT -- rename: the new code
+) STRICT;
+
+-- Earlier versions wrote exports into the log alone, without saying who was in them: all who were there.
+INSERT INTO export (kind, path, host, utc) SELECT 'unknown', detail, '', min(utc) FROM event WHERE kind = 'export' GROUP BY detail;
+INSERT INTO export_person SELECT DISTINCT e.export_id, s.person FROM export e CROSS JOIN session s;
