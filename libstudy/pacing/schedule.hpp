@@ -28,10 +28,6 @@ struct PacingRules {
 /// number, or no upper cut where there is no fixed refresh.
 PacingRules for_display(PacingRules rules, double refresh_hz);
 
-/// Smallest standard deviation other than 0 that a design may ask for, frames/s: intervals are whole
-/// nanoseconds.
-inline constexpr double least_sd_fps = 1e-3;
-
 /// One cell of the design: mean and standard deviation of the frame rate, frames/s, and the trial's length.
 struct FpsSetting {
   double mean = 0;

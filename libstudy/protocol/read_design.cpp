@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/protocol/readers.hpp"
 
 namespace study {
