@@ -16,17 +16,11 @@ struct Resolution {
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// Refuses, by base::Error that names the key, what could only be computed for nothing: water thinner than a
-/// particle, more than 1000 substeps a frame, and a tank so much larger than its water that the cells of the
-/// coarse pressure, of `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
-void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m);
-
 /// Exactly particle_count(method, n_star) points: layers from the floor up, the last layer partial; nx =
 /// round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), at most 1000, the same for all methods of a scene and
-/// n_*.
+/// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
 int substeps_of(const Scene& scene, std::int64_t n_star);
 
 }  // namespace sim

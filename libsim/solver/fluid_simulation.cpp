@@ -5,6 +5,7 @@
 
 #include "libsim/exec/gl_sharing.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
 #include "stats/base/error.hpp"
 

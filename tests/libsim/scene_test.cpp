@@ -8,7 +8,9 @@
 #include <filesystem>
 
 #include "libsim/methods/preset.hpp"
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
+#include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -98,7 +100,17 @@ TEST(Extent, MoreSubstepsThanAnybodyWaitsForAreRefused) {
   scene.frame_dt_s = 1;
   EXPECT_THAT(extent_error(scene, MethodKind::HiRes, 4 << 20),
               testing::AllOf(testing::HasSubstr("time.v_ref_m_s"), testing::HasSubstr("substeps")));
-  EXPECT_EQ(sim::substeps_of(scene, 4 << 20), 1000);
+}
+
+TEST(Extent, MoreMemoryThanThereIsIsRefusedWithBothNumbers) {
+  EXPECT_NO_THROW(sim::check_memory(MethodKind::HiRes, 128 << 10, 4e9));
+  EXPECT_NO_THROW(sim::check_memory(MethodKind::HiRes, 4 << 20, {}));
+  EXPECT_THAT([] { sim::check_memory(MethodKind::HiRes, 4 << 20, 4e9); },
+              testing::ThrowsMessage<base::Error>(testing::AllOf(
+                  testing::HasSubstr("36.9 GB of memory, 4 GB are free"), testing::HasSubstr("--n-star"))));
+  EXPECT_THROW(sim::check_memory(MethodKind::Ours, 256 << 10, 4e9), base::Error);
+  ASSERT_TRUE(sim::available_memory_bytes());
+  EXPECT_GT(*sim::available_memory_bytes(), 1e6);
 }
 
 TEST(Fill, HoldsExactCountsAndVolumeAtEveryResolution) {
