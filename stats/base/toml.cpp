@@ -1,13 +1,12 @@
 #include "stats/base/toml.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/toml_parser.hpp"
 #include "stats/base/toml_text.hpp"
 
 namespace base {
