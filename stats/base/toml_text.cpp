@@ -129,7 +129,15 @@ class Walk {
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
+  /// toml++ 3.3 looks at what stands close behind a number as if it were a part of it.
+  void check_text_begins() const {
+    constexpr std::string_view separators = " \t\n=[{,.";
+    if (at_ > 0 && separators.find(text_[at_ - 1]) == std::string_view::npos)
+      fail("is a quote right behind a key or value", "put a comma or the end of the line between them");
+  }
+
   void skip_text(char quote) {
+    check_text_begins();
     const std::string three(3, quote);
     if (text_.substr(at_, 3) != three) return skip_one_line_text(quote);
     at_ += 3;

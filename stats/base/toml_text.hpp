@@ -15,8 +15,8 @@ inline constexpr int most_toml_levels = 64;
 
 /// base::Error at `name`:line:column, columns counted in characters, when the text is too long; is not UTF-8;
 /// holds a control character; nests deeper than most_toml_levels; has a character outside ASCII elsewhere
-/// than in quotes or a comment, or right after a line-ending backslash; or escapes a NUL. All else is left to
-/// the parser.
+/// than in quotes or a comment, or right after a line-ending backslash; opens a quote right behind a key or
+/// value; or escapes a NUL. All else is left to the parser.
 void check_toml_text(std::string_view text, const std::string& name);
 
 }  // namespace base
