@@ -205,7 +205,7 @@ int main(int argc, char** argv) {
   for (CLI::App* sub : {each, killed})
     sub->add_option("--flow", options.flows, "This command only; may be repeated");
   CLI11_PARSE(app, argc, argv);
-  const ::test::TemporaryFolder folder;
+  const ::test::TemporaryFolder folder(::test::memory_folder());
   Table table;
   work(options, folder.path(), table);
   table.print();
