@@ -7,23 +7,11 @@
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
-#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
-
-namespace {
+#include "tests/fuzz/attempt.hpp"
 
 namespace fs = std::filesystem;
-
-template <class Action>
-void attempt(Action action) {
-  try {
-    action();
-  } catch (const base::Error&) {
-  }
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const test::TemporaryFolder folder(test::memory_folder());
@@ -34,10 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::fwrite(bytes.data(), 1, bytes.size(), out);
     std::fclose(out);
   }
-  attempt([&] { study::read_status(file); });
-  attempt([&] { study::read_ratings(file); });
+  fuzz::attempt([&] { study::read_status(file); });
+  fuzz::attempt([&] { study::read_ratings(file); });
   // Reading leaves the file as it was.
   if (base::read_file(file, size + 1) != bytes) std::abort();
-  attempt([&] { study::Store(file, study::sqlite::Open::Write).open_runs(); });
+  fuzz::attempt([&] { study::Store(file, study::sqlite::Open::Write).open_runs(); });
   return 0;
 }
