@@ -152,7 +152,7 @@ TEST_F(StudyCommandsE2e, FullAtThePlanLeavesNoFile) {
 }
 
 TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
-  const Ended full = run({"--participants", "4", "--max-pages", "60"});
+  const Ended full = run({"--participants", "4", "--max-pages", "70"});
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_THAT(full.err, AllOf(HasSubstr("no room left"), HasSubstr("vip-study resume")));
   const auto said = acknowledged(full.out);
