@@ -103,7 +103,7 @@ class Store {
   Store& operator=(const Store&) = delete;
 
   /// What is still left of it, each with reason and mend: a session may go on, the command ends as an error.
-  const std::vector<std::string>& left_to_clean() const { return left_; }
+  std::vector<std::string> left_to_clean() const { return left_; }
 
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
   /// base::Error when one of the participants has that visit under that protocol already, or when the same
