@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/backups.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "libstudy/store/personal.hpp"
@@ -168,6 +169,16 @@ CleanUp clean_up(Connection& database) {
   }
   keep_one_of_each(done.cleaned);
   keep_one_of_each(done.left);
+  return done;
+}
+
+CleanUp clean_up_all(Connection& database) {
+  CleanUp done = clean_up(database);
+  try {
+    rewrite_journal(database);
+  } catch (const std::exception& error) {
+    done.left.emplace_back(error.what());
+  }
   return done;
 }
 

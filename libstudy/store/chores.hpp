@@ -48,5 +48,7 @@ class ChorePlan {
 /// who withdrew (export_register.hpp), and rewrites the file when anything changed. Never throws for what
 /// cannot be done: that is `left`.
 CleanUp clean_up(sqlite::Connection& database);
+/// The same with the journal of answers made anew, as prepare_rewrite() announced (answer_journal.hpp).
+CleanUp clean_up_all(sqlite::Connection& database);
 
 }  // namespace study

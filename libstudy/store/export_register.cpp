@@ -229,7 +229,7 @@ RegisteredFiles::RegisteredFiles(const fs::path& database)
     : database_(database), people_(everybody(*open_database(database, Open::Read, read_schema_steps()))) {}
 
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
-  std::set<std::string> people = everybody(*open_database(database_, Open::Read, read_schema_steps()));
+  std::set<std::string> people = everybody(*open_register(database_));
   people.insert(people_.begin(), people_.end());
   RegisteredExport record(database_, kind, path, people);
   record.will_be(base::sha256_hex(bytes));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge_parts.hpp"
@@ -153,10 +154,13 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
   carry_chores_over(target.database(), *result);
   merging::add_exports(target.database(), *result);  // those of this very moment
   plan_chores(*result, residents_of(target.database()), names, content, merge);
+  std::vector<std::string> withdrawn;
+  for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
+  prepare_rewrite(target.database(), withdrawn);
   target.database().execute("PRAGMA secure_delete = ON");
   target.database().copy_from(*result);
   target.finish();
-  merge.beside = clean_up(target.database());
+  merge.beside = clean_up_all(target.database());
   return merge;
 }
 

@@ -1,6 +1,7 @@
 #include "libstudy/store/withdraw.hpp"
 
 #include <optional>
+#include "libstudy/store/answer_journal.hpp"
 
 #include "libstudy/store/backups.hpp"
 #include "libstudy/store/beside.hpp"
@@ -64,13 +65,14 @@ Withdrawal withdraw(const fs::path& given, const std::string& participant) {
   }
   Withdrawal done;
   done.deleted = take_stock(*database, *person);
+  prepare_rewrite(*database, {*person});
   sqlite::Transaction transaction(*database);
   bury(*database, *person, static_cast<std::int64_t>(steps.size()));
   ChorePlan plan(*database);
   plan.forget(*person, participant);
   plan.rewrite();
   transaction.commit();
-  done.beside = clean_up(*database);
+  done.beside = clean_up_all(*database);
   return done;
 }
 

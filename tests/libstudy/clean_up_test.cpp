@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/backups.hpp"
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/chores.hpp"
@@ -75,6 +76,7 @@ std::string age_of(const fs::path& path, const std::string& code) {
 void withdraw_and_stop(const fs::path& path, const std::string& code) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   const std::string person = database->text("SELECT person FROM session WHERE participant = '" + code + "'");
+  prepare_rewrite(*database, {person});
   Transaction transaction(*database);
   bury(*database, person, 3);
   ChorePlan plan(*database);

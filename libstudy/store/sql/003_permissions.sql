@@ -54,7 +54,7 @@ CREATE TABLE export_person (
 -- What a withdrawal or a merge has still to do after its commit: written with it, deleted when done.
 CREATE TABLE chore (
   chore_id INTEGER PRIMARY KEY, -- order
-  kind TEXT NOT NULL CHECK (kind IN ('backups', 'personal', 'journal', 'rename', 'rewrite')), -- backups, personal, journal: delete a person there; rename: new codes there; rewrite: this file
+  kind TEXT NOT NULL CHECK (kind IN ('backups', 'personal', 'rename', 'rewrite')), -- backups, personal: delete a person there; rename: new codes in the personal file; rewrite: this file
   batch TEXT NOT NULL, -- the commit that wrote it: renames of one are done at once, and once only
   person TEXT NOT NULL, -- person concerned; empty: nobody
   participant TEXT NOT NULL, -- code under which files beside this one know the person
