@@ -55,7 +55,8 @@ void write_station(const fs::path& path, const std::string& station, const std::
   {
     Store store(path, Open::Create);
     store.add_run(run);
-    for (const OpenSession& session : store.open_runs().back().sessions)
+    const auto runs = store.open_runs();
+    for (const OpenSession& session : runs.back().sessions)
       store.note(session.id, {}, session.plan.participant == "P02" ? secret : "calm");
   }
   for (const std::string& code : people)
