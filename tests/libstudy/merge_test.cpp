@@ -363,8 +363,8 @@ TEST_F(Stations, RowsThatBelongToNothingAreNamed) {
         << harm;
   };
   refused("DELETE FROM session WHERE session_id = 2", "belongs to no session");
-  refused("DELETE FROM presentation WHERE presentation_id = 3",
-          "presentation_id 3 belongs to no presentation");
+  refused("UPDATE frame SET presentation_id = 99 WHERE presentation_id = 3 AND frame_index = 0",
+          "presentation_id 99 belongs to no presentation");
   refused("UPDATE response SET question_id = 99 WHERE response_id = 2",
           "row 2 of response belongs to no question");
   refused("UPDATE session SET run_id = 99", "belongs to no run");
