@@ -91,9 +91,10 @@ Protocol read_protocol_table(const base::TomlTable& root) {
   return protocol;
 }
 
-Protocol parse_protocol(std::string_view text, const std::string& name) {
+Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use) {
   const auto root = base::parse_toml(text, name);
   Protocol protocol = read_protocol_table(root);
+  if (use == ProtocolUse::New) check_obeyed_questions(root, protocol.blocks);
   root.finish();
   protocol.text = text;
   protocol.sha256 = base::sha256_hex(text);

@@ -149,7 +149,36 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   return question;
 }
 
+void check_obeyed(const base::TomlTable& table, BlockKind block, const Question& question) {
+  const std::string answers = "anchors = {0 = \"no\", 1 = \"yes\"}";
+  if (block != BlockKind::Consent) {
+    table.fail("id",
+               "= \"" + question.id + "\" is kept for consent, which this block of kind " +
+                   block_kind_name(block) + " does not ask",
+               "use another id, or move the question into a block of kind consent");
+  }
+  if (question.kind != AnswerKind::Choice)
+    table.fail("kind", "of \"" + question.id + "\" is not choice", "write kind = \"choice\" with " + answers);
+  if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
+    table.fail("anchors", "of \"" + question.id + "\" are not 0 and 1", "write " + answers);
+  if (question.personal) {
+    table.fail("personal", "= true keeps the answer to \"" + question.id + "\" from being obeyed",
+               "remove it: the answer is kept under the code");
+  }
+}
+
 }  // namespace
+
+void check_obeyed_questions(const base::TomlTable& root, const std::vector<Block>& blocks) {
+  const auto tables = root.tables("block");
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    for (std::size_t q = 0; q < blocks[i].questions.size(); ++q) {
+      const Question& question = blocks[i].questions[q];
+      if (question.id == gaze_question || question.id == sharing_question)
+        check_obeyed(tables[i].tables("question")[q], blocks[i].kind, question);
+    }
+  }
+}
 
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language) {

@@ -30,6 +30,8 @@ std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design
                                const std::string& language);
 /// What each trial of a block does.
 std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
+/// The questions that the program obeys are asked so that it can: error at the key that does not fit.
+void check_obeyed_questions(const base::TomlTable& root, const std::vector<Block>& blocks);
 /// The questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);

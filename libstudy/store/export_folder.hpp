@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace study {
@@ -15,6 +17,12 @@ namespace study {
 struct ExportedFile {
   std::string name;
   std::int64_t rows = 0;
+};
+
+/// An export that others may read, and whom it leaves out.
+struct PublicExport {
+  std::vector<ExportedFile> files;
+  SharingCount people;
 };
 
 /// A folder beside the target that is gone unless put in place, so that the target never holds a part.

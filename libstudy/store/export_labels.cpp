@@ -14,12 +14,13 @@ const std::string& Labels::of(const std::string& text) {
   return labels_[text] = label;
 }
 
-std::vector<LabelledSession> labelled_sessions(sqlite::Connection& database) {
+std::vector<LabelledSession> shared_sessions(sqlite::Connection& database) {
   Labels people, protocols, visits;
   std::vector<LabelledSession> sessions;
   sqlite::Statement row(database,
                         "SELECT s.session_id, s.participant, p.name, p.sha256, s.visit FROM session s "
-                        "JOIN protocol p USING (protocol_id) ORDER BY s.participant, s.session_id");
+                        "JOIN protocol p USING (protocol_id) JOIN sharing h USING (person) "
+                        "WHERE h.granted IS NOT 0 ORDER BY s.participant, s.session_id");
   std::map<std::string, std::string> name_of;  // by hash: two texts under one name are two data sets
   while (row.step()) {
     const std::string sha256 = row.text(3);

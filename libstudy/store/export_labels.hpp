@@ -28,7 +28,8 @@ struct LabelledSession {
   std::string subject, session, protocol;  ///< labels; session: protocol and visit
 };
 
-/// All sessions, by participant, then in the order of planning.
-std::vector<LabelledSession> labelled_sessions(sqlite::Connection& database);
+/// The sessions that may stand in a public export, by participant, then in the order of planning. Whoever
+/// refused that in one session, or was asked and has not answered, is left out with all of them.
+std::vector<LabelledSession> shared_sessions(sqlite::Connection& database);
 
 }  // namespace study

@@ -89,13 +89,14 @@ void write_description(Connection& database, const ExportDraft& draft) {
 
 }  // namespace
 
-std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& folder) {
+PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   ExportDraft draft(folder, is_export);
   const auto database = open_database(path, Open::Read, read_schema_steps());
   std::vector<ExportedFile> files;
   database->execute("BEGIN");
+  const SharingCount people = count_sharing(*database);
   fs::create_directory(draft.path() / "data");
-  for (const LabelledSession& session : labelled_sessions(*database)) {
+  for (const LabelledSession& session : shared_sessions(*database)) {
     const std::string stem =
         "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
     const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
@@ -107,7 +108,7 @@ std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& 
   database->execute("COMMIT");
   remember_export(path, draft.target());
   draft.put_in_place();
-  return files;
+  return {std::move(files), people};
 }
 
 }  // namespace study

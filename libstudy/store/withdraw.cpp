@@ -29,6 +29,12 @@ constexpr const char* delete_sessions =
     "DELETE FROM session WHERE session_id IN temp.gone;"
     "DELETE FROM run WHERE run_id NOT IN (SELECT run_id FROM session);";
 
+/// What schema 3 added to them.
+constexpr const char* delete_permissions =
+    "DELETE FROM permission_change WHERE session_id IN temp.gone;"
+    "DELETE FROM gaze WHERE presentation_id IN (SELECT presentation_id FROM presentation "
+    "JOIN trial USING (trial_id) WHERE session_id IN temp.gone);";
+
 /// The same in schema 1, where answers belong to trials and there are no pages.
 constexpr const char* delete_sessions_1 =
     "DELETE FROM event WHERE session_id IN temp.gone;"
@@ -119,7 +125,8 @@ void bury_in_schema_1(Connection& backup, const std::string& participant, const 
 bool scrub_backup(const fs::path& path, const std::string& participant, const std::string& code) {
   Connection backup(path, Open::Write);
   const auto version = backup.integer("PRAGMA user_version");
-  if (backup.integer("PRAGMA application_id") != database_application_id || version < 1 || version > 2)
+  if (backup.integer("PRAGMA application_id") != database_application_id || version < 1 ||
+      version > static_cast<std::int64_t>(read_schema_steps().size()))
     throw base::Error(path.string(), "is not a backup that this program knows", "delete it");
   backup.text("PRAGMA journal_mode = DELETE");
   backup.execute("PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY");
@@ -155,6 +162,8 @@ void bury(Connection& database, const std::string& person) {
       .bind(0, base::utc_now())
       .bind(1, person)
       .run();
+  if (database.integer("SELECT count(*) FROM sqlite_schema WHERE name = 'gaze'") > 0)
+    database.execute(delete_permissions);
   database.execute(delete_sessions);
 }
 

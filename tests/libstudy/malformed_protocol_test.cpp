@@ -335,4 +335,35 @@ TEST(Protocol, AnAssignmentThatCannotBeListedIsRefused) {
   EXPECT_THAT(error_of(large_design(101, 1)), HasSubstr("more than 1000 cells"));
 }
 
+constexpr const char* gaze_box =
+    "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Where I look may be recorded.\"\nanchors = {0 = \"no\", "
+    "1 = \"yes\"}";
+
+/// The questions that the program obeys.
+INSTANTIATE_TEST_SUITE_P(
+    Obeyed, MalformedProtocol,
+    testing::Values(
+        Malformed{task1, "id = \"realism\"\nkind", "id = \"data_shared\"\nkind", "id = |\"data_shared\"",
+                  "is kept for consent", "into a block of kind consent"},
+        Malformed{task1, gaze_box, "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]",
+                  "kind = |\"scale\"", "of \"gaze_kept\" is not choice",
+                  "anchors = {0 = \"no\", 1 = \"yes\"}"},
+        Malformed{
+            task1, gaze_box,
+            "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Look\"\nanchors = {1 = \"no\", 2 = \"yes\"}",
+            "anchors = |{1 = \"no\", 2", "are not 0 and 1", "anchors = {0 = \"no\", 1 = \"yes\"}"},
+        Malformed{
+            task1, gaze_box,
+            "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Look\"\nanchors = {0 = \"no\", 1 = \"yes\"}\n"
+            "personal = true",
+            "personal = |true", "from being obeyed", "remove it"}));
+
+/// A database may hold them: resuming and reading it must go on.
+TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
+  const std::string whole = base::read_file(base::resource("protocols/task1.toml"), 1 << 20);
+  const std::string text =
+      replaced(whole, gaze_box, "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]");
+  EXPECT_EQ(study::parse_protocol(text, "p.toml", study::ProtocolUse::Stored).blocks.size(), 3u);
+}
+
 }  // namespace
