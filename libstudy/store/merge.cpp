@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge_parts.hpp"
 #include "libstudy/store/personal.hpp"
@@ -137,11 +138,15 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
   content.sources.clear();  // into itself may be among them
 
   Target target(into);
+  std::vector<std::string> withdrawn;
+  for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
+  prepare_rewrite(target.database(), withdrawn);
   const auto residents = residents_of(target.database());
   target.database().execute("PRAGMA secure_delete = ON");
   target.database().copy_from(*result);
   target.finish();
   rewrite(target.database());
+  rewrite_journal(target.database());
   follow_beside(into, residents, names, content, merge);
   return merge;
 }
