@@ -118,7 +118,8 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
       ->excludes(plan);
-  sub->footer("All of it is the lab's own: it is made of everybody's data, also of those who refused to share it.");
+  sub->footer(
+      "All of it is the lab's own: it is made of everybody's data, also of those who refused to share it.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     write_report(*command);

@@ -149,33 +149,28 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   return question;
 }
 
-void check_obeyed(const base::TomlTable& table, BlockKind block, const Question& question) {
-  const std::string answers = "anchors = {0 = \"no\", 1 = \"yes\"}";
-  if (block != BlockKind::Consent) {
-    table.fail("id",
-               "= \"" + question.id + "\" is kept for consent, which this block of kind " +
-                   block_kind_name(block) + " does not ask",
-               "use another id, or move the question into a block of kind consent");
-  }
-  if (question.kind != AnswerKind::Choice)
-    table.fail("kind", "of \"" + question.id + "\" is not choice", "write kind = \"choice\" with " + answers);
+/// Why the program could not obey the answers to a question; empty: it can.
+std::string why_not_obeyed(BlockKind block, const Question& question) {
+  if (block != BlockKind::Consent) return "stands in a block of kind " + block_kind_name(block);
+  if (question.kind != AnswerKind::Choice) return "is not of kind choice";
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
-    table.fail("anchors", "of \"" + question.id + "\" are not 0 and 1", "write " + answers);
-  if (question.personal) {
-    table.fail("personal", "= true keeps the answer to \"" + question.id + "\" from being obeyed",
-               "remove it: the answer is kept under the code");
-  }
+    return "has other answers than 0 and 1";
+  return question.personal ? "is personal" : "";
 }
 
 }  // namespace
 
-void check_obeyed_questions(const base::TomlTable& root, const std::vector<Block>& blocks) {
-  const auto tables = root.tables("block");
+void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     for (std::size_t q = 0; q < blocks[i].questions.size(); ++q) {
       const Question& question = blocks[i].questions[q];
-      if (question.id == gaze_question || question.id == sharing_question)
-        check_obeyed(tables[i].tables("question")[q], blocks[i].kind, question);
+      if (question.id != gaze_question && question.id != sharing_question) continue;
+      const std::string why = why_not_obeyed(blocks[i].kind, question);
+      if (why.empty()) continue;
+      tables[i].fail_at(
+          "question", q, "\"" + question.id + "\" " + why + ", so that its answer cannot be obeyed",
+          "ask it in a block of kind consent with kind = \"choice\" and anchors = {0 = \"no\", 1 = "
+          "\"yes\"}, without personal; or use another id");
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "libstudy/store/permissions.hpp"
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "libstudy/store/writer_lock.hpp"
@@ -54,6 +55,18 @@ void write_change(Connection& database, const std::string& person, const char* w
       .bind(2, permission_event)
       .bind(3, std::string(what) + (allowed ? " allowed" : " refused"))
       .run();
+}
+
+void write_changes(Connection& database, const std::string& person, const PermissionWish& wish) {
+  AnswerJournal journal(database);
+  Transaction transaction(database);
+  if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
+  if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
+  if (wish.gaze && !*wish.gaze)
+    Statement(database, std::string("DELETE FROM ") + gaze_of_person).bind(0, person).run();
+  journal.write();
+  transaction.commit();
+  journal.kept();
 }
 
 std::int64_t count_gaze(Connection& database, const std::string& person) {
@@ -120,14 +133,8 @@ PermissionChange change_permissions(const fs::path& path, const std::string& par
   const std::string person = person_of(*database, participant);
   const bool no_gaze = wish.gaze && !*wish.gaze, no_sharing = wish.sharing && !*wish.sharing;
   PermissionChange done;
-  Transaction transaction(*database);
-  if (wish.gaze) write_change(*database, person, "gaze", *wish.gaze);
-  if (wish.sharing) write_change(*database, person, "sharing", *wish.sharing);
-  if (no_gaze) {
-    done.gaze_deleted = count_gaze(*database, person);
-    Statement(*database, std::string("DELETE FROM ") + gaze_of_person).bind(0, person).run();
-  }
-  transaction.commit();
+  if (no_gaze) done.gaze_deleted = count_gaze(*database, person);
+  write_changes(*database, person, wish);
   if (no_gaze) {
     rewrite(*database);
     done.backups = backups_with_gaze(path, person);

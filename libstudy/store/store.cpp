@@ -70,16 +70,8 @@ struct Store::Statements {
                  "LEFT JOIN trial t USING (trial_id) WHERE s.session_id = ?1 AND u.unit_id = ?2 "
                  "AND q.code = ?4 AND q.personal = 0 AND u.state = 'planned' AND NOT EXISTS "
                  "(SELECT 1 FROM response r WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
-                 "AND r.attempt > coalesce(t.set_aside, -1)) RETURNING response_id"),
-        // No sample of anybody who has not allowed it.
-        gaze(database,
-             "INSERT INTO gaze SELECT p.presentation_id, coalesce((SELECT max(sample_index) + 1 FROM gaze "
-             "WHERE presentation_id = ?1), 0), ?2, ?3, ?4, ?5, ?6, ?7 FROM presentation p "
-             "JOIN trial t USING (trial_id) WHERE p.presentation_id = ?1 AND EXISTS (SELECT 1 FROM "
-             "permission a "
-             "WHERE a.session_id = t.session_id AND a.what = 'gaze' AND a.granted = 1) "
-             "RETURNING sample_index") {}
-  Statement frame, event, begin, end, response, gaze;
+                 "AND r.attempt > coalesce(t.set_aside, -1)) RETURNING response_id") {}
+  Statement frame, event, begin, end, response;
 };
 
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
@@ -157,31 +149,6 @@ void Store::add_frames(std::int64_t presentation, std::int64_t start_ns,
   commit(transaction);
 }
 
-bool Store::allows_gaze(std::int64_t session) {
-  Statement row(*database_,
-                "SELECT 1 FROM permission WHERE session_id = ? AND what = 'gaze' AND granted = 1");
-  return row.bind(0, session).step();
-}
-
-void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
-                     std::span<const GazeSample> samples) {
-  Transaction transaction(*database_);
-  Statement& insert = statements_->gaze;
-  for (const GazeSample& sample : samples) {
-    insert.bind(0, presentation).bind(1, origin == GazeOrigin::Tracker ? "tracker" : "mouse");
-    insert.bind(2, sample.sampled_ns - start_ns).bind(3, sample.device_ns).bind(4, sample.valid ? 1 : 0);
-    insert.bind_null(5).bind_null(6);
-    if (sample.point) insert.bind(5, sample.point->first).bind(6, sample.point->second);
-    const bool taken = insert.step();
-    insert.reset();
-    if (!taken) {
-      throw base::Error(path_.string(), "takes no gaze of a participant who has not allowed it",
-                        "ask gaze_kept on a page of kind consent");
-    }
-  }
-  transaction.commit();
-}
-
 void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                              std::span<const FrameRecord> frames, const TimingVerdict& verdict) {
   Transaction transaction(*database_);
@@ -234,20 +201,6 @@ void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
   if (ending) mark_ended(session, *ending, clock_ns);
   if (last) mark_done(session, unit.id, now, clock_ns);
   commit(transaction);
-}
-
-/// Who answers a consent page after the experimenter changed a permission has the last word.
-void Store::answer_over_change(std::int64_t session, const std::string& question, const std::string& now) {
-  if (question != gaze_question && question != sharing_question) return;
-  Statement(
-      *database_,
-      "INSERT INTO permission_change (session_id, what, granted, utc) "
-      "SELECT session_id, what, answered, ?3 FROM permission_answer WHERE session_id = ?1 AND what = ?2 "
-      "AND what IN (SELECT what FROM permission_change WHERE session_id = ?1)")
-      .bind(0, session)
-      .bind(1, question == gaze_question ? "gaze" : "sharing")
-      .bind(2, now)
-      .run();
 }
 
 void Store::finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns) {

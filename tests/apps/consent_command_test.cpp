@@ -10,7 +10,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// short_protocol with a consent page whose boxes the observer "constant:0" leaves at no, "constant:1" at yes.
+/// short_protocol with a consent page whose boxes the observer "constant:0" leaves at no, "constant:1" at
+/// yes.
 std::string asking_protocol() {
   std::string text = short_protocol("1");
   const std::string consent = R"([[block]]
@@ -48,8 +49,8 @@ TEST(ConsentCommandE2e, IsToldObeyedAndChanged) {
   EXPECT_THAT(call({vip_study, "status", "--db", db}).out, HasSubstr("data not shared"));
   EXPECT_THAT(call({vip_study, "consent", "P02", "--db", db}).out,
               HasSubstr("visit 1: gaze kept not asked, data shared no"));
-  const std::vector<std::string> exporting{vip_study, "export", "--db", db, "--bids", folder / "bids",
-                                           "--psych-ds", folder / "psych"};
+  const std::vector<std::string> exporting{vip_study, "export",        "--db",       db,
+                                           "--bids",  folder / "bids", "--psych-ds", folder / "psych"};
   EXPECT_THAT(call(exporting).out, HasSubstr("1 people are in it; 1 left out: 1 refused"));
   EXPECT_FALSE(fs::exists(folder / "bids" / "sub-P02"));
   EXPECT_TRUE(fs::exists(folder / "bids" / "sub-P01"));

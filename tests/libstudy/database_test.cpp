@@ -218,7 +218,7 @@ TEST(Database, Version1IsReadWithoutBeingChanged) {
   const std::string before = test::bytes_of(path);
   const auto rows = read_ratings(path);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 15u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 16u);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0].rating, 5);
   EXPECT_TRUE(rows[2].practice);
@@ -245,7 +245,10 @@ TEST(Database, EveryReleasedSchemaIsStillOpened) {
     SCOPED_TRACE(entry.path());
     const fs::path copy = folder / entry.path().filename().string();
     fs::copy_file(entry.path(), copy);
-    EXPECT_TRUE(Store(copy, Open::Write).open_runs().empty());
+    const bool finished = entry.path().filename() == "study_v1.db";
+    EXPECT_EQ(Store(copy, Open::Write).open_runs().empty(), finished);
+    EXPECT_FALSE(read_status(copy).sessions.empty());
+    if (!finished) continue;
     const auto rows = read_ratings(copy);
     ASSERT_EQ(rows.size(), 4u);
     for (const RatingRow& row : rows) {

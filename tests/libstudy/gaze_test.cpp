@@ -45,7 +45,7 @@ class TwoEach final : public GazeSource {
 
 /// A session of the asking protocol whose participant says this on the consent page.
 struct Asked : test::OneSession {
-  explicit Asked(int gaze_kept, const Protocol& protocol = test::asking_protocol()) : OneSession(protocol) {
+  explicit Asked(int gaze_kept, const Protocol& asking = test::asking_protocol()) : OneSession(asking) {
     person.says[gaze_question] = test::score(gaze_kept);
     person.says["rating"] = test::score(4);
   }

@@ -14,7 +14,8 @@ namespace study::test {
 inline Protocol asking_protocol(bool gaze = true, bool sharing = true) {
   std::string text = R"(
 format = 2
-name = "asking"
+name = "asking)" + std::string(gaze ? "" : "_no_gaze") +
+                     (sharing ? "" : "_no_sharing") + R"("
 version = "1.0"
 language = "en"
 participants = 4

@@ -27,7 +27,7 @@ using ::testing::ThrowsMessage;
 std::vector<std::string> permissions(const fs::path& path) {
   return test::column(path,
                       "SELECT participant || ' ' || what || ' ' || coalesce(granted, '~') FROM permission "
-                      "JOIN session USING (session_id) ORDER BY session_id, what");
+                      "JOIN session USING (session_id) ORDER BY participant, visit, what");
 }
 
 TEST(Permission, IsWhatWasAnswered) {
@@ -65,12 +65,13 @@ TEST(Permission, OfAnEarlierSchemaFollowsItsAnswers) {
   const std::string granted =
       "SELECT participant FROM permission JOIN session USING (session_id) WHERE granted = ";
   const auto expect_answers = [&] {
-    EXPECT_THAT(test::column(path, granted + "0 AND what = 'gaze'"), ElementsAre("P05", "P06", "P07"));
-    EXPECT_THAT(test::column(path, granted + "1 AND what = 'gaze'"),
+    EXPECT_THAT(test::column(path, granted + "0 AND what = 'gaze' ORDER BY participant"),
+                ElementsAre("P05", "P06", "P07"));
+    EXPECT_THAT(test::column(path, granted + "1 AND what = 'gaze' ORDER BY participant"),
                 ElementsAre("P01", "P02", "P03", "P04", "P08", "P09"));
-    EXPECT_THAT(test::column(path, granted + "1 AND what = 'sharing'"),
+    EXPECT_THAT(test::column(path, granted + "1 AND what = 'sharing' ORDER BY participant"),
                 ElementsAre("P03", "P06", "P07", "P09"));
-    EXPECT_THAT(test::column(path, granted + "0 AND what = 'sharing'"),
+    EXPECT_THAT(test::column(path, granted + "0 AND what = 'sharing' ORDER BY participant"),
                 ElementsAre("P01", "P02", "P04", "P05", "P08"));
   };
   expect_answers();  // of the temporary copy that reading makes
@@ -139,11 +140,11 @@ TEST(PermissionChange, HoldsForAllSessionsAndIsLogged) {
   const test::TemporaryFolder folder;
   const fs::path path = gaze_study(folder);
   change_permissions(path, "P01", {.gaze = {}, .sharing = false});
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 0", "P02 gaze 1", "P02 sharing 1",
-                                             "P01 gaze 1", "P01 sharing 0"));
+  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 0", "P01 gaze 1", "P01 sharing 0",
+                                             "P02 gaze 1", "P02 sharing 1"));
   change_permissions(path, "P01", {.gaze = true, .sharing = true});
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 1", "P02 gaze 1", "P02 sharing 1",
-                                             "P01 gaze 1", "P01 sharing 1"));
+  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 1", "P01 gaze 1", "P01 sharing 1",
+                                             "P02 gaze 1", "P02 sharing 1"));
   EXPECT_THAT(test::column(path,
                            "SELECT session_id || ' ' || detail FROM event WHERE kind = 'permission changed' "
                            "ORDER BY event_id"),
@@ -206,7 +207,9 @@ TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
       database.execute("INSERT INTO export (kind, path, host, utc) VALUES ('" + kind + "', '" + place +
                        "', '', 'now')");
       if (with_person) {
-        database.execute("INSERT INTO export_person SELECT last_insert_rowid(), person FROM session LIMIT 1");
+        database.execute(
+            "INSERT INTO export_person SELECT last_insert_rowid(), person FROM session WHERE participant = "
+            "'P01' LIMIT 1");
       }
     };
     exported("bids", "/shared/bids", true);
@@ -258,8 +261,8 @@ class PermissionMerge : public ::testing::Test {
 
   test::TemporaryFolder folder_;
   fs::path there_ = folder_ / "study.db", here_ = folder_ / "copy.db";
-  const std::vector<std::string> all_allowed_{"P01 gaze 1",    "P01 sharing 1", "P02 gaze 1",
-                                              "P02 sharing 1", "P01 gaze 1",    "P01 sharing 1"};
+  const std::vector<std::string> all_allowed_{"P01 gaze 1",    "P01 sharing 1", "P01 gaze 1",
+                                              "P01 sharing 1", "P02 gaze 1",    "P02 sharing 1"};
 };
 
 TEST_F(PermissionMerge, CarriesGazeOver) { expect_merged(all_allowed_, {"P01", "P01", "P02"}); }
@@ -271,7 +274,7 @@ TEST_F(PermissionMerge, ARefusalInOneCopyHoldsThoughTheOtherWentOn) {
     const auto session = store.open_runs().at(0).sessions.at(0);
     test::answer_one(store, session, session.units.at(0), "rating", test::score(3));
   }
-  expect_merged({"P01 gaze 0", "P01 sharing 0", "P02 gaze 1", "P02 sharing 1", "P01 gaze 0", "P01 sharing 0"},
+  expect_merged({"P01 gaze 0", "P01 sharing 0", "P01 gaze 0", "P01 sharing 0", "P02 gaze 1", "P02 sharing 1"},
                 {"P02"});
   EXPECT_THAT(test::column(folder_ / "allcopy.db",
                            "SELECT count(*) FROM response JOIN question USING (question_id) "

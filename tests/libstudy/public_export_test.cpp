@@ -149,7 +149,7 @@ TEST_F(GazeExport, IsWrittenOnRequestAlone) {
   export_csv(path_, folder_ / "csv");
   EXPECT_FALSE(fs::exists(folder_ / "csv/gaze.csv"));
   export_bids(path_, folder_ / "bids");
-  EXPECT_THAT(files_with(folder_ / "bids", {"physio", "mouse"}), IsEmpty());
+  EXPECT_THAT(files_with(folder_ / "bids", {"physio", "acq-mouse"}), IsEmpty());
   export_csv(path_, folder_ / "csv", {.words = false, .gaze = true});
   EXPECT_THAT(test::bytes_of(folder_ / "csv/gaze.csv"),
               ::testing::StartsWith("presentation_id,sample_index,source,sampled_ns,device_ns,valid,x,y\r\n"

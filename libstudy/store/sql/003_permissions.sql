@@ -19,7 +19,7 @@ CREATE VIEW permission_answer AS
       FROM response r JOIN unit u USING (unit_id) WHERE u.session_id = s.session_id AND r.question_id = q.question_id
       ORDER BY r.response_id DESC LIMIT 1) AS answered
   FROM session s JOIN question q USING (protocol_id)
-    JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w USING (code);
+    JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w ON w.code = q.code;
 
 -- What holds for each session. granted: 1 allowed, 0 refused or asked and not answered yet, empty: the protocol does not ask.
 CREATE VIEW permission AS
