@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/study/commands.hpp"
+#include "libstudy/store/chores.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
 
@@ -40,6 +41,8 @@ void print_change(const ConsentCommand& command) {
   print_list("Backups that hold gaze still; delete them:", done.backups);
   print_list("Public exports that hold the participant; delete them and their copies, or make them again:",
              done.exports);
+  print_list("Could not be cleaned:", done.left);
+  study::check_nothing_left(command.database, done.left);
   if (!done.backups.empty()) {
     throw base::Error(command.database, "has backups that hold gaze of " + command.participant + " still",
                       "delete the files listed and do this again");

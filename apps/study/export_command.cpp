@@ -56,7 +56,11 @@ void add_export_command(CLI::App& app) {
                "CSV, BIDS: also where people looked, of those who allowed that; the mouse is marked as such");
   sub.footer(
       "BIDS and Psych-DS leave out whoever refused that data be shared; CSV is the lab's own copy and holds "
-      "everybody. A folder is made, or replaced when it is an earlier export.");
+      "everybody. \n"
+      "A folder is made, or replaced when it is an earlier export. It is registered in the database, which "
+      "must be\n"
+      "writable for that: when one of the people in it withdraws, the folder is deleted, to be exported "
+      "again.");
   sub.callback([options] {
     if (!options->csv.empty())
       print_files(study::export_csv(options->database, options->csv, {options->words, options->gaze}));

@@ -263,12 +263,12 @@ bool is_export(const fs::path& folder) {
 }  // namespace
 
 PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze) {
-  ExportDraft draft(folder, is_export);
   const auto database = open_database(path, Open::Read, read_schema_steps());
-  Writer writer(draft);
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
+  ExportDraft draft({path, "bids", people_of(sessions)}, folder, is_export);
+  Writer writer(draft);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},
                {"BIDSVersion", "1.11.0"},
@@ -285,7 +285,6 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
   }
   write_phenotypes(*database, sessions, writer);
   database->execute("COMMIT");
-  remember_export(path, draft.target());
   draft.put_in_place();
   return {std::move(writer.files), people};
 }

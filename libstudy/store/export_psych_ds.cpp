@@ -90,13 +90,14 @@ void write_description(Connection& database, const ExportDraft& draft) {
 }  // namespace
 
 PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
-  ExportDraft draft(folder, is_export);
   const auto database = open_database(path, Open::Read, read_schema_steps());
-  std::vector<ExportedFile> files;
   database->execute("BEGIN");
+  const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
+  ExportDraft draft({path, "psych-ds", people_of(sessions)}, folder, is_export);
+  std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
-  for (const LabelledSession& session : shared_sessions(*database)) {
+  for (const LabelledSession& session : sessions) {
     const std::string stem =
         "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
     const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
@@ -106,7 +107,6 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   }
   write_description(*database, draft);
   database->execute("COMMIT");
-  remember_export(path, draft.target());
   draft.put_in_place();
   return {std::move(files), people};
 }

@@ -1,8 +1,9 @@
 #include "libstudy/store/permissions.hpp"
 
 #include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/backups.hpp"
+#include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
-#include "libstudy/store/withdraw.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -62,8 +63,10 @@ void write_changes(Connection& database, const std::string& person, const Permis
   Transaction transaction(database);
   if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
   if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
-  if (wish.gaze && !*wish.gaze)
+  if (wish.gaze && !*wish.gaze) {
     Statement(database, std::string("DELETE FROM ") + gaze_of_person).bind(0, person).run();
+    ChorePlan(database).rewrite();
+  }
   journal.write();
   transaction.commit();
   journal.kept();
@@ -83,25 +86,21 @@ bool holds_gaze(const fs::path& path, const std::string& person) {
 /// One that cannot be read may hold it.
 std::vector<std::string> backups_with_gaze(const fs::path& database, const std::string& person) {
   std::vector<std::string> found;
-  for (const auto& entry : fs::directory_iterator(fs::absolute(database).parent_path())) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(database.filename().string() + ".v") || !name.ends_with(".bak")) continue;
+  for (const fs::path& backup : backups_of(database)) {
     try {
-      if (holds_gaze(entry.path(), person)) found.push_back(entry.path().string());
+      if (holds_gaze(backup, person)) found.push_back(backup.string());
     } catch (const base::Error&) {
-      found.push_back(entry.path().string() + " (cannot be read)");
+      found.push_back(backup.string() + " (cannot be read)");
     }
   }
   return found;
 }
 
-/// Of each place the latest export counts: one made again leaves the participant out.
 std::vector<std::string> public_exports(Connection& database, const std::string& person) {
-  Statement row(database,
-                "SELECT e.path || iif(e.host = '', '', ' on ' || e.host) FROM export e "
-                "JOIN export_person USING (export_id) WHERE person = ? AND kind IN ('bids', 'psych-ds', "
-                "'unknown') AND NOT EXISTS (SELECT 1 FROM export later WHERE later.path = e.path "
-                "AND later.host = e.host AND later.export_id > e.export_id) ORDER BY e.export_id");
+  Statement row(
+      database,
+      "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
+      "(export_id) WHERE person = ? AND kind IN ('bids', 'psych-ds', 'unknown') ORDER BY export_id");
   row.bind(0, person);
   std::vector<std::string> found;
   while (row.step()) found.push_back(row.text(0));
@@ -136,7 +135,7 @@ PermissionChange change_permissions(const fs::path& path, const std::string& par
   if (no_gaze) done.gaze_deleted = count_gaze(*database, person);
   write_changes(*database, person, wish);
   if (no_gaze) {
-    rewrite(*database);
+    done.left = clean_up(*database).left;
     done.backups = backups_with_gaze(path, person);
   }
   if (no_sharing) done.exports = public_exports(*database, person);

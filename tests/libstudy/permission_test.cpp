@@ -204,8 +204,8 @@ TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
   {
     Connection database(path, Open::Write);
     const auto exported = [&](const std::string& kind, const std::string& place, bool with_person) {
-      database.execute("INSERT INTO export (kind, path, host, utc) VALUES ('" + kind + "', '" + place +
-                       "', '', 'now')");
+      database.execute("INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES ('" + kind +
+                       "', '" + place + "', '', '', 'now', 0)");
       if (with_person) {
         database.execute(
             "INSERT INTO export_person SELECT last_insert_rowid(), person FROM session WHERE participant = "
@@ -214,8 +214,7 @@ TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
     };
     exported("bids", "/shared/bids", true);
     exported("csv", "/private/csv", true);
-    exported("psych-ds", "/made/again", true);
-    exported("psych-ds", "/made/again", false);
+    exported("psych-ds", "/of/others", false);
     exported("unknown", "/of/old", true);
   }
   const PermissionChange done = change_permissions(path, "P01", {.gaze = false, .sharing = false});
