@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
@@ -54,14 +55,13 @@ void choose_defaults(RunOptions& run) {
 
 /// Without a size a window fills the monitor.
 void read_size(const std::string& text, RunOptions& run) {
-  char rest = 0;
   if (text.empty()) {
     if (run.display == "window") run.width_px = run.height_px = 0;
     return;
   }
-  if (std::sscanf(text.c_str(), "%dx%d%c", &run.width_px, &run.height_px, &rest) != 2) {
-    throw base::Error("--size " + text, "is not a size", "write width x height in pixels, such as 640x360");
-  }
+  const PictureSize size = parse_picture_size(text);
+  run.width_px = size.width;
+  run.height_px = size.height;
 }
 
 study::Protocol read_checked_protocol(const RunCommand& command) {
