@@ -96,6 +96,14 @@ Arguments merge_arguments(const fs::path& folder) {
   return vip_study({"merge", folder / "north.db", folder / "south.db", "--into", folder / "all.db"});
 }
 
+Arguments consent_arguments(const fs::path& folder) {
+  return vip_study({"consent", "P02", "--db", folder / "s.db", "--gaze", "no", "--sharing", "no"});
+}
+
+Lines consent_content(const fs::path& folder) {
+  return session_content(folder / "s.db") + permission_content(folder / "s.db");
+}
+
 Lines export_content(const fs::path& folder) {
   return folder_content(folder / "csv") + folder_content(folder / "bids") + folder_content(folder / "psych");
 }
@@ -189,6 +197,7 @@ const std::vector<Flow>& all_flows() {
     return session_content(folder / "s.db") + personal_content(folder / "s.db");
   };
   const auto run = [](const fs::path& folder) { return run_arguments(folder, "s.db", {"P01", "P02"}); };
+  const auto two_people = [](const fs::path& folder) { run_whole(folder, "s.db", {"P01", "P02"}); };
   const auto go_on = [=](const fs::path& folder) {
     return is_planned(folder / "s.db") ? resume_arguments(folder, "s.db") : run(folder);
   };
@@ -206,15 +215,8 @@ const std::vector<Flow>& all_flows() {
        merge_content,
        {"north.db", "south.db", "all.db"},
        ""},
-      {"export",
-       [](const fs::path& folder) {
-         run_whole(folder, "s.db", {"P01", "P02"});
-       },
-       export_arguments,
-       export_arguments,
-       export_content,
-       {"s.db"},
-       ""},
+      {"consent", two_people, consent_arguments, consent_arguments, consent_content, {"s.db"}, ""},
+      {"export", two_people, export_arguments, export_arguments, export_content, {"s.db"}, ""},
       {"bake",
        [](const fs::path&) {},
        bake_arguments,
