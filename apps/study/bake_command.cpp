@@ -67,7 +67,7 @@ PictureSize parse_size(const std::string& text) {
   PictureSize size;
   if (text.empty()) return size;
   char rest = 0;
-  const int read = std::sscanf(text.c_str(), "%dx%d%c", &size.width_px, &size.height_px, &rest);
+  const int read = std::sscanf(text.c_str(), "%5dx%5d%c", &size.width_px, &size.height_px, &rest);
   const auto good = [](int px) { return px >= 16 && px <= sim::max_picture_side; };
   if (read != 2 || !good(size.width_px) || !good(size.height_px)) {
     throw base::Error("--pictures " + text, "is not a size",

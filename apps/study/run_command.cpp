@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
+#include "libsim/bake/codec.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
@@ -57,8 +59,11 @@ void read_size(const std::string& text, RunOptions& run) {
     if (run.display == "window") run.width_px = run.height_px = 0;
     return;
   }
-  if (std::sscanf(text.c_str(), "%dx%d%c", &run.width_px, &run.height_px, &rest) != 2) {
-    throw base::Error("--size " + text, "is not a size", "write width x height in pixels, such as 640x360");
+  const int read = std::sscanf(text.c_str(), "%5dx%5d%c", &run.width_px, &run.height_px, &rest);
+  const auto good = [](int px) { return px >= 16 && px <= sim::max_picture_side; };
+  if (read != 2 || !good(run.width_px) || !good(run.height_px)) {
+    throw base::Error("--size " + text, "is not a size",
+                      "write width x height in pixels, 16 to 8192 each, such as 640x360");
   }
 }
 
@@ -176,7 +181,8 @@ void add_run_command(CLI::App& app) {
                  "an observer's, "
                  "kept as if a tracker had told it")
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
-  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
+  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
+      ->check(text_up_to(100));
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,
                  "Width of the picture on the screen; gives the camera's angle");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");

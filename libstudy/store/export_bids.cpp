@@ -36,12 +36,13 @@ std::string field(std::string text) {
   for (char& c : text) {
     if (c == '\t' || c == '\n' || c == '\r') c = ' ';
   }
-  return text.empty() ? "n/a" : text;
+  return text.empty() ? "n/a" : formula_guarded(text);
 }
 
 std::string field(const Statement& row, int column) {
   if (row.is_null(column)) return "n/a";
-  return row.is_real(column) ? number_text(row.real(column)) : field(row.text(column));
+  if (row.is_text(column)) return field(row.text(column));
+  return row.is_real(column) ? number_text(row.real(column)) : row.text(column);
 }
 
 class Writer {
@@ -209,7 +210,7 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
     const std::string sub = "sub-" + session.subject;
     auto [rows, fresh] = visits.try_emplace(sub);
     if (fresh) {
-      people.push_back({sub, session.participant});
+      people.push_back({sub, field(session.participant)});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
                        "test_data", "observer", "station", "gaze_source", "state"}};
     }
@@ -306,7 +307,7 @@ bool is_export(const fs::path& folder) {
 }  // namespace
 
 std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& folder) {
-  ExportDraft draft(folder, is_export);
+  ExportDraft draft(folder, is_export, Readers::AsUmask);
   const auto database = open_database(path, Open::Read, read_schema_steps());
   Writer writer(draft);
   database->execute("BEGIN");
@@ -317,7 +318,9 @@ std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& fold
                {"DatasetType", "raw"},
                {"GeneratedBy", Json::array({{{"Name", "vip-study"}, {"Version", base::version()}}})}});
   writer.text("README.md",
-              "# Ratings of real-time fluid\n\nBehaviour only: what was shown when, how it was rated.\n");
+              "# Ratings of real-time fluid\n\nBehaviour only: what was shown when, how it was rated.\n\nIn "
+              "every table, " +
+                  std::string(formula_guard_meaning) + ".\n");
   write_people(*database, sessions, writer);
   for (const LabelledSession& session : sessions) write_events(*database, session, writer);
   write_phenotypes(*database, sessions, writer);

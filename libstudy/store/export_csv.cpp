@@ -83,7 +83,8 @@ std::string select_sql(Connection& database, const Table& table) {
 std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, bool words) {
   ExportFile file(draft, dictionary_file);
   file.write(dictionary_header);
-  std::int64_t rows = 0;
+  file.write("(all),(all),TEXT," + csv_field(formula_guard_meaning) + "\r\n");
+  std::int64_t rows = 1;
   const auto write = [&](const char* name, const ColumnMeaning& column) {
     file.write(std::string(name) + ',' + csv_field(column.column) + ',' + column.type + ',' +
                csv_field(column.meaning) + "\r\n");
@@ -140,7 +141,7 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
 }
 
 std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folder, bool words) {
-  ExportDraft draft(folder, is_export);
+  ExportDraft draft(folder, is_export, Readers::Owner);
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   std::vector<ExportedFile> files;
   // One transaction: all tables from the same moment, though a session may be running.

@@ -1,5 +1,6 @@
 #pragma once
-/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary.
+/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary. Texts
+/// are formula_guarded(), which the dictionary's first line explains; numbers stay numbers.
 
 #include <filesystem>
 #include <string>
@@ -14,9 +15,10 @@ namespace study {
 /// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
 /// Free words of participants and the experimenter's notes (words.csv, notes.csv) only with `words`.
 ///
-/// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
-/// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
-/// changed, when it holds anything else. The folder is remembered in the event log (remember_export).
+/// Folder and files are the owner's alone. All is written to a neighbour of `folder` and put in place by one
+/// rename, so that `folder` never holds a part. `folder` may be absent, empty or an earlier export, which is
+/// replaced; base::Error, with nothing changed, when it holds anything else. The folder is remembered in the
+/// event log (remember_export).
 std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
                                      const std::filesystem::path& folder, bool words = false);
 

@@ -17,12 +17,15 @@ struct ExportedFile {
   std::int64_t rows = 0;
 };
 
+/// Who may read an export: the owner alone (folder 0700, files 0600), or whoever the umask lets.
+enum class Readers { Owner, AsUmask };
+
 /// A folder beside the target that is gone unless put in place, so that the target never holds a part.
 class ExportDraft {
  public:
   using IsExport = std::function<bool(const std::filesystem::path&)>;
   /// base::Error, with nothing made, unless the target is absent, an empty folder or one that `is_export`.
-  ExportDraft(const std::filesystem::path& target, const IsExport& is_export);
+  ExportDraft(const std::filesystem::path& target, const IsExport& is_export, Readers readers);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;
   ExportDraft& operator=(const ExportDraft&) = delete;
@@ -30,6 +33,7 @@ class ExportDraft {
   /// Where the export goes, as an absolute path.
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& path() const { return path_; }
+  Readers readers() const { return readers_; }
   /// Makes the draft the target; an earlier export there goes.
   void put_in_place();
 
@@ -38,6 +42,7 @@ class ExportDraft {
   [[noreturn]] void fail(const std::string& problem);
 
   std::filesystem::path target_, path_;
+  Readers readers_;
 };
 
 /// A file of a draft, with the folders above it; an error unless every byte of it came to the disk.
@@ -58,11 +63,17 @@ class ExportFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Quoted where RFC 4180 asks for it.
+/// Text with an apostrophe before it where a spreadsheet would take it for a formula: where it begins with
+/// = + - @ (also in full width), a tab or a line end, or with apostrophes and one of these. Whoever reads it
+/// takes one apostrophe away where apostrophes and one of these begin a field, and has what it was.
+std::string formula_guarded(const std::string& text);
+/// The same in words, for the descriptions of an export.
+extern const char* const formula_guard_meaning;
+/// A text as a field of CSV: formula_guarded(), quoted where RFC 4180 asks for it or where it was guarded.
 std::string csv_field(const std::string& text);
 /// The shortest text that reads back as the same number.
 std::string number_text(double value);
-/// A value of a row; empty for NULL.
+/// A value of a row: a text as csv_field(), a number as it is, empty for NULL.
 std::string csv_value(const sqlite::Statement& row, int column);
 /// The rows that `sql` selects, under a line with the names of its columns; returns their number.
 std::int64_t write_csv(sqlite::Connection& database, const std::string& sql, const ExportDraft& draft,

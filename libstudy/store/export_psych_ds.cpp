@@ -84,13 +84,14 @@ void write_description(Connection& database, const ExportDraft& draft) {
   write_text(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
-      "what each column means. Empty: not known.\n");
+      "what each column means. Empty: not known.\n\nIn every column, " +
+          std::string(formula_guard_meaning) + ".\n");
 }
 
 }  // namespace
 
 std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& folder) {
-  ExportDraft draft(folder, is_export);
+  ExportDraft draft(folder, is_export, Readers::AsUmask);
   const auto database = open_database(path, Open::Read, read_schema_steps());
   std::vector<ExportedFile> files;
   database->execute("BEGIN");

@@ -53,8 +53,9 @@ bool write_all(int fd, std::string_view bytes) {
 
 }  // namespace
 
+// Without O_NONBLOCK a pipe would be waited for.
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0)
     throw Error(path.string(), "cannot be read: " + reason(), "check the path and its permissions");
   struct stat status {};
