@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "libstudy/store/beside.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -145,8 +146,9 @@ std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
   return database;
 }
 
-std::unique_ptr<Connection> open_database(const fs::path& path, Open how, const SchemaSteps& steps,
+std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const SchemaSteps& steps,
                                           std::int64_t max_pages) {
+  const fs::path path = real_file(given);
   std::error_code ignored;
   const bool made_here = how == Open::Create && !fs::exists(path, ignored);
   try {

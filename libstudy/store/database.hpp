@@ -19,7 +19,8 @@ using SchemaSteps = std::vector<std::string>;
 /// The program's own steps, from libstudy/store/sql/.
 SchemaSteps read_schema_steps();
 
-/// Opens `path` with foreign keys, WAL and synchronous = FULL.
+/// Opens `path` with foreign keys, WAL and synchronous = FULL; where it is a link, the real file
+/// (beside.hpp).
 ///
 /// Open::Create makes a missing or empty file into a database, and removes it again when that fails;
 /// Open::Write upgrades an older one, each step in one transaction, after a copy "<path>.v<version>-<UTC

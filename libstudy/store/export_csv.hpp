@@ -15,10 +15,11 @@ namespace study {
 /// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
 /// Free words of participants and the experimenter's notes (words.csv, notes.csv) only with `words`.
 ///
-/// Folder and files are the owner's alone. All is written to a neighbour of `folder` and put in place by one
-/// rename, so that `folder` never holds a part. `folder` may be absent, empty or an earlier export, which is
-/// replaced; base::Error, with nothing changed, when it holds anything else. The folder is remembered in the
-/// event log (remember_export).
+/// Folder and files are the owner's alone.
+/// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
+/// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
+/// changed, when it holds anything else, or when the database cannot be written: the folder is registered in
+/// it with whom it holds, and a withdrawal of one of them deletes it (export_register.hpp).
 std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
                                      const std::filesystem::path& folder, bool words = false);
 

@@ -3,6 +3,8 @@
 #include <regex>
 
 #include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/beside.hpp"
+#include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "stats/base/error.hpp"
@@ -75,13 +77,14 @@ struct Store::Statements {
   Statement frame, event, begin, end, response;
 };
 
-Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
+Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(real_file(path)) {
   std::error_code ignored;
-  const bool existed = fs::exists(path, ignored);
-  if (existed) lock_ = std::make_unique<WriterLock>(path);
+  const bool existed = fs::exists(path_, ignored);
+  if (existed) lock_ = std::make_unique<WriterLock>(path_);
   const SchemaSteps steps = read_schema_steps();
-  database_ = open_database(path, how, steps, max_pages);
-  if (!existed) lock_ = std::make_unique<WriterLock>(path);
+  database_ = open_database(path_, how, steps, max_pages);
+  if (!existed) lock_ = std::make_unique<WriterLock>(path_);
+  left_ = clean_up(*database_).left;
   blank_ = !existed;
   statements_ = std::make_unique<Statements>(*database_);
   try {

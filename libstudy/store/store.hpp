@@ -99,11 +99,15 @@ struct KeptAnswer {
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
-  /// is removed again when nothing comes to stand in it.
+  /// is removed again when nothing comes to stand in it. What a withdrawal or a merge left to be done is done
+  /// first (chores.hpp).
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
+
+  /// What is still left of it, each with reason and mend: a session may go on, the command ends as an error.
+  std::vector<std::string> left_to_clean() const { return left_; }
 
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
   /// base::Error when one of the participants has that visit under that protocol already, or a code that
@@ -185,6 +189,7 @@ class Store {
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;
+  std::vector<std::string> left_;
 };
 
 }  // namespace study
