@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "apps/common/option_checks.hpp"
+#include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
-#include "libsim/bake/codec.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
@@ -55,17 +55,13 @@ void choose_defaults(RunOptions& run) {
 
 /// Without a size a window fills the monitor.
 void read_size(const std::string& text, RunOptions& run) {
-  char rest = 0;
   if (text.empty()) {
     if (run.display == "window") run.width_px = run.height_px = 0;
     return;
   }
-  const int read = std::sscanf(text.c_str(), "%5dx%5d%c", &run.width_px, &run.height_px, &rest);
-  const auto good = [](int px) { return px >= 16 && px <= sim::max_picture_side; };
-  if (read != 2 || !good(run.width_px) || !good(run.height_px)) {
-    throw base::Error("--size " + text, "is not a size",
-                      "write width x height in pixels, 16 to 8192 each, such as 640x360");
-  }
+  const PictureSize size = parse_picture_size(text);
+  run.width_px = size.width;
+  run.height_px = size.height;
 }
 
 study::Protocol read_checked_protocol(const RunCommand& command) {

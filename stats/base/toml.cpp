@@ -1,7 +1,5 @@
 #include "stats/base/toml.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -9,6 +7,8 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
+#include "stats/base/toml_parser.hpp"
+#include "stats/base/toml_text.hpp"
 
 namespace base {
 
@@ -299,6 +299,7 @@ std::map<std::string, AskedKey> TomlTable::asked() const {
 void TomlTable::finish() const { state_->finish(); }
 
 TomlTable parse_toml(std::string_view text, const std::string& name) {
+  check_toml_text(text, name);
   auto state = std::make_shared<TomlTable::State>();
   try {
     state->root = std::make_shared<const toml::table>(toml::parse(text, name));
@@ -312,7 +313,7 @@ TomlTable parse_toml(std::string_view text, const std::string& name) {
 }
 
 TomlTable read_toml(const std::filesystem::path& path) {
-  return parse_toml(read_file(path, 16u << 20), path.string());
+  return parse_toml(read_file(path, most_toml_bytes), path.string());
 }
 
 std::string toml_quoted(std::string_view text) {
