@@ -57,7 +57,7 @@ class Connection {
 
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
-  std::mutex turn_;  ///< of transactions
+  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
 /// A prepared statement: bind all, step, reset. Indices count from 0.
@@ -116,7 +116,7 @@ class Transaction {
 
  private:
   Connection* connection_;
-  std::lock_guard<std::mutex> turn_;
+  std::lock_guard<std::recursive_mutex> turn_;
   bool open_ = true;
 };
 

@@ -104,7 +104,7 @@ TEST(FormulaGuard, AnyTextReadsBackAndNoneIsAFormula) {
 TEST(FormulaGuard, NoFieldOfAnExportIsAFormulaButAllWordsAreThere) {
   const test::TemporaryFolder folder;
   make_hostile_study(folder / "study.db");
-  export_csv(folder / "study.db", folder / "out", true);
+  export_csv(folder / "study.db", folder / "out", {.words = true});
   std::vector<std::string> all;
   for (const auto& entry : fs::directory_iterator(folder / "out")) {
     if (entry.path().extension() != ".csv") continue;
@@ -153,7 +153,7 @@ TEST(ExportRights, CsvIsTheOwnersAloneAndPublicExportsAreAsTheUmaskSays) {
   const test::TemporaryFolder folder;
   make_hostile_study(folder / "study.db");
   const mode_t before = ::umask(022);
-  export_csv(folder / "study.db", folder / "csv", true);
+  export_csv(folder / "study.db", folder / "csv", {.words = true});
   export_bids(folder / "study.db", folder / "bids");
   ::umask(before);
   const auto rights = [](const fs::path& path) { return fs::status(path).permissions(); };
