@@ -99,35 +99,10 @@ void follow_beside(const fs::path& into, const std::vector<Resident>& residents,
   if (!changed.empty() && fs::exists(PersonalFile::beside(into), ignored)) PersonalFile(into).rename(changed);
 }
 
-/// Opens `into`, which is gone again unless it is finished when it was made here.
-class Target {
- public:
-  explicit Target(const fs::path& path) : path_(path) {
-    std::error_code ignored;
-    made_here_ = !fs::exists(path, ignored) || fs::file_size(path, ignored) == 0;
-    database_ = open_database(path, Open::Create, read_schema_steps());
-  }
-  ~Target() {
-    database_.reset();
-    std::error_code ignored;
-    if (made_here_) fs::remove(path_, ignored);
-  }
-  Target(const Target&) = delete;
-  Target& operator=(const Target&) = delete;
-
-  Connection& database() { return *database_; }
-  void finish() { made_here_ = false; }
-
- private:
-  fs::path path_;
-  bool made_here_ = false;
-  std::unique_ptr<Connection> database_;
-};
-
 }  // namespace
 
 Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
-  const WriterLock lock(into);
+  WriterLock lock(into, Open::Create);
   Content content = read_all(sources, into);
   const auto chosen = merging::choose_sessions(content);
   const auto names = merging::name_people(content);
@@ -136,12 +111,12 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
   Merge merge = sum_up(*result, content, chosen, names);
   content.sources.clear();  // into itself may be among them
 
-  Target target(into);
-  const auto residents = residents_of(target.database());
-  target.database().execute("PRAGMA secure_delete = ON");
-  target.database().copy_from(*result);
-  target.finish();
-  rewrite(target.database());
+  const auto target = open_database(into, Open::Create, read_schema_steps());
+  const auto residents = residents_of(*target);
+  target->execute("PRAGMA secure_delete = ON");
+  target->copy_from(*result);
+  lock.keep();
+  rewrite(*target);
   follow_beside(into, residents, names, content, merge);
   return merge;
 }

@@ -73,23 +73,19 @@ struct Store::Statements {
   Statement frame, event, begin, end, response;
 };
 
-Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages) : path_(path) {
-  std::error_code ignored;
-  const bool existed = fs::exists(path, ignored);
-  if (existed) lock_ = std::make_unique<WriterLock>(path);
-  const SchemaSteps steps = read_schema_steps();
-  database_ = open_database(path, how, steps, max_pages);
-  if (!existed) lock_ = std::make_unique<WriterLock>(path);
-  blank_ = !existed;
+Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
+    : path_(path), lock_(path, how) {
+  database_ = open_database(path, how, read_schema_steps(), max_pages, waiting);
+  if (!lock_.made()) keep_file();
   statements_ = std::make_unique<Statements>(*database_);
 }
 
-// The lock is given back after SQLite has closed the file.
-Store::~Store() {
-  statements_.reset();
-  database_.reset();
-  std::error_code ignored;
-  if (blank_) fs::remove(path_, ignored);
+// Members go in the reverse of their order: the lock is given back after SQLite has closed the file.
+Store::~Store() = default;
+
+void Store::keep_file() {
+  lock_.keep();
+  database_->go_on_with("run vip-study resume --db " + path_.string() + "; all answers given are kept");
 }
 
 std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,

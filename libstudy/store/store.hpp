@@ -95,8 +95,10 @@ struct KeptAnswer {
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
-  /// is removed again when nothing comes to stand in it.
-  Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0);
+  /// is removed again when nothing comes to stand in it. waiting: for locks of other programs, five seconds
+  /// without it.
+  Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
+        const sqlite::Waiting& waiting = {});
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -170,9 +172,10 @@ class Store {
   void insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,
                     const std::string& kind, const std::string& detail, std::optional<std::int64_t> clock_ns);
 
+  void keep_file();
+
   std::filesystem::path path_;
-  bool blank_ = false;  // made here and without a run so far
-  std::unique_ptr<WriterLock> lock_;
+  WriterLock lock_;
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
 };
