@@ -53,7 +53,8 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
 void resume(const PlayOptions& options) {
   const StopSignals signals;
   const std::string place = options.database.string();
-  study::Store store(options.database, study::sqlite::Open::Write, options.max_pages);
+  study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
+                     tell_of_locks(options.database));
   for (const study::OpenRun& run : store.open_runs()) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     for (const auto& session : run.sessions) study::settle_interruption(store, protocol, session);

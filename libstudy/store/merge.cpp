@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge_parts.hpp"
 #include "libstudy/store/personal.hpp"
@@ -112,11 +113,15 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
   content.sources.clear();  // into itself may be among them
 
   const auto target = open_database(into, Open::Create, read_schema_steps());
+  std::vector<std::string> withdrawn;
+  for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
+  prepare_rewrite(*target, withdrawn);
   const auto residents = residents_of(*target);
   target->execute("PRAGMA secure_delete = ON");
   target->copy_from(*result);
   lock.keep();
   rewrite(*target);
+  rewrite_journal(*target);
   follow_beside(into, residents, names, content, merge);
   return merge;
 }

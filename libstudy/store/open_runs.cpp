@@ -125,7 +125,7 @@ void Store::mark_cut_presentations() {
     insert_event(cut.integer(1), cut.integer(0), "trial interrupted", "the program had ended", {});
   }
   database_->execute("UPDATE presentation SET state = 'interrupted' WHERE state = 'running'");
-  transaction.commit();
+  commit(transaction);
 }
 
 std::vector<OpenRun> Store::open_runs() {

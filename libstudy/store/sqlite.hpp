@@ -144,6 +144,7 @@ class Statement {
   std::string column_name(int index) const;
   bool is_null(int index) const;
   bool is_real(int index) const;
+  bool is_text(int index) const;
   std::int64_t integer(int index) const;
   double real(int index) const;
   std::string text(int index) const;

@@ -76,6 +76,8 @@ bool Statement::is_null(int index) const { return sqlite3_column_type(handle_, i
 
 bool Statement::is_real(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_FLOAT; }
 
+bool Statement::is_text(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_TEXT; }
+
 std::int64_t Statement::integer(int index) const { return sqlite3_column_int64(handle_, index); }
 
 double Statement::real(int index) const { return sqlite3_column_double(handle_, index); }

@@ -2,6 +2,7 @@
 
 #include <regex>
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "stats/base/error.hpp"
@@ -76,16 +77,25 @@ struct Store::Statements {
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
     : path_(path), lock_(path, how) {
   database_ = open_database(path, how, read_schema_steps(), max_pages, waiting);
-  if (!lock_.made()) keep_file();
   statements_ = std::make_unique<Statements>(*database_);
+  journal_ = std::make_unique<AnswerJournal>(*database_);
+  if (!lock_.made()) keep_file();
 }
 
 // Members go in the reverse of their order: the lock is given back after SQLite has closed the file.
-Store::~Store() = default;
+Store::~Store() {
+  if (lock_.made()) journal_->remove_if_blank();
+}
 
 void Store::keep_file() {
   lock_.keep();
   database_->go_on_with("run vip-study resume --db " + path_.string() + "; all answers given are kept");
+}
+
+void Store::commit(Transaction& transaction) {
+  journal_->write();
+  transaction.commit();
+  journal_->kept();
 }
 
 std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
@@ -101,7 +111,7 @@ std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial,
       .run();
   insert_event(session, id, "trial shown",
                "attempt " + std::to_string(attempt) + ", interval " + std::to_string(interval), start_ns);
-  transaction.commit();
+  commit(transaction);
   return id;
 }
 
@@ -125,7 +135,7 @@ void Store::add_frames(std::int64_t presentation, std::int64_t start_ns,
                        std::span<const FrameRecord> frames) {
   Transaction transaction(*database_);
   insert_frames(presentation, start_ns, frames);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
@@ -143,7 +153,7 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
       .bind(11, verdict.lag1);
   end.bind(12, verdict.late).bind(13, verdict.worst_late_ms).bind(14, presentation);
   end.run();
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns) {
@@ -152,7 +162,7 @@ void Store::interrupt_presentation(std::int64_t session, std::int64_t presentati
       .bind(0, presentation)
       .run();
   insert_event(session, presentation, "trial interrupted", "stopped on request", clock_ns);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
@@ -178,13 +188,13 @@ void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
   if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
   if (ending) mark_ended(session, *ending, clock_ns);
   if (last) mark_done(session, unit.id, now, clock_ns);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns) {
   Transaction transaction(*database_);
   mark_done(session, unit, base::utc_now(), clock_ns);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string& now,
@@ -213,7 +223,7 @@ void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string
 void Store::end_session(std::int64_t session, const Ending& ending, std::int64_t clock_ns) {
   Transaction transaction(*database_);
   mark_ended(session, ending, clock_ns);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns) {
@@ -230,7 +240,7 @@ void Store::repeat_trial(std::int64_t session, std::int64_t trial, const std::st
   Transaction transaction(*database_);
   set_trial_aside(session, trial);
   if (!reason.empty()) insert_note(session, trial_unit(trial), reason);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::restart_block(std::int64_t session, int block, const std::string& reason) {
@@ -242,7 +252,7 @@ void Store::restart_block(std::int64_t session, int block, const std::string& re
   for (row.bind(0, session).bind(1, block); row.step();) begun.push_back(row.integer(0));
   for (const std::int64_t trial : begun) set_trial_aside(session, trial);
   if (!reason.empty()) insert_note(session, {}, reason);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::set_trial_aside(std::int64_t session, std::int64_t trial) {
@@ -273,7 +283,7 @@ void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const st
             "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")
       .bind(0, unit.trial_id)
       .run();
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason) {
@@ -281,7 +291,7 @@ void Store::exclude_trial(std::int64_t session, std::int64_t trial, const std::s
     throw base::Error("exclusion of a trial", "has no reason", "say why the analyses shall leave it out");
   Transaction transaction(*database_);
   mark_excluded(session, trial, reason);
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason) {
@@ -307,7 +317,7 @@ void Store::note(std::int64_t session, std::optional<std::int64_t> unit, const s
   Transaction transaction(*database_);
   insert_note(session, unit, words);
   insert_event(session, {}, "note", "", {});
-  transaction.commit();
+  commit(transaction);
 }
 
 void Store::insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
@@ -331,7 +341,7 @@ void Store::log(std::optional<std::int64_t> session, const std::string& kind, co
                 std::optional<std::int64_t> clock_ns) {
   Transaction transaction(*database_);
   insert_event(session, {}, kind, detail, clock_ns);
-  transaction.commit();
+  commit(transaction);
 }
 
 }  // namespace study

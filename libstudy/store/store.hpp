@@ -18,6 +18,8 @@
 
 namespace study {
 
+class AnswerJournal;
+
 /// A participant code is 1 to 32 of A-Z a-z 0-9 _ and -. base::Error otherwise.
 void check_participant_code(const std::string& code);
 
@@ -155,6 +157,8 @@ class Store {
  private:
   struct Statements;
 
+  /// Every change ends here: into the journal, then into the database.
+  void commit(sqlite::Transaction& transaction);
   std::int64_t find_or_add_protocol(const RunPlan& run);
   void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
                    const SessionPlan& plan);
@@ -178,6 +182,7 @@ class Store {
   WriterLock lock_;
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
+  std::unique_ptr<AnswerJournal> journal_;
 };
 
 }  // namespace study

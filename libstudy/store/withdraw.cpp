@@ -1,5 +1,6 @@
 #include "libstudy/store/withdraw.hpp"
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/writer_lock.hpp"
@@ -196,10 +197,12 @@ Withdrawal withdraw(const fs::path& path, const std::string& participant) {
                       "vip-study status lists the codes");
   }
   Withdrawal done = take_stock(*database, found.front().person);
+  prepare_rewrite(*database, {found.front().person});
   Transaction transaction(*database);
   bury(*database, found.front().person);
   transaction.commit();
   rewrite(*database);
+  rewrite_journal(*database);
   scrub_beside(path, participant, found.front().code, done);
   return done;
 }

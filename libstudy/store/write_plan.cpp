@@ -122,7 +122,7 @@ std::int64_t Store::add_run(const RunPlan& run) {
                                   .bind(2, run.options)
                                   .run();
   for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
-  transaction.commit();
+  commit(transaction);
   keep_file();
   return run_id;
 }
