@@ -22,8 +22,9 @@ endif()
 
 if(VIP_LIBFUZZER)
   # The libraries carry the coverage that libFuzzer steers by; the entries alone link its main.
-  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=fuzzer-no-link,address>)
-  target_link_options(vip_flags INTERFACE -fsanitize=address)
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=fuzzer-no-link,address,undefined>
+                         $<${_cxx}:-fno-sanitize-recover=undefined>)
+  target_link_options(vip_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
 # vip_library(NAME SOURCES... ) a static library; vip_program(NAME ...) an installed program.

@@ -20,8 +20,8 @@ struct Columns {
 Columns columns_of(std::span<const MethodScore> scores) {
   Columns out;
   for (const MethodScore& score : scores) {
-    if (std::isnan(score.value)) continue;
-    out.ratings.push_back(score.value);
+    if (std::isnan(score.sum)) continue;
+    out.ratings.push_back(score.value());
     out.methods.push_back(score.method);
     out.participants.push_back(score.participant);
   }

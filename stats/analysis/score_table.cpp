@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -15,9 +14,6 @@ int index_of(const std::vector<std::string>& list, const std::string& item) {
   return found == list.end() ? -1 : static_cast<int>(found - list.begin());
 }
 
-/// Equal averages of thirds may differ in their last bit, which ranks would see: to the nearest 2^-40.
-double on_grid(double value) { return std::ldexp(std::nearbyint(std::ldexp(value, 40)), -40); }
-
 bool inside(int index, std::size_t size) { return index >= 0 && static_cast<std::size_t>(index) < size; }
 
 }  // namespace
@@ -28,36 +24,42 @@ ScoreTable::ScoreTable(ScoreScale scale, std::span<const MethodScore> scores, in
       participants_(participants),
       n_stars_(std::move(n_stars)),
       methods_(std::move(methods)) {
-  const std::size_t columns = n_stars_.size() * methods_.size();
-  std::vector<double> sums(columns * static_cast<std::size_t>(participants_));
-  std::vector<int> counts(sums.size());
+  struct Cell {
+    double sum = 0;
+    int count = 0;
+  };
+  std::vector<Cell> cells(n_stars_.size() * methods_.size() * static_cast<std::size_t>(participants_));
   for (const MethodScore& score : scores) {
-    if (!inside(score.participant, static_cast<std::size_t>(participants_)) ||
-        !inside(score.n_star, n_stars_.size()) || !inside(score.method, methods_.size()) ||
-        std::isinf(score.value))
-      throw std::invalid_argument(
-          "a score of no participant, n_* or method of the table, or an infinite one");
-    if (std::isnan(score.value)) continue;
-    const std::size_t column =
-        static_cast<std::size_t>(score.n_star) * methods_.size() + static_cast<std::size_t>(score.method);
-    const std::size_t at =
-        column * static_cast<std::size_t>(participants_) + static_cast<std::size_t>(score.participant);
-    sums[at] += score.value;
-    ++counts[at];
+    if (!inside(score.participant, static_cast<std::size_t>(participants_)) || std::isinf(score.sum) ||
+        score.items != scores.front().items)
+      throw std::invalid_argument("a score of no participant of the table, of other items, or infinite");
+    const std::size_t first = first_of(score.n_star, score.method);
+    if (std::isnan(score.sum)) continue;
+    Cell& cell = cells[first + static_cast<std::size_t>(score.participant)];
+    cell.sum += score.sum;
+    cell.count += score.items;
   }
-  values_.assign(sums.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (counts[i] > 0) values_[i] = on_grid(sums[i] / counts[i]);
+  for (const Cell& cell : cells) {
+    means_.push_back(cell.count > 0 ? ExactMean{cell.sum, cell.count} : ExactMean{});
+    values_.push_back(means_.back().value());
   }
 }
 
-std::span<const double> ScoreTable::column(int n_star, int method) const {
+std::size_t ScoreTable::first_of(int n_star, int method) const {
   if (!inside(n_star, n_stars_.size()) || !inside(method, methods_.size()))
-    throw std::invalid_argument("no such column");
-  const auto n = static_cast<std::size_t>(participants_);
-  const std::size_t column =
-      static_cast<std::size_t>(n_star) * methods_.size() + static_cast<std::size_t>(method);
-  return std::span<const double>(values_).subspan(column * n, n);
+    throw std::invalid_argument("no such n_* or method in the table");
+  const auto column = static_cast<std::size_t>(n_star) * methods_.size() + static_cast<std::size_t>(method);
+  return column * static_cast<std::size_t>(participants_);
+}
+
+std::span<const double> ScoreTable::column(int n_star, int method) const {
+  return std::span<const double>(values_).subspan(first_of(n_star, method),
+                                                  static_cast<std::size_t>(participants_));
+}
+
+std::span<const ExactMean> ScoreTable::means(int n_star, int method) const {
+  return std::span<const ExactMean>(means_).subspan(first_of(n_star, method),
+                                                    static_cast<std::size_t>(participants_));
 }
 
 std::vector<double> ScoreTable::rows(int n_star) const {

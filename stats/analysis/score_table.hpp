@@ -6,12 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "stats/inference/exact_mean.hpp"
+
 namespace stats {
 
-/// One report. Indices count from 0; NaN = not answered.
+/// One report. Indices count from 0. Its score is the mean of `items` answers.
 struct MethodScore {
   int participant = 0, scene = 0, n_star = 0, method = 0;
-  double value = 0;
+  double sum = 0;  ///< of the answers; NaN = not all answered
+  int items = 1;
+
+  double value() const { return sum / items; }
 };
 
 /// What a table's score is and how it counts.
@@ -29,7 +34,7 @@ struct ScoreScale {
 class ScoreTable {
  public:
   /// Averages over scenes (and visits) within participant x n_* x method. std::invalid_argument for an index
-  /// out of range or an infinite value.
+  /// out of range, an infinite value, or reports of different numbers of items.
   ScoreTable(ScoreScale scale, std::span<const MethodScore> scores, int participants,
              std::vector<std::string> n_stars, std::vector<std::string> methods);
 
@@ -39,6 +44,8 @@ class ScoreTable {
   const std::vector<std::string>& methods() const { return methods_; }
   /// One value for each participant, NaN where there is none.
   std::span<const double> column(int n_star, int method) const;
+  /// The same as sums, for what compares differences of means.
+  std::span<const ExactMean> means(int n_star, int method) const;
   /// Participants by methods, row after row, of those who gave anything at this n_*; NaN = missing.
   std::vector<double> rows(int n_star) const;
   /// Index, or -1.
@@ -49,7 +56,10 @@ class ScoreTable {
   ScoreScale scale_;
   int participants_;
   std::vector<std::string> n_stars_, methods_;
-  std::vector<double> values_;  ///< [n_star][method][participant]
+  std::size_t first_of(int n_star, int method) const;
+
+  std::vector<ExactMean> means_;  ///< [n_star][method][participant]
+  std::vector<double> values_;    ///< of means_
 };
 
 }  // namespace stats

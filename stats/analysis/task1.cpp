@@ -60,10 +60,11 @@ MethodComparison compare(const ScoreTable& table, int n_star, int a, int b, cons
   const TTestOptions two_sided{Alternative::TwoSided, plan.confidence, 0};
   out.t = t_test_paired(pairs.x, pairs.y, two_sided);
   out.welch = t_test_welch(pairs.x, pairs.y, two_sided);
-  out.wilcoxon = signed_rank(pairs.x, pairs.y, plan.confidence);
+  const auto exact = exact_differences(table.means(n_star, a), table.means(n_star, b));
+  out.wilcoxon = exact ? signed_rank(*exact, plan.confidence) : Refusal{exact.reason()};
   const double margin = table.scale().margin;
   out.equivalence = equivalence_paired(pairs.x, pairs.y, {-margin, margin}, plan.alpha);
-  const auto differences = pairs.differences();
+  const auto differences = exact ? exact->values() : pairs.differences();
   out.normality = shapiro_wilk(differences);
   out.bootstrap = bootstrap_interval(differences, mean_statistic(), bootstrap_options(plan));
   return out;

@@ -1,46 +1,15 @@
 #include "stats/inference/friedman.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
-#include <numeric>
 
 #include "stats/inference/complete_rows.hpp"
 #include "stats/inference/distributions.hpp"
+#include "stats/inference/ranks.hpp"
 #include "stats/inference/tails.hpp"
 
 namespace stats {
-
-namespace {
-
-/// Sum of t^3 - t over the groups of t equal ranks.
-double tie_sum(std::vector<double> ranks) {
-  std::sort(ranks.begin(), ranks.end());
-  double sum = 0;
-  for (auto first = ranks.begin(); first != ranks.end();) {
-    const auto last = std::upper_bound(first, ranks.end(), *first);
-    const auto t = static_cast<double>(last - first);
-    sum += t * t * t - t;
-    first = last;
-  }
-  return sum;
-}
-
-}  // namespace
-
-std::vector<double> mean_ranks(std::span<const double> values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> ranks(values.size());
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t last = first;
-    while (last < order.size() && values[order[last]] == values[order[first]]) ++last;
-    for (std::size_t i = first; i < last; ++i) ranks[order[i]] = 0.5 * static_cast<double>(first + last + 1);
-    first = last;
-  }
-  return ranks;
-}
 
 Result<Friedman> friedman_test(std::span<const double> rows, int k) {
   const CompleteRows table = complete_rows(rows, k);
@@ -51,9 +20,9 @@ Result<Friedman> friedman_test(std::span<const double> rows, int k) {
   std::vector<double> sums(static_cast<std::size_t>(k), 0.0);
   double ties = 0;
   for (int i = 0; i < table.n; ++i) {
-    const auto ranks = mean_ranks(table.row(i));
-    std::transform(sums.begin(), sums.end(), ranks.begin(), sums.begin(), std::plus());
-    ties += tie_sum(ranks);
+    const auto ranked = midranks(table.row(i));
+    std::transform(sums.begin(), sums.end(), ranked.ranks.begin(), sums.begin(), std::plus());
+    ties += ranked.tie_sum;
   }
   const double spread = n * conditions * (conditions + 1) - ties / (conditions - 1);
   if (!(spread > 0)) return Refusal{"every participant gave the same value to all conditions"};

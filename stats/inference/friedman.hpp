@@ -29,7 +29,4 @@ struct Friedman {
 /// std::invalid_argument when the values do not fill whole rows or k < 1.
 Result<Friedman> friedman_test(std::span<const double> rows, int k);
 
-/// Ranks of the values, 1 = smallest; ties share their mean rank. All finite or infinite, none NaN.
-std::vector<double> mean_ranks(std::span<const double> values);
-
 }  // namespace stats

@@ -30,7 +30,7 @@ RankSumTails tails(std::span<const double> weights, double sum) {
 
 }  // namespace
 
-Midranks midranks(std::span<const double> values, double resolution) {
+Midranks midranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
@@ -38,7 +38,7 @@ Midranks midranks(std::span<const double> values, double resolution) {
   out.ranks.resize(values.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
-    while (end < order.size() && values[order[end]] - values[order[end - 1]] <= resolution) ++end;
+    while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
     const auto size = static_cast<double>(end - first);
     out.tie_sum += size * (size * size - 1);
     for (std::size_t i = first; i < end; ++i) out.ranks[order[i]] = static_cast<double>(first + 1 + end) / 2;

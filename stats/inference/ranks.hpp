@@ -13,8 +13,9 @@ struct Midranks {
   bool has_ties() const { return tie_sum > 0; }
 };
 
-/// Neighbours in order that differ by `resolution` or less share their rank.
-Midranks midranks(std::span<const double> values, double resolution = 0);
+/// None NaN. Equal values share their rank; means and their differences are equal as doubles only when they
+/// come from exact_mean.hpp.
+Midranks midranks(std::span<const double> values);
 
 /// P(S <= s) and P(S >= s) for a sum S of midranks.
 struct RankSumTails {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -45,10 +44,10 @@ struct SignedRanks {
   double variance() const { return squares / 4; }
 };
 
-SignedRanks by_sign(std::span<const double> differences, std::span<const double> ranks, double resolution) {
+SignedRanks by_sign(std::span<const double> differences, std::span<const double> ranks) {
   SignedRanks out;
   for (std::size_t i = 0; i < differences.size(); ++i) {
-    if (std::abs(differences[i]) <= resolution) continue;
+    if (differences[i] == 0) continue;
     (differences[i] > 0 ? out.plus : out.minus) += ranks[i];
     out.squares += ranks[i] * ranks[i];
     out.ranks.push_back(ranks[i]);
@@ -98,9 +97,9 @@ void fill_location(SignedRank& out, std::span<const double> differences, double 
   out.hodges_lehmann = median_in_place(walsh);
 }
 
-void fill_pratt(SignedRank& out, std::span<const double> differences, double resolution) {
-  const auto all = midranks(magnitudes(differences), resolution);
-  const auto s = by_sign(differences, all.ranks, resolution);
+void fill_pratt(SignedRank& out, std::span<const double> differences) {
+  const auto all = midranks(magnitudes(differences));
+  const auto s = by_sign(differences, all.ranks);
   out.pratt_w_plus = s.plus;
   out.pratt_z = (s.plus - s.mean()) / std::sqrt(s.variance());
   out.pratt_p_normal = normal_p(s.plus - s.mean(), s.variance(), 0);
@@ -109,10 +108,9 @@ void fill_pratt(SignedRank& out, std::span<const double> differences, double res
 
 }  // namespace
 
-Result<SignedRank> signed_rank(std::span<const double> differences, double confidence, double resolution) {
+Result<SignedRank> signed_rank(std::span<const double> differences, double confidence) {
   if (!(confidence > 0 && confidence < 1))
     throw std::invalid_argument("a confidence must lie between 0 and 1");
-  if (!(resolution >= 0)) throw std::invalid_argument("a resolution must not be negative");
   const auto sample = present(differences);
   if (!sample) return Refusal{sample.reason()};
   if (sample->values.empty()) return Refusal{"no values"};
@@ -120,12 +118,12 @@ Result<SignedRank> signed_rank(std::span<const double> differences, double confi
   if (n_values * (n_values + 1) / 2 > most_pairs) return too_many;
   std::vector<double> nonzero;
   for (const double d : sample->values) {
-    if (std::abs(d) > resolution) nonzero.push_back(d);
+    if (d != 0) nonzero.push_back(d);
   }
   if (nonzero.empty()) return Refusal{"no difference that is not zero"};
 
-  const auto ranked = midranks(magnitudes(nonzero), resolution);
-  const auto s = by_sign(nonzero, ranked.ranks, resolution);
+  const auto ranked = midranks(magnitudes(nonzero));
+  const auto s = by_sign(nonzero, ranked.ranks);
   SignedRank out;
   out.n = sample->values.size();
   out.n_missing = sample->n_missing;
@@ -144,25 +142,19 @@ Result<SignedRank> signed_rank(std::span<const double> differences, double confi
   out.p_normal_uncorrected = normal_p(s.plus - s.mean(), s.variance(), 0);
   out.default_is_exact = out.n_nonzero < 50 && !out.has_ties && out.n_nonzero == out.n;
   out.p_default = out.default_is_exact ? *out.p_exact : out.p_normal;
-  fill_pratt(out, sample->values, resolution);
+  fill_pratt(out, sample->values);
   fill_location(out, sample->values, confidence);
   return out;
 }
 
-Result<SignedRank> signed_rank(std::span<const double> x, std::span<const double> y, double confidence) {
-  const auto pairs = present_pairs(x, y);
-  if (!pairs) return Refusal{pairs.reason()};
-  std::vector<double> differences;
-  double largest = 0;
-  for (std::size_t i = 0; i < pairs->x.size(); ++i) {
-    differences.push_back(pairs->x[i] - pairs->y[i]);
-    largest = std::max({largest, std::abs(pairs->x[i]), std::abs(pairs->y[i])});
-  }
-  const double resolution = 8 * std::numeric_limits<double>::epsilon() * largest;
-  auto result = signed_rank(std::span<const double>(differences), confidence, resolution);
-  if (!result) return result;
-  SignedRank out = *result;
-  out.n_missing = pairs->n_missing;
+Result<SignedRank> signed_rank(const ExactDifferences& differences, double confidence) {
+  const auto whole = signed_rank(differences.numerators, confidence);
+  if (!whole) return whole;
+  SignedRank out = *whole;
+  out.n_missing = differences.n_missing;
+  out.hodges_lehmann /= differences.denominator;
+  if (out.hodges_lehmann_ci)
+    for (double& end : *out.hodges_lehmann_ci) end /= differences.denominator;
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "stats/inference/exact_mean.hpp"
 #include "stats/result.hpp"
 
 namespace stats {
@@ -33,15 +34,11 @@ struct SignedRank {
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
 };
 
-/// Differences, against a median of zero. Values closer than `resolution` to zero or to each other count as
-/// equal; 0 takes the doubles as they are. std::invalid_argument unless confidence lies in (0, 1) and
-/// resolution >= 0. Refused: no values, an infinite value, no difference that is not zero.
-Result<SignedRank> signed_rank(std::span<const double> differences, double confidence = 0.95,
-                               double resolution = 0);
-/// Pairs x - y (std::invalid_argument unless of equal length). The resolution is 8 eps of the largest value:
-/// averages of ratings that differ in their last bits only are ties.
-Result<SignedRank> signed_rank(std::span<const double> x, std::span<const double> y,
-                               double confidence = 0.95);
+/// Differences as the doubles they are, against a median of zero. std::invalid_argument unless confidence
+/// lies in (0, 1). Refused: no values, an infinite value, no difference that is not zero.
+Result<SignedRank> signed_rank(std::span<const double> differences, double confidence = 0.95);
+/// Differences of means: equal ones are ties, whatever the counts.
+Result<SignedRank> signed_rank(const ExactDifferences& differences, double confidence = 0.95);
 
 struct MannWhitney {
   std::size_t n_x = 0, n_y = 0, n_missing = 0;

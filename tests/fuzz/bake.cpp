@@ -3,17 +3,11 @@
 #include <cstdint>
 
 #include "libsim/bake/bake_file.hpp"
-#include "stats/base/error.hpp"
+#include "tests/fuzz/attempt.hpp"
 
 namespace {
 
-template <typename Act>
-void attempt(Act act) {
-  try {
-    act();
-  } catch (const base::Error&) {
-  }
-}
+using fuzz::attempt;
 
 void read_file(sim::ByteSpan bytes) {
   const sim::BakeReader bake(bytes, "fuzz");

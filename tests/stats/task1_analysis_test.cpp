@@ -43,19 +43,21 @@ TEST(ScoreTable, ScenesAreAveragedWithinParticipantBaselineAndMethod) {
   EXPECT_THAT(table.rows(1), SizeIs(2)) << "who gave nothing at this n_* has no row";
 }
 
-TEST(ScoreTable, EqualAveragesOfThirdsAreEqualNumbers) {
-  // (1/3 + 2/3 + 3/3) / 3 in two orders: the sums differ in their last bit.
-  const double a = 1 / 3.0, b = 2 / 3.0, c = 0.1;
-  const std::vector<MethodScore> scores{{0, 0, 0, 0, a}, {0, 1, 0, 0, b}, {0, 2, 0, 0, c},
-                                        {0, 0, 0, 1, c}, {0, 1, 0, 1, b}, {0, 2, 0, 1, a}};
+TEST(ScoreTable, KeepsTheSumsOfItems) {
+  // Means of three items: (1 + 2 + 0) / 9 over three reports and 1 / 3 over one are one number.
+  const std::vector<MethodScore> scores{
+      {0, 0, 0, 0, 1, 3}, {0, 1, 0, 0, 2, 3}, {0, 2, 0, 0, 0, 3}, {0, 0, 0, 1, 1, 3}};
   const ScoreTable table(test::realism_scale(), scores, 1, {"16k"}, {"A", "B"});
-  ASSERT_NE(a + b + c, c + b + a);
+  EXPECT_EQ(table.means(0, 0)[0].sum, 3);
+  EXPECT_EQ(table.means(0, 0)[0].count, 9);
   EXPECT_EQ(table.column(0, 0)[0], table.column(0, 1)[0]);
 }
 
 TEST(ScoreTable, IndicesOutsideAreProgrammingErrors) {
   const std::vector<MethodScore> outside{{2, 0, 0, 0, 3}};
   EXPECT_THROW(ScoreTable(test::realism_scale(), outside, 2, {"16k"}, {"A"}), std::invalid_argument);
+  const std::vector<MethodScore> mixed{{0, 0, 0, 0, 3, 3}, {1, 0, 0, 0, 3, 4}};
+  EXPECT_THROW(ScoreTable(test::realism_scale(), mixed, 2, {"16k"}, {"A"}), std::invalid_argument);
 }
 
 TEST(Task1, PairedTestByHand) {

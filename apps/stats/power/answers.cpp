@@ -103,11 +103,12 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
     double sickness = 0;
     for (int item = 0; item < sickness_items; ++item) {
       const double latent = report + scatter.noise_item * draws.normal(trial, 2 + item);
-      sickness += answer(scatter, latent, scatter.item_min, scatter.item_max) / sickness_items;
+      sickness += answer(scatter, latent, scatter.item_min, scatter.item_max);
     }
     out.realism.push_back({trial.participant, place.scene, place.n_star, place.method,
                            answer(scatter, realism, scatter.realism_min, scatter.realism_max)});
-    out.sickness.push_back({trial.participant, place.scene, place.n_star, place.method, sickness});
+    out.sickness.push_back(
+        {trial.participant, place.scene, place.n_star, place.method, sickness, sickness_items});
   }
   return out;
 }

@@ -165,7 +165,7 @@ Json omnibus_json(const ScoreTable& table, const stats::Omnibus& one) {
 Json by_scene_json(const TaskData& data, const ScoreTable& table) {
   std::map<std::tuple<int, int, int>, std::vector<double>> cells;
   for (const auto& score : report_scores(data, table.scale().items)) {
-    if (!std::isnan(score.value)) cells[{score.n_star, score.scene, score.method}].push_back(score.value);
+    if (!std::isnan(score.sum)) cells[{score.n_star, score.scene, score.method}].push_back(score.value());
   }
   Json list = Json::array();
   for (const auto& [key, values] : cells) {

@@ -38,14 +38,14 @@ bool fit_scale(ScoreScale& scale, const TaskData& data) {
   return true;
 }
 
-double mean_of_items(const Report& report, const std::vector<std::string>& items) {
+double sum_of_items(const Report& report, const std::vector<std::string>& items) {
   double sum = 0;
   for (const std::string& item : items) {
     const auto answer = report.answers.find(item);
     if (answer == report.answers.end()) return std::numeric_limits<double>::quiet_NaN();
     sum += answer->second;
   }
-  return sum / static_cast<double>(items.size());
+  return sum;
 }
 
 std::vector<OrdinalModel> fit_ordinal(const TaskData& data, const stats::AnalysisPlan& plan) {
@@ -93,8 +93,8 @@ stats::Result<std::vector<stats::Hypothesis>> verdicts(const std::vector<stats::
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items) {
   std::vector<stats::MethodScore> out;
   for (const Report& report : data.reports)
-    out.push_back(
-        {report.participant, report.scene, report.n_star, report.method, mean_of_items(report, items)});
+    out.push_back({report.participant, report.scene, report.n_star, report.method,
+                   sum_of_items(report, items), static_cast<int>(items.size())});
   return out;
 }
 

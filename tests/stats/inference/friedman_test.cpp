@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stats/inference/ranks.hpp"
 #include "stats/inference/repeated_anova.hpp"
 #include "tests/stats/known_fields.hpp"
 #include "tests/stats/oracle.hpp"
@@ -238,9 +239,9 @@ TEST(RepeatedMeasures, PIsUniformUnderTheNull) {
 }
 
 TEST(MeanRanks, ShareTheirPlaces) {
-  EXPECT_EQ(stats::mean_ranks(Values{3, 1, 3, 2, 3}), (Values{4, 1, 4, 2, 4}));
-  EXPECT_EQ(stats::mean_ranks(Values{}), Values{});
-  EXPECT_EQ(stats::mean_ranks(Values{0.0, -0.0}), (Values{1.5, 1.5}));
+  EXPECT_EQ(stats::midranks(Values{3, 1, 3, 2, 3}).ranks, (Values{4, 1, 4, 2, 4}));
+  EXPECT_EQ(stats::midranks(Values{}).ranks, Values{});
+  EXPECT_EQ(stats::midranks(Values{0.0, -0.0}).ranks, (Values{1.5, 1.5}));
 }
 
 }  // namespace

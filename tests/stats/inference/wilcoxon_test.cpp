@@ -144,28 +144,13 @@ TEST(SignedRank, ExactMeansAllSigns) {
   }
 }
 
-TEST(SignedRank, AveragesThatDifferByRoundingAreTies) {
-  // Means of three ratings: all differences are 1/3 or 0 but for the last bits.
-  const Values x{(4.0 + 4 + 5) / 3, (5.0 + 5 + 6) / 3, (1.0 + 1 + 2) / 3, 0.1 + 0.2};
-  const Values y{4, 5, 1, 0.3};
-  const auto got = signed_rank(x, y);
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->n, 4u);
-  EXPECT_EQ(got->n_nonzero, 3u);
-  EXPECT_TRUE(got->has_ties);
-  EXPECT_EQ(got->w_plus, 6);
-  EXPECT_EQ(*got->p_exact, 0.25);
-}
-
 TEST(SignedRank, SmallAndEmptySamples) {
   EXPECT_EQ(signed_rank(Values{}).reason(), "no values");
   EXPECT_EQ(signed_rank(Values{unknown}).reason(), "no values");
   EXPECT_EQ(signed_rank(Values{0, 0, 0}).reason(), "no difference that is not zero");
   EXPECT_EQ(signed_rank(Values{1, infinite}).reason(), "a value is infinite");
-  EXPECT_EQ(signed_rank(Values{1, 2}, Values{1, 2}).reason(), "no difference that is not zero");
   EXPECT_EQ(signed_rank(Values(8000, 1.0)).reason(), "more pairs of values than 2.5e7");
-  EXPECT_THROW(signed_rank(Values{1, 2}, Values{1}), std::invalid_argument);
-  EXPECT_THROW(signed_rank(Values{1}, 0.95, -1.0), std::invalid_argument);
+  EXPECT_THROW(signed_rank(Values{1}, 1), std::invalid_argument);
   const auto one = signed_rank(Values{-2, unknown});
   ASSERT_TRUE(one);
   EXPECT_EQ(*one->p_exact, 1);

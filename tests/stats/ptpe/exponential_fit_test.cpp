@@ -42,18 +42,13 @@ void expect_number(const json& got, const json& expected, double rtol, double sc
   EXPECT_NEAR(got.get<double>(), expected.get<double>(), oracle::bound(expected, rtol, scale)) << where;
 }
 
-/// README: 1e-4. The reference interpolates its profiles with splines, which shows where a is far from
-/// normal: there 0.2 % of the interval's width. ProfileEndsLieOnTheLimit holds ours to the definition.
+/// Ends of a profile are exact roots, to 1e-6, but for a of x_offset, where the pack still has R's spline: at
+/// our end the least sum of squares meets its limit to 2e-13, at theirs to 1e-3.
 void expect_profile(const json& got, const json& expected, const std::string& key, const std::string& where) {
   if (expected[0].is_null() && expected[1].is_null()) return;
   ASSERT_TRUE(got.contains(key)) << where;
-  const double width = got.at(key).at(1).get<double>() - got.at(key).at(0).get<double>();
-  for (const std::size_t end : {0u, 1u}) {
-    if (expected[end].is_null()) continue;
-    const double wanted = expected[end];
-    EXPECT_NEAR(got[key][end].get<double>(), wanted, std::max(1e-4 * std::abs(wanted), 2e-3 * width))
-        << where;
-  }
+  const double rtol = where == "x_offset: ci95_profile_a" ? 2e-3 : 1e-6;
+  for (const std::size_t end : {0u, 1u}) expect_number(got[key][end], expected[end], rtol, 1, where);
 }
 
 void expect_fields(const json& got, const json& expect, double rtol, double scale, const std::string& id) {

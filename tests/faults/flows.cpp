@@ -1,0 +1,310 @@
+#include "tests/faults/flows.hpp"
+
+#include <stdexcept>
+
+#include "libstudy/store/sqlite.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+
+namespace faults {
+
+namespace {
+
+/// Words of somebody who withdraws: they must stand nowhere afterwards.
+constexpr const char* secret = "zebra-of-the-north";
+
+void call(const Arguments& arguments) {
+  const auto ended = apps::test::run_program(arguments);
+  if (ended.exit_code == 0) return;
+  std::string line;
+  for (const auto& word : arguments) line += word + " ";
+  throw std::runtime_error(line + "ended with " + std::to_string(ended.exit_code) + ": " + ended.err);
+}
+
+Arguments run_arguments(const fs::path& folder, const std::string& database, const Arguments& people,
+                        const std::string& station = "north") {
+  Arguments all = vip_study({"run", folder / "short.toml", "--db", folder / database, "--observer", "random",
+                             "--seed", "5", "--events", "--station", station});
+  for (const auto& code : people) {
+    all.push_back("--participant");
+    all.push_back(code);
+  }
+  return all;
+}
+
+void write_protocol(const fs::path& folder) {
+  base::write_file_atomically(folder / "short.toml", short_protocol());
+}
+
+void run_whole(const fs::path& folder, const std::string& database, const Arguments& people,
+               const std::string& station = "north") {
+  write_protocol(folder);
+  call(run_arguments(folder, database, people, station));
+}
+
+Arguments resume_arguments(const fs::path& folder, const std::string& database) {
+  return vip_study({"resume", "--db", folder / database, "--events"});
+}
+
+/// Two of the three sessions are over; the third was killed within a trial.
+void cut_session(const fs::path& folder) {
+  write_protocol(folder);
+  apps::test::Process program(run_arguments(folder, "s.db", {"P01", "P02"}));
+  for (int line = 0; line < 12; ++line) program.read_line();
+  program.send(SIGKILL);
+  program.wait();
+}
+
+/// The words of P02, where an observer has none.
+void say_secrets(const fs::path& database) {
+  study::sqlite::Connection file(database, study::sqlite::Open::Write);
+  file.execute(
+      std::string("UPDATE response SET words = '") + secret +
+      "' WHERE response_id IN (SELECT response_id FROM response r JOIN question q USING (question_id) "
+      "JOIN unit u USING (unit_id) JOIN session s USING (session_id) WHERE s.participant = 'P02' AND "
+      "q.kind = 'text')");
+}
+
+void prepare_withdrawal(const fs::path& folder) {
+  run_whole(folder, "s.db", {"P01", "P02", "P03"});
+  say_secrets(folder / "s.db");
+  call(vip_study({"export", "--db", folder / "s.db", "--csv", folder / "csv", "--words"}));
+}
+
+Lines withdrawal_content(const fs::path& folder) {
+  Lines all = database_content(folder / "s.db") + personal_content(folder / "s.db");
+  std::string where;
+  fs::remove_all(folder / "csv");  // deleted or named: the store's own tests tell which
+  if (stands_in(folder, secret, where)) all.push_back("the words of P02 stand in " + where);
+  return all;
+}
+
+/// Two stations that gave the same codes, one of whom withdrew at one of them after an earlier merge.
+void prepare_merge(const fs::path& folder) {
+  run_whole(folder, "north.db", {"P01", "P02"}, "north");
+  run_whole(folder, "south.db", {"P01", "P03"}, "south");
+  fs::copy_file(folder / "north.db", folder / "all.db");
+  fs::copy_file(folder / "north.db.personal", folder / "all.db.personal");
+  call(vip_study({"withdraw", "P02", "--db", folder / "north.db", "--yes"}));
+}
+
+Lines merge_content(const fs::path& folder) {
+  Lines all;
+  for (const char* name : {"north.db", "south.db", "all.db"})
+    all = all + Lines{name} + database_content(folder / name) + personal_content(folder / name);
+  return all;
+}
+
+Arguments merge_arguments(const fs::path& folder) {
+  return vip_study({"merge", folder / "north.db", folder / "south.db", "--into", folder / "all.db"});
+}
+
+Lines export_content(const fs::path& folder) {
+  return folder_content(folder / "csv") + folder_content(folder / "bids") + folder_content(folder / "psych");
+}
+
+Arguments export_arguments(const fs::path& folder) {
+  return vip_study({"export", "--db", folder / "s.db", "--csv", folder / "csv", "--bids", folder / "bids",
+                    "--psych-ds", folder / "psych"});
+}
+
+Arguments bake_arguments(const fs::path& folder) {
+  return vip_study({"bake", "data/scenes/single_dam.toml", "--method", "LoRes", "--n-star", "64", "--backend",
+                    "cpu", "--frames", "4", "--out", folder / "dam.bake"});
+}
+
+/// What stands under the bake's name is whole.
+Arguments bake_or_verify(const fs::path& folder) {
+  if (!fs::exists(folder / "dam.bake")) return bake_arguments(folder);
+  return vip_study({"bake", "--verify", folder / "dam.bake"});
+}
+
+std::function<void(const fs::path&)> fixture(const std::string& name) {
+  return [=](const fs::path& folder) {
+    fs::copy_file(base::resource("tests/libstudy/fixtures/" + name), folder / "s.db");
+    fs::permissions(folder / "s.db", fs::perms::owner_read | fs::perms::owner_write);
+  };
+}
+
+Lines backed_up_answers(const fs::path& backup) {
+  Lines all;
+  for (const std::string& line : database_content(backup)) {
+    if (line.starts_with("response|")) all.push_back(line);
+  }
+  return all;
+}
+
+/// The database, and the answers that its backup holds.
+Lines upgraded_content(const fs::path& folder) {
+  Lines backup;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    // There may be several of the same.
+    if (entry.path().extension() == ".bak") backup = backed_up_answers(entry.path());
+  }
+  // One session is shown on the real clock.
+  Lines all;
+  for (const std::string& line : session_content(folder / "s.db")) {
+    if (!line.starts_with("shown|")) all.push_back(line);
+  }
+  return all + Lines{"backup"} + backup;
+}
+
+}  // namespace
+
+fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+Arguments vip_study(const Arguments& more) {
+  Arguments all{program_folder() / "vip-study"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+const std::vector<Flow>& all_flows() {
+  const auto of = [](const char* file, auto arguments) {
+    return [=](const fs::path& folder) { return arguments(folder, file); };
+  };
+  const auto sessions = [](const fs::path& folder) {
+    return session_content(folder / "s.db") + personal_content(folder / "s.db");
+  };
+  const auto run = [](const fs::path& folder) { return run_arguments(folder, "s.db", {"P01", "P02"}); };
+  const auto go_on = [=](const fs::path& folder) {
+    return is_planned(folder / "s.db") ? resume_arguments(folder, "s.db") : run(folder);
+  };
+  const auto withdraw = [](const fs::path& folder) {
+    return vip_study({"withdraw", "P02", "--db", folder / "s.db", "--yes"});
+  };
+  static const std::vector<Flow> flows{
+      {"run", write_protocol, run, go_on, sessions, {}, "s.db"},
+      {"resume", cut_session, of("s.db", resume_arguments), go_on, sessions, {"s.db"}, "s.db"},
+      {"withdraw", prepare_withdrawal, withdraw, withdraw, withdrawal_content, {"s.db"}, ""},
+      {"merge",
+       prepare_merge,
+       merge_arguments,
+       merge_arguments,
+       merge_content,
+       {"north.db", "south.db", "all.db"},
+       ""},
+      {"export",
+       [](const fs::path& folder) {
+         run_whole(folder, "s.db", {"P01", "P02"});
+       },
+       export_arguments,
+       export_arguments,
+       export_content,
+       {"s.db"},
+       ""},
+      {"bake",
+       [](const fs::path&) {},
+       bake_arguments,
+       bake_or_verify,
+       [](const fs::path& folder) {
+         return Lines{base::sha256_hex(base::read_file(folder / "dam.bake", 1u << 30))};
+       },
+       {},
+       ""},
+      {"upgrade from schema 1",
+       fixture("study_v1.db"),
+       of("s.db", resume_arguments),
+       of("s.db", resume_arguments),
+       upgraded_content,
+       {"s.db"},
+       "s.db"},
+      {"upgrade from schema 2",
+       fixture("study_v2.db"),
+       of("s.db", resume_arguments),
+       of("s.db", resume_arguments),
+       upgraded_content,
+       {"s.db"},
+       "s.db"},
+  };
+  return flows;
+}
+
+std::string short_protocol() {
+  return R"(
+format = 2
+name = "short"
+version = "1"
+language = "en"
+participants = 4
+
+[design]
+scene = ["data/scenes/single_dam.toml"]
+method = ["HiRes"]
+n_star = ["512"]
+timing = "settings"
+mean_fps = [20, 30]
+sd_fps = [0, 3]
+duration_s = 1
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.02
+start_frame = 0
+at_end = "hold"
+
+[[block]]
+kind = "consent"
+id = "consent"
+text = "A test."
+
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I would like to go on."
+anchors = {0 = "no", 1 = "yes"}
+accept = [0, 1]
+
+[[block]]
+kind = "demographics"
+id = "person"
+
+[[block.question]]
+id = "age"
+kind = "number"
+text = "Your age in years"
+scale = [10, 110]
+personal = true
+
+[[block]]
+kind = "practice"
+id = "warm_up"
+like = "ratings"
+count = 1
+
+[[block]]
+kind = "stimulus"
+id = "ratings"
+steps = ["stimulus", "ask satisfaction smoothness"]
+
+[[block.question]]
+id = "satisfaction"
+kind = "scale"
+text = "How satisfied are you with the motion of the fluid?"
+scale = [1, 7]
+
+[[block.question]]
+id = "smoothness"
+kind = "choice"
+text = "Was it smooth?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block]]
+kind = "question"
+id = "remarks"
+
+[[block.question]]
+id = "remark"
+kind = "text"
+text = "Is there anything you would like to say?"
+)";
+}
+
+}  // namespace faults

@@ -1,0 +1,219 @@
+/// vip-faults: kills and failing calls in every command that keeps data, with a check after each that nothing
+/// is lost, doubled, changed or refused. Exit status 1 when something is.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include "tests/common/temporary_folder.hpp"
+#include "tests/faults/starts.hpp"
+#include "tests/faults/tries.hpp"
+
+namespace faults {
+namespace {
+
+using Kind = Fault::Kind;
+using How = Outcome::How;
+
+struct Options {
+  int every = 1, jobs = 1;
+  long count = 1000;
+  unsigned seed = 1;
+  std::vector<std::string> flows;
+};
+
+bool chosen(const Options& options, const std::string& name) {
+  return options.flows.empty() || std::count(options.flows.begin(), options.flows.end(), name) > 0;
+}
+
+/// Outcomes of one row of the table.
+struct Row {
+  long tries = 0, kills = 0;
+  std::map<How, long> ended;
+};
+
+class Table {
+ public:
+  void add(const std::string& name, const Outcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    Row& row = rows_[name];
+    ++row.tries;
+    row.kills += outcome.kills;
+    kills_ += outcome.kills;
+    ++row.ended[outcome.how];
+    if (outcome.how == How::Failed) fail(outcome.problem);
+  }
+  void fail(const std::string& problem) {
+    if (++failures_ <= 40) std::printf("FAILED  %s\n", problem.c_str());
+    std::fflush(stdout);
+  }
+  long kills() const { return kills_; }
+  long failures() const { return failures_; }
+  void print() const {
+    std::printf("%-34s %7s %9s %9s %9s %7s %7s\n", "command, fault", "tries", "went on", "refused", "stopped",
+                "failed", "kills");
+    Row all;
+    for (const auto& [name, row] : rows_) {
+      print(name, row);
+      all.tries += row.tries;
+      all.kills += row.kills;
+      for (const auto& [how, n] : row.ended) all.ended[how] += n;
+    }
+    print("all", all);
+    std::printf(
+        "After each the command was given again: what counts was then as without a fault, but for the "
+        "failed.\n");
+  }
+
+ private:
+  static void print(const std::string& name, const Row& row) {
+    const auto of = [&](How how) { return row.ended.contains(how) ? row.ended.at(how) : 0; };
+    std::printf("%-34s %7ld %9ld %9ld %9ld %7ld %7ld\n", name.c_str(), row.tries, of(How::WentOn),
+                of(How::Refused), of(How::Stopped), of(How::Failed), row.kills);
+  }
+
+  std::map<std::string, Row> rows_;
+  std::mutex mutex_;
+  std::atomic<long> kills_{0}, failures_{0};
+};
+
+/// Calls work(worker) in as many threads as there are jobs.
+template <class Work>
+void side_by_side(int jobs, Table& table, Work work) {
+  std::vector<std::thread> threads;
+  for (int worker = 0; worker < jobs; ++worker) {
+    threads.emplace_back([&, worker] {
+      try {
+        work(worker);
+      } catch (const std::exception& error) {
+        table.fail(error.what());
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+}
+
+/// Every k-th call of each command, with each kind of fault.
+void try_each(const Options& options, const fs::path& folder, Table& table) {
+  for (const Flow& flow : all_flows()) {
+    if (!chosen(options, flow.name)) continue;
+    std::atomic<long> next{0};
+    side_by_side(options.jobs, table, [&](int worker) {
+      Bench bench(flow, folder / std::to_string(worker));
+      const std::vector<Kind> kinds{Kind::Kill,     Kind::Tear, Kind::Error,
+                                    Kind::ErrorsOn, Kind::Full, Kind::FullOn};
+      const long step = options.every, points = (bench.calls() + step - 1) / step;
+      for (long i; (i = next++) < points * static_cast<long>(kinds.size());) {
+        const Kind kind = kinds[static_cast<std::size_t>(i / points)];
+        // The kinds fall on different calls where not all are tried.
+        const long k = 1 + (i % points) * step + (i / points) * step / static_cast<long>(kinds.size());
+        table.add(flow.name + ", " + name_of(kind), bench.attempt({kind, k, 0}));
+      }
+    });
+  }
+}
+
+/// Kills at random calls and instants, and full disks among them, until there were so many kills.
+void try_kills(const Options& options, const fs::path& folder, Table& table) {
+  const bool disks = small_disks_can_be_made(folder / "disk");
+  if (!disks) std::printf("no small file systems here (not root): full disks are injected calls alone\n");
+  side_by_side(options.jobs, table, [&](int worker) {
+    std::vector<const Flow*> flows;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (const Flow& flow : all_flows()) {
+      if (!chosen(options, flow.name)) continue;
+      flows.push_back(&flow);
+      benches.push_back(std::make_unique<Bench>(flow, folder / std::to_string(worker) / flow.name));
+    }
+    std::mt19937 random(options.seed * 1000 + static_cast<unsigned>(worker));
+    const auto below = [&](long n) {
+      return 1 + static_cast<long>(random() % static_cast<unsigned long>(n));
+    };
+    for (std::size_t i = 0; table.kills() < options.count && table.failures() < 40; ++i) {
+      Bench& bench = *benches[i % benches.size()];
+      Fault fault;
+      switch (random() % 8) {
+        case 0:
+          fault = {disks ? Kind::SmallDisk : Kind::FullOn, below(disks ? 60 : bench.calls()), 0};
+          break;
+        case 1:
+          fault = {Kind::Tear, below(bench.calls()), 0};
+          break;
+        case 2:
+        case 3:
+          fault = {Kind::Instant, below(bench.microseconds()), static_cast<int>(random() % 3)};
+          break;
+        default:
+          fault = {Kind::Kill, below(bench.calls()), static_cast<int>(random() % 3)};
+          break;
+      }
+      if (fault.kind == Kind::SmallDisk) fault.at *= 4096;
+      table.add(flows[i % flows.size()]->name + ", " + name_of(fault.kind), bench.attempt(fault));
+    }
+  });
+}
+
+/// First starts on new databases, two to four at a time, and looks beside running sessions.
+void try_together(const Options& options, const fs::path& folder, Table& table) {
+  std::atomic<long> starts{0}, refused{0}, looks{0};
+  side_by_side(options.jobs, table, [&](int worker) {
+    const fs::path own = folder / ("together" + std::to_string(worker));
+    for (int round = 0; starts < options.count && table.failures() < 40; ++round) {
+      const Together started = start_together(own, 2 + round % 3);
+      starts += started.programs;
+      refused += started.refused;
+      if (!started.problem.empty())
+        table.fail(std::to_string(2 + round % 3) + " first starts: " + started.problem);
+    }
+    for (int round = 0; looks < options.count && table.failures() < 40; ++round) {
+      const Together looked = look_beside(own);
+      looks += looked.programs;
+      if (!looked.problem.empty()) table.fail(looked.problem);
+    }
+  });
+  std::printf(
+      "%ld first starts beside each other on new databases (%ld refused, and done again); %ld looks beside a "
+      "running session\n",
+      starts.load(), refused.load(), looks.load());
+}
+
+int main(int argc, char** argv) {
+  ::setenv("OMP_WAIT_POLICY", "passive", 1);
+  CLI::App app("Kills and failing calls in every command that keeps data.");
+  app.require_subcommand(1);
+  Options options;
+  std::function<void(const Options&, const fs::path&, Table&)> work;
+  const auto command = [&](const char* name, const char* says, auto function) {
+    CLI::App& sub = *app.add_subcommand(name, says);
+    sub.add_option("--jobs", options.jobs, "Workers side by side")->check(CLI::Range(1, 256));
+    sub.callback([&work, function] { work = function; });
+    return &sub;
+  };
+  CLI::App* each = command("each", "Fail at, or stop before, each call of each command", try_each);
+  each->add_option("--every", options.every, "Try every so-manieth call only")->check(CLI::PositiveNumber);
+  CLI::App* killed =
+      command("kills", "Kill at random calls and instants, with full disks among them", try_kills);
+  CLI::App* starts =
+      command("starts", "First starts beside each other, and looks beside a session", try_together);
+  for (CLI::App* sub : {killed, starts})
+    sub->add_option("count", options.count, "Of kills, or of starts and of looks");
+  killed->add_option("--seed", options.seed, "Of the random numbers");
+  for (CLI::App* sub : {each, killed})
+    sub->add_option("--flow", options.flows, "This command only; may be repeated");
+  CLI11_PARSE(app, argc, argv);
+  const ::test::TemporaryFolder folder(::test::memory_folder());
+  Table table;
+  work(options, folder.path(), table);
+  table.print();
+  std::printf("%ld kills, %ld failures\n", table.kills(), table.failures());
+  return table.failures() == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace faults
+
+int main(int argc, char** argv) { return faults::main(argc, argv); }

@@ -1,0 +1,30 @@
+/// Any bytes as the file of personal data beside a database: read, added to, renamed in and deleted from, or
+/// refused with base::Error.
+#include "libstudy/store/personal.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/common/temporary_folder.hpp"
+#include "tests/fuzz/attempt.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  namespace fs = std::filesystem;
+  static const test::TemporaryFolder folder(test::memory_folder());
+  for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
+  if (std::FILE* out = std::fopen((folder / "s.db.personal").c_str(), "wb")) {
+    std::fwrite(data, 1, size, out);
+    std::fclose(out);
+  }
+  fuzz::attempt([&] {
+    study::PersonalFile file(folder / "s.db");
+    file.read("P01");
+    file.keep({{"P07", "age", "Your age", "33"}});
+    if (file.read("P07").empty()) std::abort();
+    file.rename({{"P07", "P08"}});
+    file.forget("P08");
+    if (!file.read("P08").empty()) std::abort();
+  });
+  return 0;
+}

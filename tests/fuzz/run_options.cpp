@@ -1,0 +1,16 @@
+/// Any bytes as the options of a run that a database holds: refused with base::Error, or read to what writes
+/// and reads back the same.
+#include "apps/study/run_options.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+
+#include "tests/fuzz/attempt.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::attempt([&] {
+    const auto options = apps::parse_run_options({reinterpret_cast<const char*>(data), size}, "fuzz.db");
+    if (apps::parse_run_options(apps::format_run_options(options), "again") != options) std::abort();
+  });
+  return 0;
+}
