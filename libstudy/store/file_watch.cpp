@@ -14,14 +14,19 @@ namespace {
 
 // Where the shared memory of a log says how far it was copied (sqlite.org/walformat.html, section 2.2).
 constexpr int salt_at = 32, copied_at = 96, being_copied_at = 128;
-constexpr int shared_region_bytes = 32768;
+constexpr int shared_region_bytes = 32768, copy_lock = 1;
+
+/// None where the file has no shared memory.
+sqlite3_file* main_file(sqlite3* database) {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  return file && file->pMethods && file->pMethods->iVersion >= 2 ? file : nullptr;
+}
 
 /// The shared memory that the connection has mapped already.
 const volatile char* shared_memory(sqlite3* database) {
-  sqlite3_file* file = nullptr;
-  if (sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || !file ||
-      !file->pMethods || file->pMethods->iVersion < 2)
-    return nullptr;
+  sqlite3_file* file = main_file(database);
+  if (!file) return nullptr;
   volatile void* region = nullptr;
   const int code = file->pMethods->xShmMap(file, 0, shared_region_bytes, 0, &region);
   return code == SQLITE_OK ? static_cast<const volatile char*>(region) : nullptr;
@@ -40,7 +45,7 @@ FileWatch::FileWatch(fs::path path, sqlite3* database) : path_(std::move(path)),
   file_id_ = id_of(path_);
   log_id_ = id_of(log_);
   shared_id_ = id_of(shared_);
-  look();
+  last_ = seen_now();
 }
 
 std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
@@ -64,21 +69,33 @@ std::optional<FileWatch::Look> FileWatch::seen_now() const {
   return seen;
 }
 
-void FileWatch::look() { last_ = seen_now(); }
-
-std::string FileWatch::trouble() const {
+std::string FileWatch::trouble() {
   const auto file = id_of(path_);
   if (!file) return "was deleted or moved away while it was in use";
   if (file != file_id_) return "was replaced by another file while it was in use";
   if (id_of(log_) != log_id_) return "lost its log " + log_.string() + " while it was in use";
+  if (!written_by_somebody()) return {};
+  // Whoever copies the log holds this lock; then it is judged at the next look.
+  const auto lock = [this](int how) {
+    sqlite3_file* main = main_file(database_);
+    return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;
+  };
+  if (!lock(SQLITE_SHM_LOCK)) return {};
+  const bool foreign = written_by_somebody();
+  lock(SQLITE_SHM_UNLOCK);
+  return foreign ? "was written over by another program while it was in use" : "";
+}
+
+bool FileWatch::written_by_somebody() {
   const auto now = seen_now();
-  if (!now || !last_) return {};
-  const bool written = now->bytes != last_->bytes || now->written_ns != last_->written_ns;
+  if (!now) return false;
+  const bool written = last_ && (now->bytes != last_->bytes || now->written_ns != last_->written_ns);
   // Any program may copy the log into the file, and says so in the shared memory.
-  const bool by_the_log = now->salt[0] != last_->salt[0] || now->salt[1] != last_->salt[1] ||
-                          now->copied != last_->copied || now->being_copied != last_->being_copied ||
-                          now->copied != now->being_copied;
-  return written && !by_the_log ? "was written over by another program while it was in use" : "";
+  const bool by_the_log = last_ && (now->salt[0] != last_->salt[0] || now->salt[1] != last_->salt[1] ||
+                                    now->copied != last_->copied || now->being_copied != last_->being_copied);
+  if (written && !by_the_log) return true;
+  last_ = now;
+  return false;
 }
 
 void FileWatch::take_log_away(const std::optional<fs::path>& kept) const {

@@ -16,9 +16,7 @@ class FileWatch {
   FileWatch(std::filesystem::path path, sqlite3* database);
 
   /// What happened to the file since the last look, e.g. "was deleted or moved away ..."; empty: nothing.
-  std::string trouble() const;
-  /// As the file is now, it is right: after every commit, which may have copied the log into it.
-  void look();
+  std::string trouble();
   /// Takes the log away from beside the path, where it would be copied into whatever file stands there next:
   /// to `kept`, or for good. Neither is touched where it is not the one that SQLite has open.
   void take_log_away(const std::optional<std::filesystem::path>& kept) const;
@@ -36,6 +34,7 @@ class FileWatch {
   };
   static std::optional<Id> id_of(const std::filesystem::path& path);
   std::optional<Look> seen_now() const;
+  bool written_by_somebody();
 
   std::filesystem::path path_, log_, shared_;
   sqlite3* database_;
