@@ -1,4 +1,5 @@
 /// vip-study run: plan sessions, write the plan, play them.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -110,6 +111,12 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
+bool asks_gaze(const study::Protocol& protocol) {
+  const auto all = study::all_questions(protocol);
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto& entry) { return entry.second->id == study::gaze_question; });
+}
+
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   choose_defaults(command.run);
@@ -126,6 +133,10 @@ void run(RunCommand& command) {
   if (!setup.stimuli->departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
                  setup.stimuli->departure().c_str());
+  }
+  if (setup.gaze && !asks_gaze(protocol)) {
+    std::fprintf(stderr, "%s: does not ask %s; where the mouse is will not be recorded\n",
+                 command.protocol.c_str(), study::gaze_question);
   }
 
   const StopSignals signals;
@@ -174,10 +185,10 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--display", command->run.display,
                  "Where frames go: a window (a person's), drawn without a window, or nowhere (an observer's)")
       ->check(CLI::IsMember({"window", "headless", "none"}));
-  sub.add_option("--gaze", command->run.gaze,
-                 "Where one is taken to look: the middle of the picture, the mouse, or not known; tracked: "
-                 "an observer's, "
-                 "kept as if a tracker had told it")
+  sub.add_option(
+         "--gaze", command->run.gaze,
+         "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "
+         "answered with yes), or not known; tracked: an observer's, as if a tracker had told it")
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,

@@ -160,6 +160,7 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
+  parts.gaze = setup.gaze.get();
   for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
   Steering steering(store, run, protocol, setup.wish, options);
   try {

@@ -8,8 +8,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "libstudy/store/export_register.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace study {
@@ -18,6 +20,12 @@ namespace study {
 struct ExportedFile {
   std::string name;
   std::int64_t rows = 0;
+};
+
+/// An export that others may read, and whom it leaves out.
+struct PublicExport {
+  std::vector<ExportedFile> files;
+  SharingCount people;
 };
 
 /// What is exported.

@@ -198,6 +198,7 @@ void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
           "run vip-study resume, which asks what is open");
     }
   }
+  for (const KeptAnswer& kept : answers) answer_over_change(session, kept.question, now);
   const std::string where = "unit " + std::to_string(unit.plan.position);
   if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
   if (ending) mark_ended(session, *ending, clock_ns);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libstudy/design/plan.hpp"
+#include "libstudy/display/gaze.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/sqlite.hpp"
@@ -125,6 +126,12 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  /// Whether the participant allows that gaze is recorded in this session, as it stands now.
+  bool allows_gaze(std::int64_t session);
+  /// Commits samples of a presentation, after those that it has. base::Error, with nothing kept, unless the
+  /// participant allows it.
+  void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
+                std::span<const GazeSample> samples);
   /// Commits the rest of the frames and the verdict; no verdict is kept where nothing was scheduled
   /// (nominal mean 0).
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
@@ -133,8 +140,8 @@ class Store {
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
   /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well.
-  /// An `ending` to which the answers led is kept with them. base::Error, with nothing kept, for a question
-  /// that is personal, unknown or answered here before.
+  /// An `ending` to which the answers led is kept with them. What they allow counts from then on.
+  /// base::Error, with nothing kept, for a question that is personal, unknown or answered here before.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
               bool last, std::int64_t clock_ns, const std::optional<Ending>& ending = {});
   /// Commits that a unit without answers is done.
@@ -172,6 +179,7 @@ class Store {
   void mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
   void mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason);
   void set_trial_aside(std::int64_t session, std::int64_t trial);
+  void answer_over_change(std::int64_t session, const std::string& question, const std::string& now);
   std::int64_t trial_unit(std::int64_t trial);
   void insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   void insert_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
