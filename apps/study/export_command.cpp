@@ -60,7 +60,13 @@ void add_export_command(CLI::App& app) {
       "A folder is made, or replaced when it is an earlier export. It is registered in the database, which "
       "must be\n"
       "writable for that: when one of the people in it withdraws, the folder is deleted, to be exported "
-      "again.");
+      "again.\n"
+      "CSV is the owner's alone to read (folder 0700, files 0600), since it holds all that is known of "
+      "people;\n"
+      "BIDS and Psych-DS are for others, as the umask says.\n"
+      "A text that a spreadsheet would take for a formula has an apostrophe before it (dictionary.csv says "
+      "how\n"
+      "to take it away).");
   sub.callback([options] {
     if (!options->csv.empty())
       print_files(study::export_csv(options->database, options->csv, {options->words, options->gaze}));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
@@ -190,7 +191,8 @@ void add_run_command(CLI::App& app) {
          "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "
          "answered with yes), or not known; tracked: an observer's, as if a tracker had told it")
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
-  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
+  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
+      ->check(text_up_to(100));
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,
                  "Width of the picture on the screen; gives the camera's angle");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");

@@ -44,12 +44,13 @@ std::string field(std::string text) {
   for (char& c : text) {
     if (c == '\t' || c == '\n' || c == '\r') c = ' ';
   }
-  return text.empty() ? "n/a" : text;
+  return text.empty() ? "n/a" : formula_guarded(text);
 }
 
 std::string field(const sqlite::Statement& row, int column) {
   if (row.is_null(column)) return "n/a";
-  return row.is_real(column) ? number_text(row.real(column)) : field(row.text(column));
+  if (row.is_text(column)) return field(row.text(column));
+  return row.is_real(column) ? number_text(row.real(column)) : row.text(column);
 }
 
 std::string seconds(std::int64_t ns) { return number_text(static_cast<double>(ns) / ns_per_s); }

@@ -166,7 +166,7 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
     const std::string sub = "sub-" + session.subject;
     auto [rows, fresh] = visits.try_emplace(sub);
     if (fresh) {
-      people.push_back({sub, session.participant});
+      people.push_back({sub, field(session.participant)});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
                        "test_data", "observer", "station", "gaze_source", "state"}};
     }
@@ -267,7 +267,7 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
-  ExportDraft draft({path, "bids", people_of(sessions)}, folder, is_export);
+  ExportDraft draft({path, "bids", people_of(sessions), Readers::AsUmask}, folder, is_export);
   Writer writer(draft);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},
@@ -277,7 +277,7 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
   writer.text(
       "README.md",
       std::string("# Ratings of real-time fluid\n\nBehaviour: what was shown when, how it was rated") +
-          (gaze ? ", where people looked.\n" : ".\n"));
+          (gaze ? ", where people looked.\n" : ".\n") + "\nIn every table, " + formula_guard_meaning + ".\n");
   write_people(*database, sessions, writer);
   for (const LabelledSession& session : sessions) {
     write_events(*database, session, writer);

@@ -109,7 +109,8 @@ bool is_written(const Table& table, const CsvChoice& choice) {
 std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, const CsvChoice& choice) {
   ExportFile file(draft, dictionary_file);
   file.write(dictionary_header);
-  std::int64_t rows = 0;
+  file.write("(all),(all),TEXT," + csv_field(formula_guard_meaning) + "\r\n");
+  std::int64_t rows = 1;
   const auto write = [&](const char* name, const ColumnMeaning& column) {
     file.write(std::string(name) + ',' + csv_field(column.column) + ',' + column.type + ',' +
                csv_field(column.meaning) + "\r\n");
@@ -172,7 +173,7 @@ std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folde
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
-  ExportDraft draft({path, "csv", everybody(*database)}, folder, is_export);
+  ExportDraft draft({path, "csv", everybody(*database), Readers::Owner}, folder, is_export);
   std::vector<ExportedFile> files;
   for (const Table& table : tables) {
     if (!is_written(table, choice)) continue;

@@ -1,5 +1,6 @@
 #pragma once
-/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary.
+/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary. Texts
+/// are formula_guarded(), which the dictionary's first line explains; numbers stay numbers.
 
 #include <filesystem>
 #include <string>
@@ -20,6 +21,7 @@ struct CsvChoice {
 /// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
 /// This is the lab's own copy: it holds everybody; sessions.csv says who may stand in public exports.
 ///
+/// Folder and files are the owner's alone.
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
 /// changed, when it holds anything else, or when the database cannot be written: the folder is registered in

@@ -84,7 +84,8 @@ void write_description(Connection& database, const ExportDraft& draft) {
   write_text(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
-      "what each column means. Empty: not known.\n");
+      "what each column means. Empty: not known.\n\nIn every column, " +
+          std::string(formula_guard_meaning) + ".\n");
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
-  ExportDraft draft({path, "psych-ds", people_of(sessions)}, folder, is_export);
+  ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
   for (const LabelledSession& session : sessions) {

@@ -86,6 +86,9 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
   if (fs::is_directory(path, ignored)) {
     throw base::Error(path.string(), "is a folder, not a database", "name a file");
   }
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    throw base::Error(path.string(), "is not a regular file", "name the file that vip-study run wrote");
+  }
   // Readers take part in the log like writers where they may, so that nothing is left beside the file.
   const bool look = how == Open::Untouched || (how == Open::Read && !writable(path) && !has_log(path));
   const bool write = how == Open::Create || how == Open::Write || (how == Open::Read && writable(path));
@@ -236,7 +239,7 @@ std::string Statement::text(int index) const {
                : std::string();
 }
 
-Transaction::Transaction(Connection& connection) : connection_(&connection) {
+Transaction::Transaction(Connection& connection) : connection_(&connection), turn_(connection.turn_) {
   connection.execute("BEGIN IMMEDIATE");
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +25,7 @@ enum class Open {
 /// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
 struct Temporary {};
 
-/// One connection. Not for two threads at a time.
+/// One connection. Two threads may share it where each keeps to Transactions, which take turns.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
@@ -52,8 +53,11 @@ class Connection {
  private:
   void protect();
 
+  friend class Transaction;
+
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
+  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
 /// A prepared statement: bind all, step, reset. Indices count from 0.
@@ -100,7 +104,8 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-/// A transaction that takes the write lock at once and is undone unless committed.
+/// A transaction that takes the write lock at once and is undone unless committed. It waits for that of
+/// another thread on the same connection.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);
@@ -111,6 +116,7 @@ class Transaction {
 
  private:
   Connection* connection_;
+  std::lock_guard<std::recursive_mutex> turn_;
   bool open_ = true;
 };
 

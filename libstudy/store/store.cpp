@@ -9,6 +9,7 @@
 #include "libstudy/store/names.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -44,10 +45,10 @@ std::optional<std::string> words_of(const Answer& answer) {
 }  // namespace
 
 void check_participant_code(const std::string& code) {
-  static const std::regex pattern("[A-Za-z0-9_-]{1,32}");
-  if (!std::regex_match(code, pattern)) {
-    throw base::Error("participant '" + code + "'", "is not a participant code",
-                      "use 1 to 32 letters, digits, _ or -, and never a name");
+  static const std::regex pattern("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
+  if (code.size() > 32 || !std::regex_match(code, pattern)) {
+    throw base::Error("participant '" + base::shortened(code) + "'", "is not a participant code",
+                      "use 1 to 32 letters, digits, _ or -, a letter or digit first, and never a name");
   }
 }
 
@@ -202,7 +203,7 @@ void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
   const std::string where = "unit " + std::to_string(unit.plan.position);
   if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
   if (ending) mark_ended(session, *ending, clock_ns);
-  if (last) mark_done(session, unit.id, now, clock_ns);
+  if (last && !set_aside(unit, attempt)) mark_done(session, unit.id, now, clock_ns);
   commit(transaction);
 }
 
@@ -321,6 +322,11 @@ void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::s
 
 void Store::throw_no_trial() const {
   throw base::Error(path_.string(), "holds no such trial of this session", "name a trial of the session");
+}
+
+bool Store::set_aside(const OpenUnit& unit, int attempt) {
+  Statement row(*database_, "SELECT 1 FROM trial WHERE trial_id = ? AND set_aside >= ?");
+  return row.bind(0, unit.trial_id).bind(1, attempt).step();
 }
 
 std::int64_t Store::trial_unit(std::int64_t trial) {

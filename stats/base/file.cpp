@@ -39,8 +39,9 @@ std::string reason() { return std::strerror(errno); }
 
 }  // namespace
 
+// Without O_NONBLOCK a pipe would be waited for.
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0)
     throw Error(path.string(), "cannot be read: " + reason(), "check the path and its permissions");
   struct stat status {};

@@ -6,6 +6,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml_parser.hpp"
 #include "stats/base/toml_text.hpp"
 
@@ -19,6 +20,8 @@ std::string place_of(const std::string& file, const toml::source_region& region)
   if (region.begin) out << ':' << region.begin.line << ':' << region.begin.column;
   return out.str();
 }
+
+constexpr std::size_t longest_problem = 400;  // bytes: it may quote a value of any length
 
 using Asked = std::map<std::string, AskedKey, std::less<>>;
 
@@ -68,8 +71,9 @@ struct TomlTable::State {
   [[noreturn]] void fail(const toml::node* node, std::string_view key, const std::string& problem,
                          const std::string& mend) const {
     const auto& region = node ? node->source() : table->source();
-    const std::string what = key.empty() ? path : name(key);
-    throw Error(place_of(file, region), (what.empty() ? "" : "'" + what + "' ") + problem, mend);
+    const std::string what = shortened(key.empty() ? path : name(key));
+    throw Error(place_of(file, region),
+                (what.empty() ? "" : "'" + what + "' ") + shortened(problem, longest_problem), mend);
   }
 
   const toml::node* find(std::string_view key) const {

@@ -71,7 +71,8 @@ const std::vector<Rule> rules{
     {{"gsl/"}, {"stats/"}},
     {{"nlohmann/"}, {"apps/", "libstudy/store/"}},
     {{"CLI/"}, {"apps/"}},
-    {{"GLFW/", "imgui", "backends/imgui"}, {"apps/common/window/", "apps/view/window/", "apps/study/window/"}},
+    {{"GLFW/", "imgui", "backends/imgui"},
+     {"apps/common/window/", "apps/view/window/", "apps/study/window/"}},
     {{"epoxy/", "GL/", "EGL/"}, {"apps/", "libsim/render/"}},
     {{"cuda", "cub/", "thrust/"}, {"libsim/exec/"}},
 };

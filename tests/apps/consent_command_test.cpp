@@ -8,32 +8,19 @@ namespace apps::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
-/// short_protocol with a consent page whose boxes the observer "constant:0" leaves at no, "constant:1" at
-/// yes.
+/// short_protocol with one more box on its consent page, which the observer "constant:0" leaves at no and
+/// "constant:1" ticks.
 std::string asking_protocol() {
   std::string text = short_protocol("1");
-  const std::string consent = R"([[block]]
-kind = "consent"
-id = "consent"
-text = "Read this."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I take part."
-anchors = {0 = "no", 1 = "yes"}
-accept = [1, 1]
-
+  const std::string box = R"(
 [[block.question]]
 id = "data_shared"
 kind = "choice"
 text = "May it be shared?"
 anchors = {0 = "no", 1 = "yes"}
-
 )";
-  return text.insert(text.find("[[block]]"), consent);
+  return text.insert(text.find('\n', text.find("\naccept = ") + 1) + 1, box);
 }
 
 TEST(ConsentCommandE2e, IsToldObeyedAndChanged) {
