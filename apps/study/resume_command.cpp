@@ -55,7 +55,8 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
 void resume(const PlayOptions& options) {
   const StopSignals signals;
   const std::string place = options.database.string();
-  study::Store store(options.database, study::sqlite::Open::Write, options.max_pages);
+  study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
+                     tell_of_locks(options.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
   for (const study::OpenRun& run : store.open_runs()) {
     const study::Protocol protocol = rebuild_protocol(run, place);

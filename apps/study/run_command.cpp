@@ -141,7 +141,8 @@ void run(RunCommand& command) {
   }
 
   const StopSignals signals;
-  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages);
+  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
+                     tell_of_locks(command.play.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
   const std::int64_t run_id =
       store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));

@@ -67,6 +67,16 @@ StopSignals::~StopSignals() {
 
 bool StopSignals::stop_wished() { return stop_flag; }
 
+study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
+  return [database, calls = 0](const std::string& holder) mutable {
+    if (calls++ % 10 == 0) {
+      std::fprintf(stderr, "%s%s: %s keeps it locked; waiting, nothing is lost. Close it there.\n",
+                   ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", database.c_str(), holder.c_str());
+    }
+    return !StopSignals::stop_wished();
+  };
+}
+
 namespace {
 
 void print_begins(const study::OpenSession& session, const study::OpenUnit& unit,

@@ -25,6 +25,10 @@ class StopSignals {
   std::vector<std::pair<int, struct sigaction>> before_;
 };
 
+/// Tells on stderr who keeps the database locked, after a second and every ten from then on; waits until the
+/// lock is gone or a stop is wished.
+study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database);
+
 /// Options of run and resume that say how they talk and how far the file may grow.
 struct PlayOptions {
   std::filesystem::path database;

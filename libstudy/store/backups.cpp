@@ -110,8 +110,8 @@ std::vector<fs::path> backups_of(const fs::path& database) {
   std::vector<fs::path> backups;
   for (const auto& entry : fs::directory_iterator(file.parent_path())) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(file.filename().string() + ".v") && name.ends_with(".bak"))
-      backups.push_back(entry.path());
+    const bool upgraded = name.starts_with(file.filename().string() + ".v") && name.ends_with(".bak");
+    if (upgraded || name.starts_with(file.filename().string() + ".rescued-")) backups.push_back(entry.path());
   }
   std::sort(backups.begin(), backups.end());
   return backups;

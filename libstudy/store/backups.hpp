@@ -1,5 +1,6 @@
 #pragma once
-/// Copies of a database that an upgrade left beside it: "<database>.v<version>-<UTC time>.bak".
+/// Copies of a database that an upgrade left beside it, "<database>.v<version>-<UTC time>.bak", or a session
+/// whose file was taken away, "<database>.rescued-<UTC time>.db".
 
 #include <filesystem>
 #include <string>

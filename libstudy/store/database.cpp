@@ -1,8 +1,13 @@
 #include "libstudy/store/database.hpp"
 
 #include <array>
+#include <fstream>
+#include <string_view>
+#include <utility>
 
 #include "libstudy/store/beside.hpp"
+#include "libstudy/store/private_file.hpp"
+#include "libstudy/store/snapshot.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -16,7 +21,10 @@ namespace {
 
 constexpr std::array step_files{"001_initial.sql", "002_blocks.sql", "003_permissions.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
-constexpr std::uintmax_t smallest_page_bytes = 512;
+
+// The head of a SQLite file (sqlite.org/fileformat.html, section 1.3).
+constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
+constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
 
 struct Identity {
   std::int64_t application = 0;
@@ -45,32 +53,55 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
   }
 }
 
-/// A look at a file before anything of SQLite's can change it or its log.
-void recognise_untouched(const fs::path& path, Open how, std::size_t newest) {
-  std::error_code ignored;
-  if (how == Open::Create && (!fs::exists(path, ignored) || fs::file_size(path, ignored) == 0)) return;
-  if (const auto bytes = fs::file_size(path, ignored); !ignored && bytes < smallest_page_bytes) {
-    // SQLite takes a file of one byte for an empty one.
-    recognise(path, {0, 0, false}, how, newest);
-  }
-  // A power cut in the very first transaction leaves a blank file with a journal that undoes it.
-  if (how == Open::Create && fs::exists(path.string() + "-journal", ignored)) return;
-  Connection look(path, Open::Untouched);
-  recognise(path, identify(look), how, newest);
+std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
 }
 
-void check_integrity(Connection& database) {
-  const std::string found = database.text("PRAGMA integrity_check(1)");
-  if (found != "ok") {
-    throw base::Error(database.path().string(), "is damaged or cut short: " + found,
-                      "restore a backup of it");
+bool has_bytes(const fs::path& path) {
+  std::error_code ignored;
+  const auto bytes = fs::file_size(path, ignored);
+  return !ignored && bytes > 0;
+}
+
+/// A power cut in the very first transaction leaves any bytes, and a journal that makes them none again.
+bool was_empty_before(const fs::path& journal) {
+  // The journal's head (sqlite.org/fileformat.html, section 3): magic, 8 bytes on the pages of the file.
+  std::ifstream file(journal, std::ios::binary);
+  std::string head(20, '\0');
+  constexpr std::string_view magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  return file.read(head.data(), 20) && head.starts_with(magic) && big_endian(head, 16) == 0;
+}
+
+/// Throws for what the file's own first bytes show not to be ours, before SQLite has used its log or journal.
+/// They are ours from the first commit on, which no log ever holds.
+void recognise_header(Connection& database, Open how, std::size_t newest) {
+  const std::string head = database.header();
+  if (head.empty() && how == Open::Create) return;
+  const fs::path journal = database.path().string() + "-journal";
+  Identity found{0, 0, false};
+  if (head.size() == header_bytes && head.starts_with(sqlite_magic)) {
+    found.application = big_endian(head, application_at);
+    found.version = big_endian(head, version_at);
+    // SQLite tells whether there are tables; not where it would first undo what another program left.
+    found.empty = !has_bytes(journal);
   }
+  if (how == Open::Create && was_empty_before(journal)) return;
+  recognise(database.path(), found, how, newest);
 }
 
 void back_up(Connection& database, std::int64_t version) {
-  std::string copy =
+  const std::string copy =
       database.path().string() + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
-  sqlite::Statement(database, "VACUUM INTO ?").bind(0, copy).run();
+  if (!create_private(copy)) throw base::Error(copy, "is there already", "try again in a second");
+  try {
+    sqlite::Statement(database, "VACUUM INTO ?").bind(0, copy).run();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(copy, ignored);
+    throw;
+  }
 }
 
 /// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
@@ -105,27 +136,26 @@ std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaStep
   return copy;
 }
 
-std::unique_ptr<Connection> open_checked(const fs::path& path, Open how, const SchemaSteps& steps,
-                                         std::int64_t max_pages) {
-  recognise_untouched(path, how, steps.size());
-  auto database = std::make_unique<Connection>(path, how);
-  const Identity found = identify(*database);
-  recognise(path, found, how, steps.size());
-  check_integrity(*database);
-  const auto newest = static_cast<std::int64_t>(steps.size());
-  if (how == Open::Read) {
-    if (found.version < newest) return upgraded_copy(*database, steps, found.version);
-    database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
-    return database;
-  }
+std::unique_ptr<Connection> to_read(std::unique_ptr<Connection> database, const SchemaSteps& steps,
+                                    std::int64_t version) {
+  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps, version);
+  database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
+  return database;
+}
+
+std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const SchemaSteps& steps,
+                                     std::int64_t version, std::int64_t max_pages) {
+  const fs::path& path = database->path();
+  for (const char* part : {"", "-wal", "-shm", "-journal"}) make_private(path.string() + part);
   database->execute("PRAGMA synchronous = FULL");
-  if (max_pages > 0) database->integer("PRAGMA max_page_count = " + std::to_string(max_pages));
-  if (found.version > 0 && found.version < newest) back_up(*database, found.version);
-  upgrade(*database, steps, found.version);
+  if (max_pages > 0) database->limit_pages(max_pages);
+  if (version > 0 && version < static_cast<std::int64_t>(steps.size())) back_up(*database, version);
+  upgrade(*database, steps, version);
   if (database->text("PRAGMA journal_mode = WAL") != "wal") {
     throw base::Error(path.string(), "cannot keep a write-ahead log here",
                       "put the database on a local disk");
   }
+  database->watch();
   return database;
 }
 
@@ -147,18 +177,20 @@ std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
 }
 
 std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const SchemaSteps& steps,
-                                          std::int64_t max_pages) {
+                                          std::int64_t max_pages, const sqlite::Waiting& waiting) {
   const fs::path path = real_file(given);
-  std::error_code ignored;
-  const bool made_here = how == Open::Create && !fs::exists(path, ignored);
-  try {
-    return open_checked(path, how, steps, max_pages);
-  } catch (...) {
-    if (made_here) {
-      for (const char* beside : {"", "-journal", "-wal", "-shm"}) fs::remove(path.string() + beside, ignored);
-    }
-    throw;
-  }
+  auto database = std::make_unique<Connection>(path, how);
+  database->wait_with(waiting);
+  recognise_header(*database, how, steps.size());
+  // The log may tell otherwise than the file does: it stays beside it until all is recognised.
+  database->keep_log(has_bytes(path.string() + "-wal"));
+  if (how == Open::Read && !database->can_read()) database = snapshot(path);
+  const Identity found = identify(*database);
+  recognise(path, found, how, steps.size());
+  database->check_integrity();
+  database->keep_log(false);
+  if (how == Open::Read) return to_read(std::move(database), steps, found.version);
+  return to_write(std::move(database), steps, found.version, max_pages);
 }
 
 }  // namespace study

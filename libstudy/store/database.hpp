@@ -19,16 +19,20 @@ using SchemaSteps = std::vector<std::string>;
 /// The program's own steps, from libstudy/store/sql/.
 SchemaSteps read_schema_steps();
 
-/// Opens `path` with foreign keys, WAL and synchronous = FULL; where it is a link, the real file
-/// (beside.hpp).
+/// Opens `path` with foreign keys, WAL and synchronous = FULL, always through its log and journal: a file
+/// that a kill, a full disk or a power cut left behind is as good as any other. Where it is a
+/// link, the real file (beside.hpp).
 ///
-/// Open::Create makes a missing or empty file into a database, and removes it again when that fails;
-/// Open::Write upgrades an older one, each step in one transaction, after a copy "<path>.v<version>-<UTC
-/// time>.bak"; Open::Read gives an upgraded, temporary copy of an older one. base::Error, with the file left
-/// byte for byte as it was: not a database of this program, newer than `steps`, damaged or cut short
-/// (integrity check). max_pages > 0 limits the file to that many pages of 4 KiB.
+/// Open::Create makes a missing or empty file into a database; Open::Write upgrades an older one, each step
+/// in one transaction, after a copy "<path>.v<version>-<UTC time>.bak"; both are 0600 then, and watched
+/// (Connection::watch). Whoever writes holds a WriterLock before. Open::Read gives an upgraded, temporary
+/// copy of an older one, and where nothing can be written beside the file a temporary copy as well.
+/// base::Error, with the file left byte for byte as it was: not a database of this program, newer than
+/// `steps`, or damaged so that SQLite cannot make it whole (integrity check). max_pages > 0 limits the file
+/// to that many pages of 4 KiB; waiting: Connection::wait_with.
 std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,
-                                                  const SchemaSteps& steps, std::int64_t max_pages = 0);
+                                                  const SchemaSteps& steps, std::int64_t max_pages = 0,
+                                                  const sqlite::Waiting& waiting = {});
 
 /// Empty, of the newest schema, without a file; messages name `shown`.
 std::unique_ptr<sqlite::Connection> make_temporary_database(const std::filesystem::path& shown);

@@ -112,36 +112,11 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
   transaction.commit();
 }
 
-/// Opens `into`, which is gone again unless it is finished when it was made here.
-class Target {
- public:
-  explicit Target(const fs::path& path) : path_(path) {
-    std::error_code ignored;
-    made_here_ = !fs::exists(path, ignored) || fs::file_size(path, ignored) == 0;
-    database_ = open_database(path, Open::Create, read_schema_steps());
-  }
-  ~Target() {
-    database_.reset();
-    std::error_code ignored;
-    if (made_here_) fs::remove(path_, ignored);
-  }
-  Target(const Target&) = delete;
-  Target& operator=(const Target&) = delete;
-
-  Connection& database() { return *database_; }
-  void finish() { made_here_ = false; }
-
- private:
-  fs::path path_;
-  bool made_here_ = false;
-  std::unique_ptr<Connection> database_;
-};
-
 }  // namespace
 
 Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
   const fs::path into = real_file(given);
-  const WriterLock lock(into);
+  WriterLock lock(into, Open::Create);
   Content content = read_all(sources, into);
   const auto chosen = merging::choose_sessions(content);
   const auto names = merging::name_people(content);
@@ -150,17 +125,17 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
   Merge merge = sum_up(*result, content, chosen, names);
   content.sources.clear();  // into itself may be among them
 
-  Target target(into);
-  carry_chores_over(target.database(), *result);
-  merging::add_exports(target.database(), *result);  // those of this very moment
-  plan_chores(*result, residents_of(target.database()), names, content, merge);
+  const auto target = open_database(into, Open::Create, read_schema_steps());
+  carry_chores_over(*target, *result);
+  merging::add_exports(*target, *result);  // those of this very moment
+  plan_chores(*result, residents_of(*target), names, content, merge);
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
-  prepare_rewrite(target.database(), withdrawn);
-  target.database().execute("PRAGMA secure_delete = ON");
-  target.database().copy_from(*result);
-  target.finish();
-  merge.beside = clean_up_all(target.database());
+  prepare_rewrite(*target, withdrawn);
+  target->execute("PRAGMA secure_delete = ON");
+  target->copy_from(*result);
+  lock.keep();
+  merge.beside = clean_up_all(*target);
   return merge;
 }
 

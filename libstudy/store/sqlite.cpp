@@ -3,12 +3,18 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 #include <utility>
 
+#include "libstudy/store/file_watch.hpp"
+#include "libstudy/store/lock_holder.hpp"
+#include "libstudy/store/private_file.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 
 namespace study::sqlite {
 
@@ -16,21 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int busy_timeout_ms = 5000;
+constexpr std::int64_t second_ns = 1'000'000'000, longest_wait_ns = 5 * second_ns;
+constexpr std::chrono::milliseconds between_tries{20};
 
-/// The path as a URI: what SQLite would read as syntax is escaped.
-std::string uri(const fs::path& path, const char* parameters) {
-  std::string text = "file:";
-  for (const char c : fs::absolute(path).string()) {
-    if (c == '%' || c == '?' || c == '#') {
-      char escaped[4];
-      std::snprintf(escaped, sizeof escaped, "%%%02X", static_cast<unsigned char>(c));
-      text += escaped;
-    } else {
-      text += c;
-    }
-  }
-  return text + parameters;
+std::int64_t now_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
 bool writable(const fs::path& path) {
@@ -38,70 +34,31 @@ bool writable(const fs::path& path) {
   return ::access(path.c_str(), W_OK) == 0 && ::access(folder.c_str(), W_OK) == 0;
 }
 
-bool has_log(const fs::path& path) {
+void check_is_file(const fs::path& path, Open how) {
   std::error_code ignored;
-  const auto bytes = fs::file_size(path.string() + "-wal", ignored);
-  return !ignored && bytes > 0;
-}
-
-struct Advice {
-  std::string problem;
-  std::string mend;
-};
-
-Advice advice(int code, const std::string& message, int system_error) {
-  const std::string system = system_error ? std::string(" (") + std::strerror(system_error) + ")" : "";
-  switch (code & 0xff) {
-    case SQLITE_FULL:
-      return {"no room left in the database: " + message,
-              "free space on the disk or raise --max-pages, then run vip-study resume; all answers given "
-              "are kept"};
-    case SQLITE_IOERR:
-      return {"cannot be read or written: " + message + system,
-              "check the disk, its quota and file-size limit, then run vip-study resume"};
-    case SQLITE_NOTADB:
-      return {"is not a database of vip-study", "name the file that vip-study run wrote"};
-    case SQLITE_CORRUPT:
-      return {"is damaged or cut short: " + message, "restore a backup of it"};
-    case SQLITE_READONLY:
-    case SQLITE_CANTOPEN:
-    case SQLITE_PERM:
-      return {"cannot be opened for this: " + message + system,
-              "use a file and a folder that you may write to"};
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      return {"is in use by another program", "wait until it has ended"};
-    default:
-      return {"database error: " + message, "restore a backup of it, or report this with the file"};
-  }
+  const fs::file_status found = fs::status(path, ignored);
+  if (how != Open::Create && !fs::exists(found))
+    throw base::Error(path.string(), "there is no such database", "check the path of --db");
+  if (fs::is_directory(found)) throw base::Error(path.string(), "is a folder, not a database", "name a file");
+  if (fs::exists(found) && !fs::is_regular_file(found))
+    throw base::Error(path.string(), "is not a regular file", "name the file that vip-study run wrote");
 }
 
 }  // namespace
 
 Connection::Connection(const fs::path& path, Open how) : path_(path) {
-  std::error_code ignored;
-  if (how != Open::Create && !fs::exists(path, ignored)) {
-    throw base::Error(path.string(), "there is no such database", "check the path of --db");
-  }
-  if (fs::is_directory(path, ignored)) {
-    throw base::Error(path.string(), "is a folder, not a database", "name a file");
-  }
-  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    throw base::Error(path.string(), "is not a regular file", "name the file that vip-study run wrote");
-  }
+  check_is_file(path, how);
+  if (how == Open::Create) create_private(path);
   // Readers take part in the log like writers where they may, so that nothing is left beside the file.
-  const bool look = how == Open::Untouched || (how == Open::Read && !writable(path) && !has_log(path));
-  const bool write = how == Open::Create || how == Open::Write || (how == Open::Read && writable(path));
-  const int flags = SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE |
-                    (write && !look ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY) |
-                    (how == Open::Create ? SQLITE_OPEN_CREATE : 0);
-  const int code = sqlite3_open_v2(uri(path, look ? "?immutable=1" : "").c_str(), &handle_, flags, nullptr);
+  const bool write = how != Open::Read || writable(path);
+  const int code = sqlite3_open_v2(
+      fs::absolute(path).c_str(), &handle_,
+      SQLITE_OPEN_EXRESCODE | (write ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY), nullptr);
   if (code != SQLITE_OK) {
     const std::string message = handle_ ? sqlite3_errmsg(handle_) : "out of memory";
     const int system_error = handle_ ? sqlite3_system_errno(handle_) : 0;
     sqlite3_close_v2(std::exchange(handle_, nullptr));
-    const Advice told = advice(code, message, system_error);
-    throw base::Error(path.string(), told.problem, told.mend);
+    fail(code, message, system_error);
   }
   protect();
 }
@@ -115,33 +72,128 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
   protect();
 }
 
-void Connection::copy_from(Connection& other) {
-  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", other.handle_, "main");
-  const int code = copy ? sqlite3_backup_step(copy, -1) : sqlite3_errcode(handle_);
-  sqlite3_backup_finish(copy);
-  if (code != SQLITE_DONE) {
-    const Advice told = advice(code, sqlite3_errmsg(handle_), 0);
-    throw base::Error(path_.string(), told.problem, told.mend);
-  }
-}
-
 void Connection::protect() {
-  sqlite3_busy_timeout(handle_, busy_timeout_ms);
+  sqlite3_busy_handler(handle_, &Connection::wait, this);
   // A file from elsewhere must not run code of its own.
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
 }
 
-Connection::~Connection() { sqlite3_close_v2(handle_); }
+Connection::~Connection() {
+  if (watch_ && !lost_) {
+    try {
+      if (const std::string trouble = watch_->trouble(); !trouble.empty()) abandon(trouble);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+    }
+  }
+  sqlite3_close_v2(handle_);
+}
 
-void Connection::check(int code) const {
+std::string Connection::header() {
+  sqlite3_file* file = nullptr;
+  check(sqlite3_file_control(handle_, "main", SQLITE_FCNTL_FILE_POINTER, &file));
+  // SQLite itself takes a file of one byte for an empty one.
+  std::string header(static_cast<std::size_t>(std::min<std::uintmax_t>(fs::file_size(path_), 100)), '\0');
+  if (!header.empty()) check(file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0));
+  return header;
+}
+
+bool Connection::can_read() {
+  const int code = sqlite3_exec(handle_, "SELECT count(*) FROM sqlite_schema", nullptr, nullptr, nullptr);
+  return (code & 0xff) != SQLITE_CANTOPEN && (code & 0xff) != SQLITE_READONLY;
+}
+
+void Connection::keep_log(bool keep) {
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
+}
+
+void Connection::limit_pages(std::int64_t pages) {
+  integer("PRAGMA max_page_count = " + std::to_string(pages));
+  limited_ = true;
+}
+
+void Connection::wait_with(Waiting waiting) { waiting_ = std::move(waiting); }
+
+int Connection::wait(void* connection, int tries) {
+  auto& self = *static_cast<Connection*>(connection);
+  const std::int64_t now = now_ns();
+  if (tries == 0) self.wait_began_ns_ = self.told_ns_ = now;
+  if (!self.waiting_ && now - self.wait_began_ns_ > longest_wait_ns) return 0;
+  if (self.waiting_ && now - self.told_ns_ >= second_ns) {
+    self.told_ns_ = now;
+    if (!self.waiting_(lock_holder(self.path_))) return 0;
+  }
+  std::this_thread::sleep_for(between_tries);
+  return 1;
+}
+
+void Connection::check(int code) {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
-  const Advice told = advice(code, sqlite3_errmsg(handle_), sqlite3_system_errno(handle_));
-  throw base::Error(path_.string(), told.problem, told.mend);
+  const std::string message = sqlite3_errmsg(handle_);
+  const int system_error = sqlite3_system_errno(handle_);
+  // What another program did to the file is told rather than what came of it.
+  if (watch_ && !lost_) {
+    if (const std::string trouble = watch_->trouble(); !trouble.empty()) abandon(trouble);
+  }
+  fail(code, message, system_error);
+}
+
+void Connection::fail(int code, const std::string& message, int system_error) const {
+  const std::string system = system_error ? std::string(" (") + std::strerror(system_error) + ")" : "";
+  const auto error = [this](const std::string& problem, const std::string& mend) {
+    return base::Error(path_.string(), problem, mend);
+  };
+  if (code == SQLITE_READONLY_DBMOVED)
+    throw error("was deleted, moved or replaced while it was in use", "put it back, then " + go_on_);
+  switch (code & 0xff) {
+    case SQLITE_FULL:
+      throw error("no room left in the database: " + message, std::string("free space on the disk") +
+                                                                  (limited_ ? " or raise --max-pages" : "") +
+                                                                  ", then " + go_on_);
+    case SQLITE_IOERR:
+      throw error("cannot be read or written: " + message + system,
+                  "check the disk, its quota and file-size limit, then " + go_on_);
+    case SQLITE_NOTADB:
+      throw error("is not a database of vip-study", "name the file that vip-study run wrote");
+    case SQLITE_CORRUPT:
+      throw error("is damaged or cut short: " + message, salvage_mend(path_));
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+      throw error("cannot be opened for this: " + message + system,
+                  "use a file and a folder that you may write to");
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw LockedOut(path_.string(), "is locked by " + lock_holder(path_), "close it there, then " + go_on_);
+    default:
+      throw error("database error: " + message, "report this with the file");
+  }
+}
+
+std::string salvage_mend(const fs::path& path) {
+  return "restore a backup of it, or save what can be read: vip-study salvage --db " + path.string() +
+         " --into NEW";
 }
 
 void Connection::execute(const std::string& sql) {
   check(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+void Connection::check_integrity() {
+  const std::string found = text("PRAGMA integrity_check(1)");
+  if (found != "ok")
+    throw base::Error(path_.string(), "is damaged or cut short: " + found, salvage_mend(path_));
+}
+
+void Connection::copy_from(Connection& other) {
+  const std::int64_t page_bytes = integer("PRAGMA page_size");
+  if (text("PRAGMA journal_mode") == "wal" && other.integer("PRAGMA page_size") != page_bytes)
+    other.execute("PRAGMA page_size = " + std::to_string(page_bytes) + "; VACUUM");
+  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", other.handle_, "main");
+  const int code = copy ? sqlite3_backup_step(copy, -1) : sqlite3_errcode(handle_);
+  sqlite3_backup_finish(copy);
+  if (code != SQLITE_DONE) fail(code, sqlite3_errstr(code), sqlite3_system_errno(handle_));
 }
 
 std::int64_t Connection::integer(const std::string& sql) {
@@ -158,89 +210,59 @@ std::int64_t Connection::last_row_id() const { return sqlite3_last_insert_rowid(
 
 bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
 
-Statement::Statement(Connection& connection, std::string_view sql) : connection_(&connection) {
-  connection.check(sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
-                                      SQLITE_PREPARE_PERSISTENT, &handle_, nullptr));
+void Connection::watch() {
+  integer("SELECT count(*) FROM sqlite_schema");  // the log is made by the first look into the file
+  watch_ = std::make_unique<FileWatch>(path_, handle_);
 }
 
-Statement::~Statement() { sqlite3_finalize(handle_); }
-
-Statement::Statement(Statement&& other) noexcept
-    : connection_(other.connection_), handle_(std::exchange(other.handle_, nullptr)) {}
-
-Statement& Statement::bind(int index, std::int64_t value) {
-  connection_->check(sqlite3_bind_int64(handle_, index + 1, value));
-  return *this;
+void Connection::begin() {
+  if (lost_) throw base::Error(path_.string(), lost_->problem, lost_->mend);
+  execute("BEGIN IMMEDIATE");
 }
 
-Statement& Statement::bind(int index, double value) {
-  if (std::isnan(value)) return bind_null(index);
-  connection_->check(sqlite3_bind_double(handle_, index + 1, value));
-  return *this;
+void Connection::commit() {
+  std::string trouble = watch_ ? watch_->trouble() : "";
+  // The commit then goes into the log alone, and from there into the copy beside the file.
+  if (!trouble.empty()) sqlite3_wal_autocheckpoint(handle_, 0);
+  execute("COMMIT");
+  if (watch_ && trouble.empty()) trouble = watch_->trouble();
+  if (!trouble.empty()) abandon(trouble);
 }
 
-Statement& Statement::bind(int index, std::string_view value) {
-  connection_->check(sqlite3_bind_text(handle_, index + 1, value.data() ? value.data() : "",
-                                       static_cast<int>(value.size()), SQLITE_TRANSIENT));
-  return *this;
-}
-
-Statement& Statement::bind_null(int index) {
-  connection_->check(sqlite3_bind_null(handle_, index + 1));
-  return *this;
-}
-
-Statement& Statement::bind_from(int index, const Statement& row, int column) {
-  connection_->check(sqlite3_bind_value(handle_, index + 1, sqlite3_column_value(row.handle_, column)));
-  return *this;
-}
-
-bool Statement::step() {
-  const int code = sqlite3_step(handle_);
-  if (code == SQLITE_ROW) return true;
-  if (code == SQLITE_DONE) {
-    sqlite3_reset(handle_);
-    return false;
-  }
+void Connection::abandon(const std::string& trouble) {
+  if (in_transaction()) sqlite3_exec(handle_, "ROLLBACK", nullptr, nullptr, nullptr);
+  keep_log(true);
+  lost_ = Lost{trouble + "; nothing more is written to it", ""};
+  const std::string rescued = path_.string() + ".rescued-" + base::utc_now();
   try {
-    connection_->check(code);
+    save_as(rescued + ".db");
+    watch_->take_log_away({});
+    lost_->problem += "; all that was in it, up to now, stands in " + rescued + ".db";
+    lost_->mend = "keep elsewhere what stands at " + path_.string() + " now, give " + rescued +
+                  ".db that name, then " + go_on_;
+  } catch (const base::Error& error) {
+    watch_->take_log_away(rescued + ".wal");
+    lost_->problem += "; it could not be saved beside it; its log is kept as " + rescued + ".wal";
+    lost_->mend = salvage_mend(path_);
+  }
+  throw base::Error(path_.string(), lost_->problem, lost_->mend);
+}
+
+void Connection::save_as(const fs::path& path) {
+  if (!create_private(path)) throw base::Error(path.string(), "is there already", "");
+  try {
+    Connection copy(path, Open::Write);
+    copy.copy_from(*this);
+    copy.check_integrity();
   } catch (...) {
-    sqlite3_reset(handle_);
+    std::error_code ignored;
+    fs::remove(path, ignored);
     throw;
   }
-  return false;
-}
-
-std::int64_t Statement::run() {
-  while (step()) {
-  }
-  return connection_->last_row_id();
-}
-
-void Statement::reset() { sqlite3_reset(handle_); }
-
-int Statement::columns() const { return sqlite3_column_count(handle_); }
-
-std::string Statement::column_name(int index) const { return sqlite3_column_name(handle_, index); }
-
-bool Statement::is_null(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_NULL; }
-
-bool Statement::is_real(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_FLOAT; }
-
-bool Statement::is_text(int index) const { return sqlite3_column_type(handle_, index) == SQLITE_TEXT; }
-
-std::int64_t Statement::integer(int index) const { return sqlite3_column_int64(handle_, index); }
-
-double Statement::real(int index) const { return sqlite3_column_double(handle_, index); }
-
-std::string Statement::text(int index) const {
-  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_, index));
-  return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_, index)))
-               : std::string();
 }
 
 Transaction::Transaction(Connection& connection) : connection_(&connection), turn_(connection.turn_) {
-  connection.execute("BEGIN IMMEDIATE");
+  connection.begin();
 }
 
 Transaction::~Transaction() {
@@ -251,7 +273,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
-  connection_->execute("COMMIT");
+  connection_->commit();
   open_ = false;
 }
 

@@ -1,29 +1,51 @@
 #pragma once
 /// The few things of SQLite that the store uses, with owners for its handles. Every failure is a base::Error
 /// that names the database file.
+///
+/// While a connection is open, nothing else in this process may open and close the file: that would take away
+/// the locks which SQLite holds on it.
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "stats/base/error.hpp"
+
 struct sqlite3;
 struct sqlite3_stmt;
+
+namespace study {
+class FileWatch;
+}
 
 namespace study::sqlite {
 
 /// How a database is opened.
 enum class Open {
-  Create,    ///< for writing; made when missing
-  Write,     ///< for writing; must exist
-  Read,      ///< must exist; nothing that it holds can be changed
-  Untouched  ///< a look at the file alone: no lock, no log is read or replayed, nothing beside it is made
+  Create,  ///< for writing; made when missing, for its owner only
+  Write,   ///< for writing; must exist
+  Read     ///< must exist; nothing that it holds can be changed
 };
 
 /// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
 struct Temporary {};
+
+/// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
+/// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
+using Waiting = std::function<bool(const std::string& holder)>;
+
+/// Another program kept the database locked for longer than was waited.
+class LockedOut : public base::Error {
+  using Error::Error;
+};
+
+/// What to do about a file that SQLite itself cannot make whole again.
+std::string salvage_mend(const std::filesystem::path& path);
 
 /// One connection. Two threads may share it where each keeps to Transactions, which take turns.
 class Connection {
@@ -36,9 +58,31 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+
+  /// The first 100 bytes, or as many as there are. Asked before anything else, nothing of the file, its log
+  /// or its journal has been used or changed by then.
+  std::string header();
+  /// Whether SQLite can read it where it stands; not where it would have to write beside it and may not.
+  bool can_read();
+  /// Whether a log stays beside the file as it is when this is the last connection to close. At first: no.
+  void keep_log(bool keep);
+  /// Lets the file grow to so many pages.
+  void limit_pages(std::int64_t pages);
+  /// Waits for locks as long as `waiting` says, and not for five seconds.
+  void wait_with(Waiting waiting);
+  /// What the user is to do once a fault is mended, for messages. At first: "give the command again".
+  void go_on_with(const std::string& words) { go_on_ = words; }
+  /// In WAL mode: from now on no commit is copied into a file that was deleted, replaced or written over.
+  /// What stands in this connection is then saved as "<file>.rescued-<UTC time>.db", the log is taken away
+  /// from beside the path, and that commit and all later ones are a base::Error.
+  void watch();
+
   /// Runs statements that give no rows.
   void execute(const std::string& sql);
-  /// Takes over all that stands in another database, in one transaction; what stood here is gone.
+  /// base::Error unless all pages, rows and indices are sound. Reads the whole file.
+  void check_integrity();
+  /// Takes over all that stands in another database, in one transaction; what stood here is gone. A log fixes
+  /// the size of pages: where it differs, `other` is written anew, and must be a temporary one.
   void copy_from(Connection& other);
   /// First column of the first row; 0 when there is no row.
   std::int64_t integer(const std::string& sql);
@@ -48,16 +92,31 @@ class Connection {
   bool in_transaction() const;
   sqlite3* handle() const { return handle_; }
   /// Throws what `code` of SQLite means for this file; returns when it is none.
-  void check(int code) const;
+  void check(int code);
 
  private:
-  void protect();
-
   friend class Transaction;
+  void protect();
+  static int wait(void* connection, int tries);
+  void open(int flags);
+  [[noreturn]] void fail(int code, const std::string& message, int system_error) const;
+  void begin();
+  void commit();
+  [[noreturn]] void abandon(const std::string& trouble);
+  void save_as(const std::filesystem::path& path);
 
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
   std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
+  Waiting waiting_;
+  std::int64_t wait_began_ns_ = 0, told_ns_ = 0;
+  bool limited_ = false;
+  std::string go_on_ = "give the command again";
+  std::unique_ptr<FileWatch> watch_;
+  struct Lost {
+    std::string problem, mend;
+  };
+  std::optional<Lost> lost_;  ///< nothing more is written
 };
 
 /// A prepared statement: bind all, step, reset. Indices count from 0.

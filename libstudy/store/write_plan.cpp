@@ -123,7 +123,7 @@ std::int64_t Store::add_run(const RunPlan& run) {
                                   .run();
   for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
   commit(transaction);
-  blank_ = false;
+  keep_file();
   return run_id;
 }
 

@@ -102,7 +102,7 @@ TEST(Database, NameWithUriSyntaxIsAName) {
 
 TEST(Database, FullAtItsCreationLeavesNoFile) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT([&] { open_database(folder / "study.db", Open::Create, read_schema_steps(), 2); },
+  EXPECT_THAT([&] { Store(folder / "study.db", Open::Create, 2); },
               ThrowsMessage<base::Error>(HasSubstr("no room left")));
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }

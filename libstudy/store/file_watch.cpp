@@ -1,0 +1,113 @@
+#include "libstudy/store/file_watch.hpp"
+
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <utility>
+
+namespace study {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Where the shared memory of a log says how far it was copied (sqlite.org/walformat.html, section 2.2).
+constexpr int salt_at = 32, copied_at = 96, being_copied_at = 128;
+constexpr int shared_region_bytes = 32768, copy_lock = 1;
+
+/// None where the file has no shared memory.
+sqlite3_file* main_file(sqlite3* database) {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  return file && file->pMethods && file->pMethods->iVersion >= 2 ? file : nullptr;
+}
+
+/// The shared memory that the connection has mapped already.
+const volatile char* shared_memory(sqlite3* database) {
+  sqlite3_file* file = main_file(database);
+  if (!file) return nullptr;
+  volatile void* region = nullptr;
+  const int code = file->pMethods->xShmMap(file, 0, shared_region_bytes, 0, &region);
+  return code == SQLITE_OK ? static_cast<const volatile char*>(region) : nullptr;
+}
+
+std::uint32_t word(const volatile char* memory, int at) {
+  return *reinterpret_cast<const volatile std::uint32_t*>(memory + at);
+}
+
+}  // namespace
+
+FileWatch::FileWatch(fs::path path, sqlite3* database) : path_(std::move(path)), database_(database) {
+  const char* file = sqlite3_db_filename(database, "main");
+  log_ = sqlite3_filename_wal(file);
+  shared_ = std::string(file) + "-shm";
+  file_id_ = id_of(path_);
+  log_id_ = id_of(log_);
+  shared_id_ = id_of(shared_);
+  last_ = seen_now();
+}
+
+std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return {};
+  return Id{file.st_dev, file.st_ino};
+}
+
+std::optional<FileWatch::Look> FileWatch::seen_now() const {
+  const volatile char* memory = shared_memory(database_);
+  if (!memory) return {};
+  // The mark of a copy under way is set before its first byte is written, so it is read after the file.
+  struct stat file {};
+  if (::stat(path_.c_str(), &file) != 0) return {};
+  Look seen;
+  seen.bytes = file.st_size;
+  seen.written_ns = file.st_mtim.tv_sec * 1'000'000'000LL + file.st_mtim.tv_nsec;
+  seen.being_copied = word(memory, being_copied_at);
+  seen.copied = word(memory, copied_at);
+  for (int i = 0; i < 2; ++i) seen.salt[i] = word(memory, salt_at + 4 * i);
+  return seen;
+}
+
+std::string FileWatch::trouble() {
+  const auto file = id_of(path_);
+  if (!file) return "was deleted or moved away while it was in use";
+  if (file != file_id_) return "was replaced by another file while it was in use";
+  if (id_of(log_) != log_id_) return "lost its log " + log_.string() + " while it was in use";
+  if (!written_by_somebody()) return {};
+  // Whoever copies the log holds this lock; then it is judged at the next look.
+  const auto lock = [this](int how) {
+    sqlite3_file* main = main_file(database_);
+    return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;
+  };
+  if (!lock(SQLITE_SHM_LOCK)) return {};
+  const bool foreign = written_by_somebody();
+  lock(SQLITE_SHM_UNLOCK);
+  return foreign ? "was written over by another program while it was in use" : "";
+}
+
+bool FileWatch::written_by_somebody() {
+  const auto now = seen_now();
+  if (!now) return false;
+  const bool written = last_ && (now->bytes != last_->bytes || now->written_ns != last_->written_ns);
+  // Any program may copy the log into the file, and says so in the shared memory.
+  const bool by_the_log = last_ && (now->salt[0] != last_->salt[0] || now->salt[1] != last_->salt[1] ||
+                                    now->copied != last_->copied || now->being_copied != last_->being_copied);
+  if (written && !by_the_log) return true;
+  last_ = now;
+  return false;
+}
+
+void FileWatch::take_log_away(const std::optional<fs::path>& kept) const {
+  std::error_code ignored;
+  if (id_of(log_) == log_id_) {
+    if (kept) {
+      fs::rename(log_, *kept, ignored);
+    } else {
+      fs::remove(log_, ignored);
+    }
+  }
+  if (id_of(shared_) == shared_id_) fs::remove(shared_, ignored);
+}
+
+}  // namespace study
