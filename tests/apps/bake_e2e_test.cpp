@@ -167,6 +167,18 @@ TEST_F(BakeE2e, InterruptLeavesNothing) {
   EXPECT_TRUE(left_nothing());
 }
 
+/// Else the progress bar would be written into it.
+TEST_F(BakeE2e, ClosedStandardStreamsAreNotTheBakes) {
+  Process process(command({"--frames", "100000"}), [] {
+    for (const int fd : {STDIN_FILENO, STDERR_FILENO}) ::close(fd);
+  });
+  while (left_nothing()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (const int fd : {STDIN_FILENO, STDERR_FILENO}) {
+    const auto link = "/proc/" + std::to_string(process.pid()) + "/fd/" + std::to_string(fd);
+    EXPECT_EQ(std::filesystem::read_symlink(link), "/dev/null");
+  }
+}
+
 TEST_F(BakeE2e, AKilledBakeIsNoBakeAndTheSameCommandMakesOne) {
   Process process(command({"--frames", "100000"}));
   while (left_nothing()) std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -121,22 +121,6 @@ TEST(ProgramsE2e, ZerosBeforeANumberAreNoOctal) {
   EXPECT_EQ(count_in(folder / "s.db", "SELECT seed FROM session"), 10);
 }
 
-TEST(ProgramsE2e, ClosedStreamsAreTakenByNoDataFile) {
-  const TemporaryFolder folder;
-  base::write_file_atomically(folder / "short.toml", short_protocol("5"));
-  const auto arguments =
-      run_arguments(folder / "short.toml", folder / "s.db", {"--participants", "1", "--clock", "real"});
-  Process program(arguments, [] {
-    ::close(STDIN_FILENO);
-    ::close(STDERR_FILENO);
-  });
-  ASSERT_TRUE(program.read_line());  // the database is open
-  for (const char* fd : {"0", "2"}) {
-    const auto link = "/proc/" + std::to_string(program.pid()) + "/fd/" + fd;
-    EXPECT_EQ(fs::read_symlink(link), "/dev/null") << fd;
-  }
-}
-
 /// Every program and kind of input. A pipe that nobody writes to would be waited for for ever.
 TEST(ProgramsE2e, InputsThatAreNoFilesAreRefusedAtOnce) {
   const TemporaryFolder folder;
