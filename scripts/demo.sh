@@ -33,7 +33,7 @@ built=$SECONDS
 mkdir -p "$out"
 for made in dam.bake check.json pacing.db study.db csv fit.json fitted.toml heat.svg pictures; do
   [ ! -e "$out/$made" ] || echo "demo: replaces $out/$made"
-  rm -rf "${out:?}/$made" "$out/$made"-{wal,shm,journal}
+  rm -rf "${out:?}/$made" "$out/$made"-{wal,shm,journal} "$out/$made.answers.jsonl"
 done
 
 phase "What a headset with 90 Hz makes of the 21 settings"

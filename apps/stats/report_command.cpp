@@ -16,10 +16,10 @@
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "libstudy/store/export_register.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -85,14 +85,18 @@ Json document(const ReportCommand& command) {
 
 void write_report(const ReportCommand& command) {
   check_outputs(command);
+  const study::RegisteredFiles files(command.database);
   const Json json = document(command);
   if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
     throw base::Error(command.database, "holds no answers of a pilot, of Task 1 or of Task 2",
                       "collect answers first; nothing was written");
   const std::string page = report::results_page(json);
-  if (!command.csv.empty()) write_csv_folder(json, command.csv);
-  if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
-  base::write_file_atomically(command.html, page);
+  const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
+    files.write("vip-stats report", path, bytes);
+  };
+  if (!command.csv.empty()) write_csv_folder(json, command.csv, write);
+  if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
+  write(command.html, page);
   std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
   if (json.contains("preregistration")) {
     const Json& check = json["preregistration"];
@@ -118,6 +122,9 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
       ->excludes(plan);
+  sub->footer(
+      "The files hold values of single participants, so they are registered in the database, which must be\n"
+      "writable for that: when one of them withdraws, the files are deleted, to be made again.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     write_report(*command);

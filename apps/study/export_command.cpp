@@ -34,7 +34,11 @@ void add_export_command(CLI::App& app) {
   formats->require_option(1, 3);
   sub.add_flag("--words", options->words,
                "CSV: also free words of participants and the experimenter's notes");
-  sub.footer("A folder is made, or replaced when it is an earlier export.");
+  sub.footer(
+      "A folder is made, or replaced when it is an earlier export. It is registered in the database, which "
+      "must be\n"
+      "writable for that: when one of the people in it withdraws, the folder is deleted, to be exported "
+      "again.");
   sub.callback([options] {
     if (!options->csv.empty())
       print_files(study::export_csv(options->database, options->csv, options->words));

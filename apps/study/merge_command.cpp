@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/merge.hpp"
 
@@ -16,12 +17,6 @@ struct MergeCommand {
   std::string into;
 };
 
-void print_list(const char* title, const std::vector<std::string>& lines) {
-  if (lines.empty()) return;
-  std::printf("%s\n", title);
-  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
-}
-
 void merge(const MergeCommand& command) {
   const study::Merge done = study::merge({command.sources.begin(), command.sources.end()}, command.into);
   std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
@@ -30,11 +25,10 @@ void merge(const MergeCommand& command) {
   print_list("Codes that stood for several people:", done.renamed);
   print_list("Withdrew, and is in no merge:", done.withdrawn);
   print_list("Protocols of one name and version with different texts, kept apart:", done.namesakes);
-  for (const auto& [code, gone] : done.buried) {
+  for (const auto& [code, gone] : done.buried)
     std::printf("%lld answers of %s deleted here\n", static_cast<long long>(gone.answers), code.c_str());
-    print_list("Exports are out of reach. Delete these and what was copied from them:", gone.exports);
-    print_list("Backups that could not be cleaned; delete them:", gone.failed);
-  }
+  print_clean_up(done.beside);
+  study::check_nothing_left(command.into, done.beside.left);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
 #include "libstudy/session/interruptions.hpp"
@@ -55,6 +56,7 @@ void resume(const PlayOptions& options) {
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
+  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
   for (const study::OpenRun& run : store.open_runs()) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     for (const auto& session : run.sessions) study::settle_interruption(store, protocol, session);
@@ -69,6 +71,7 @@ void resume(const PlayOptions& options) {
     play_run(store, run, protocol, setup, options);
     print_certificate(options.database, run, protocol);
   }
+  study::check_nothing_left(options.database, store.left_to_clean());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
@@ -130,6 +131,7 @@ void run(RunCommand& command) {
   const StopSignals signals;
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
                      tell_of_locks(command.play.database));
+  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
   const std::int64_t run_id =
       store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
   for (const study::OpenRun& open : store.open_runs()) {
@@ -137,6 +139,7 @@ void run(RunCommand& command) {
     play_run(store, open, protocol, setup, command.play);
     print_certificate(command.play.database, open, protocol);
   }
+  study::check_nothing_left(command.play.database, store.left_to_clean());
 }
 
 }  // namespace

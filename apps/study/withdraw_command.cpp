@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -35,23 +36,16 @@ void confirm(const WithdrawCommand& command) {
   }
 }
 
-void print_list(const char* title, const std::vector<std::string>& lines) {
-  if (lines.empty()) return;
-  std::printf("%s\n", title);
-  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
-}
-
 void withdraw(const WithdrawCommand& command) {
   confirm(command);
   const study::Withdrawal done = study::withdraw(command.database, command.participant);
   std::printf("%s: %lld sessions, %lld answers and %lld frames of %s deleted\n", command.database.c_str(),
-              static_cast<long long>(done.sessions), static_cast<long long>(done.answers),
-              static_cast<long long>(done.frames), command.participant.c_str());
-  for (const auto& path : done.scrubbed) std::printf("cleaned as well: %s\n", path.c_str());
-  print_list("Exports are out of reach. Delete these and what was copied from them:", done.exports);
+              static_cast<long long>(done.deleted.sessions), static_cast<long long>(done.deleted.answers),
+              static_cast<long long>(done.deleted.frames), command.participant.c_str());
+  print_clean_up(done.beside);
   print_list("Recorded at these stations: withdraw in their own databases, or merge this one into them:",
-             done.stations);
-  print_list("Backups that could not be cleaned; delete them:", done.failed);
+             done.deleted.stations);
+  study::check_nothing_left(command.database, done.beside.left);
 }
 
 }  // namespace
@@ -62,6 +56,12 @@ void add_withdraw_command(CLI::App& app) {
   sub.add_option("participant", command->participant, "Code of the participant")->required();
   sub.add_option("--db", command->database, "Database of the study")->required();
   sub.add_flag("--yes", command->yes, "Do not ask");
+  sub.footer(
+      "Deletes from the database and its log, its backups, the file of personal data, and every export and "
+      "report\n"
+      "that was made from it and holds the participant, whole: make those again with one command. What "
+      "cannot be\n"
+      "deleted is named, and the exit status is then 1; repeat the command when it is mended.");
   sub.callback([command] { withdraw(*command); });
 }
 

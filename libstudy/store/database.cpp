@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "libstudy/store/beside.hpp"
 #include "libstudy/store/private_file.hpp"
 #include "libstudy/store/snapshot.hpp"
 #include "stats/base/error.hpp"
@@ -175,8 +176,9 @@ std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
   return database;
 }
 
-std::unique_ptr<Connection> open_database(const fs::path& path, Open how, const SchemaSteps& steps,
+std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const SchemaSteps& steps,
                                           std::int64_t max_pages, const sqlite::Waiting& waiting) {
+  const fs::path path = real_file(given);
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());

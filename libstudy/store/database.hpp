@@ -20,7 +20,8 @@ using SchemaSteps = std::vector<std::string>;
 SchemaSteps read_schema_steps();
 
 /// Opens `path` with foreign keys, WAL and synchronous = FULL, always through its log and journal: a file
-/// that a kill, a full disk or a power cut left behind is as good as any other.
+/// that a kill, a full disk or a power cut left behind is as good as any other. Where it is a
+/// link, the real file (beside.hpp).
 ///
 /// Open::Create makes a missing or empty file into a database; Open::Write upgrades an older one, each step
 /// in one transaction, after a copy "<path>.v<version>-<UTC time>.bak"; both are 0600 then, and watched

@@ -306,10 +306,10 @@ bool is_export(const fs::path& folder) {
 }  // namespace
 
 std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& folder) {
-  ExportDraft draft(folder, is_export);
   const auto database = open_database(path, Open::Read, read_schema_steps());
-  Writer writer(draft);
   database->execute("BEGIN");
+  ExportDraft draft({path, "bids", everybody(*database)}, folder, is_export);
+  Writer writer(draft);
   const auto sessions = labelled_sessions(*database);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},
@@ -322,7 +322,6 @@ std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& fold
   for (const LabelledSession& session : sessions) write_events(*database, session, writer);
   write_phenotypes(*database, sessions, writer);
   database->execute("COMMIT");
-  remember_export(path, draft.target());
   draft.put_in_place();
   return writer.files;
 }

@@ -140,11 +140,11 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
 }
 
 std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folder, bool words) {
-  ExportDraft draft(folder, is_export);
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
-  std::vector<ExportedFile> files;
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
+  ExportDraft draft({path, "csv", everybody(*database)}, folder, is_export);
+  std::vector<ExportedFile> files;
   for (const Table& table : tables) {
     if (table.free_words && !words) continue;
     files.push_back({table.file, write_csv(*database, select_sql(*database, table), draft, table.file)});
@@ -153,7 +153,6 @@ std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folde
   files.push_back({dictionary_file, write_dictionary(*database, draft, words)});
   write_protocols(*database, draft);
   database->execute("COMMIT");
-  remember_export(path, draft.target());
   draft.put_in_place();
   return files;
 }

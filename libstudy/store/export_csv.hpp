@@ -16,7 +16,8 @@ namespace study {
 ///
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
-/// changed, when it holds anything else. The folder is remembered in the event log (remember_export).
+/// changed, when it holds anything else, or when the database cannot be written: the folder is registered in
+/// it with whom it holds, and a withdrawal of one of them deletes it (export_register.hpp).
 std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
                                      const std::filesystem::path& folder, bool words = false);
 

@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cstring>
 
-#include "libstudy/store/database.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -39,9 +38,11 @@ void check_target(const fs::path& folder, const ExportDraft::IsExport& is_export
 
 }  // namespace
 
-ExportDraft::ExportDraft(const fs::path& target, const IsExport& is_export) : target_(whole_path(target)) {
+ExportDraft::ExportDraft(const ExportSource& source, const fs::path& target, const IsExport& is_export)
+    : target_(whole_path(target)) {
   check_target(target_, is_export);
-  path_ = target_.string() + ".tmp" + std::to_string(::getpid());
+  record_.emplace(source.database, source.kind, target_, source.people);
+  path_ = draft_of(target_);
   if (::mkdir(path_.c_str(), 0777) != 0) fail("cannot be made");
 }
 
@@ -50,8 +51,17 @@ ExportDraft::~ExportDraft() {
   fs::remove_all(path_, ignored);
 }
 
-// After the exchange the earlier export lies under the draft's name and goes with it.
 void ExportDraft::put_in_place() {
+  record_->will_be(sha256_of_names(path_));
+  replace_target();
+  // The earlier export: it may hold people who do not stand in this one.
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  record_->is_in_place();
+}
+
+// After the exchange the earlier export lies under the draft's name.
+void ExportDraft::replace_target() {
   std::error_code ignored;
   const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
   if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), flags) == 0) return;
@@ -143,19 +153,6 @@ std::int64_t write_csv(Connection& database, const std::string& sql, const Expor
   }
   file.finish();
   return rows;
-}
-
-void remember_export(const fs::path& path, const fs::path& folder) {
-  const fs::path beside = fs::absolute(path).parent_path();
-  if (::access(path.c_str(), W_OK) != 0 || ::access(beside.c_str(), W_OK) != 0) return;
-  Connection database(path, sqlite::Open::Write);
-  const auto newest = static_cast<std::int64_t>(read_schema_steps().size());
-  if (database.integer("PRAGMA user_version") != newest) return;
-  database.execute("PRAGMA synchronous = FULL");
-  Statement(database, "INSERT INTO event (utc, kind, detail) VALUES (?, 'export', ?)")
-      .bind(0, base::utc_now())
-      .bind(1, fs::absolute(folder).lexically_normal().string())
-      .run();
 }
 
 }  // namespace study

@@ -5,8 +5,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <set>
 #include <string>
 
+#include "libstudy/store/export_register.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace study {
@@ -17,12 +20,21 @@ struct ExportedFile {
   std::int64_t rows = 0;
 };
 
-/// A folder beside the target that is gone unless put in place, so that the target never holds a part.
+/// What is exported.
+struct ExportSource {
+  std::filesystem::path database;
+  const char* kind;              ///< csv, bids, psych-ds
+  std::set<std::string> people;  ///< who stands in the export (session.person)
+};
+
+/// A folder beside the target that is gone unless put in place, so that the target never holds a part. It is
+/// registered in the database before it is made.
 class ExportDraft {
  public:
   using IsExport = std::function<bool(const std::filesystem::path&)>;
-  /// base::Error, with nothing made, unless the target is absent, an empty folder or one that `is_export`.
-  ExportDraft(const std::filesystem::path& target, const IsExport& is_export);
+  /// base::Error, with nothing made, unless the target is absent, an empty folder or one that `is_export`,
+  /// and when the database cannot be written (RegisteredExport).
+  ExportDraft(const ExportSource& source, const std::filesystem::path& target, const IsExport& is_export);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;
   ExportDraft& operator=(const ExportDraft&) = delete;
@@ -30,14 +42,17 @@ class ExportDraft {
   /// Where the export goes, as an absolute path.
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& path() const { return path_; }
-  /// Makes the draft the target; an earlier export there goes.
+  /// Makes the draft the target; an earlier export there goes. base::Error, and the target is gone, when one
+  /// of its people withdrew meanwhile.
   void put_in_place();
 
  private:
+  void replace_target();
   bool replace_in_two_steps();
   [[noreturn]] void fail(const std::string& problem);
 
   std::filesystem::path target_, path_;
+  std::optional<RegisteredExport> record_;
 };
 
 /// A file of a draft, with the folders above it; an error unless every byte of it came to the disk.
@@ -67,9 +82,5 @@ std::string csv_value(const sqlite::Statement& row, int column);
 /// The rows that `sql` selects, under a line with the names of its columns; returns their number.
 std::int64_t write_csv(sqlite::Connection& database, const std::string& sql, const ExportDraft& draft,
                        const std::string& name);
-
-/// Notes in the event log of the database that a copy of its data lies in `folder`, out of the reach of a
-/// later withdrawal. A database that cannot be written or is of an older schema stays as it is.
-void remember_export(const std::filesystem::path& database, const std::filesystem::path& folder);
 
 }  // namespace study

@@ -90,10 +90,10 @@ void write_description(Connection& database, const ExportDraft& draft) {
 }  // namespace
 
 std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& folder) {
-  ExportDraft draft(folder, is_export);
   const auto database = open_database(path, Open::Read, read_schema_steps());
-  std::vector<ExportedFile> files;
   database->execute("BEGIN");
+  ExportDraft draft({path, "psych-ds", everybody(*database)}, folder, is_export);
+  std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
   for (const LabelledSession& session : labelled_sessions(*database)) {
     const std::string stem =
@@ -105,7 +105,6 @@ std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& 
   }
   write_description(*database, draft);
   database->execute("COMMIT");
-  remember_export(path, draft.target());
   draft.put_in_place();
   return files;
 }

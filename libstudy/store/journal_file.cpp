@@ -89,6 +89,10 @@ std::string whole(const fs::path& path, bool& exists) {
 class Reader {
  public:
   void line(const std::string& text, std::uintmax_t end) {
+    if (!text.starts_with('{')) {
+      ++skipped_;
+      return;
+    }
     if (auto row = journal::read_row(text)) {
       batch_.push_back(std::move(*row));
       return;

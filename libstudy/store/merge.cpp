@@ -4,9 +4,9 @@
 #include <set>
 
 #include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge_parts.hpp"
-#include "libstudy/store/personal.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 
@@ -23,14 +23,14 @@ namespace {
 
 /// Somebody who stands in `into` before the merge.
 struct Resident {
-  std::string person, participant, code;
-  Withdrawal stock;
+  std::string person, participant;
+  Stock stock;
 };
 
 std::vector<Resident> residents_of(Connection& database) {
   std::vector<Resident> residents;
-  Statement row(database, "SELECT DISTINCT person, participant, code FROM session ORDER BY participant");
-  while (row.step()) residents.push_back({row.text(0), row.text(1), row.text(2), {}});
+  Statement row(database, "SELECT DISTINCT person, participant FROM session ORDER BY participant");
+  while (row.step()) residents.push_back({row.text(0), row.text(1), {}});
   for (Resident& resident : residents) resident.stock = take_stock(database, resident.person);
   return residents;
 }
@@ -82,27 +82,40 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   return merge;
 }
 
-/// What stands beside `into`: who withdrew is deleted there too, and a changed code is changed there too.
-void follow_beside(const fs::path& into, const std::vector<Resident>& residents,
-                   const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
-  std::map<std::string, std::string> changed;
-  for (const Resident& resident : residents) {
-    if (!content.tombstones.contains(resident.person)) {
-      if (const auto& name = names.at(resident.person); name != resident.participant)
-        changed[resident.participant] = name;
-      continue;
-    }
-    Withdrawal done = resident.stock;
-    scrub_beside(into, resident.participant, resident.code, done);
-    merge.buried.emplace_back(resident.participant, std::move(done));
+/// What an earlier merge or withdrawal could not do yet comes first: codes are those of its time.
+void carry_chores_over(Connection& into, Connection& result) {
+  Statement row(into, "SELECT kind, batch, person, participant, renamed FROM chore ORDER BY chore_id");
+  Statement insert(result,
+                   "INSERT INTO chore (kind, batch, person, participant, renamed) VALUES (?,?,?,?,?)");
+  while (row.step()) {
+    for (int i = 0; i < row.columns(); ++i) insert.bind_from(i, row, i);
+    insert.run();
   }
-  std::error_code ignored;
-  if (!changed.empty() && fs::exists(PersonalFile::beside(into), ignored)) PersonalFile(into).rename(changed);
+}
+
+/// For the files beside `into`: who withdrew is deleted there too, and a changed code is changed there too.
+void plan_chores(Connection& result, const std::vector<Resident>& residents,
+                 const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
+  sqlite::Transaction transaction(result);
+  ChorePlan plan(result);
+  std::map<std::string, ChorePlan::Rename> renamed;
+  for (const Resident& resident : residents) {
+    if (content.tombstones.contains(resident.person)) {
+      plan.forget(resident.person, resident.participant);
+      merge.buried.emplace_back(resident.participant, resident.stock);
+    } else if (const auto& name = names.at(resident.person); name != resident.participant) {
+      renamed[resident.person] = {resident.participant, name};
+    }
+  }
+  plan.rename(renamed);
+  plan.rewrite();
+  transaction.commit();
 }
 
 }  // namespace
 
-Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
+Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
+  const fs::path into = real_file(given);
   WriterLock lock(into, Open::Create);
   Content content = read_all(sources, into);
   const auto chosen = merging::choose_sessions(content);
@@ -113,16 +126,16 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& into) {
   content.sources.clear();  // into itself may be among them
 
   const auto target = open_database(into, Open::Create, read_schema_steps());
+  carry_chores_over(*target, *result);
+  merging::add_exports(*target, *result);  // those of this very moment
+  plan_chores(*result, residents_of(*target), names, content, merge);
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
   prepare_rewrite(*target, withdrawn);
-  const auto residents = residents_of(*target);
   target->execute("PRAGMA secure_delete = ON");
   target->copy_from(*result);
   lock.keep();
-  rewrite(*target);
-  rewrite_journal(*target);
-  follow_beside(into, residents, names, content, merge);
+  merge.beside = clean_up_all(*target);
   return merge;
 }
 

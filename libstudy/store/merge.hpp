@@ -19,8 +19,9 @@ struct Merge {
   std::vector<std::string> renamed;
   /// Codes of all who withdrew; no data of theirs were taken over.
   std::vector<std::string> withdrawn;
-  /// What the tombstones deleted from `into` itself and what they cannot reach, by code.
-  std::vector<std::pair<std::string, Withdrawal>> buried;
+  /// What the tombstones deleted from `into` itself, by code.
+  std::vector<std::pair<std::string, Stock>> buried;
+  CleanUp beside;  ///< backups, personal data and exports of `into`
   /// Datasets that go by one name and version with different texts; they stay apart.
   std::vector<std::string> namesakes;
 };
@@ -30,9 +31,12 @@ struct Merge {
 /// Equal protocol hash = one dataset. A session that stands in several of them counts once, as its furthest
 /// copy; base::Error when two copies went on differently. A code given to several people becomes
 /// "<code>-<station>" for each of them, or "<code>-<four hexadecimal digits>" where that is not distinct. Who
-/// withdrew in one of them is deleted from all, also from backups and personal data beside `into`. The
-/// result depends on what is joined, not on the order; merged again, nothing changes. Sources stay as they
-/// are, `into` changes in one transaction or not at all. Personal data stay at their stations.
+/// withdrew in one of them is deleted from all, also from backups and personal data beside `into` and from
+/// every registered export. The result depends on what is joined, not on the order; merged again, nothing
+/// changes. Sources stay as they are, `into` changes in one transaction or not at all; what is to follow
+/// beside it is written down in that transaction (chores.hpp), so that a kill leaves nothing forgotten.
+/// Personal data stay at their stations. base::Error, with nothing changed: a source with rows that belong to
+/// nothing, or with rows of one session that point into another.
 Merge merge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& into);
 
 }  // namespace study

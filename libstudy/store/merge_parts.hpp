@@ -32,7 +32,7 @@ struct Content {
   std::map<std::string, Tombstone> tombstones;  ///< by person; the earliest of each
 };
 
-/// Reads sessions and tombstones of a source and adds them.
+/// Reads sessions and tombstones of a source and adds them. base::Error when one of its rows belongs to none.
 void add_source(Content& content, std::unique_ptr<sqlite::Connection> source);
 
 /// The furthest copy of each session that nobody withdrew from, in the order of planning. base::Error when
@@ -45,5 +45,8 @@ std::map<std::string, std::string> name_people(const Content& content);
 /// Writes the union into an empty database of the newest schema.
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,
                  const std::map<std::string, std::string>& names, sqlite::Connection& target);
+
+/// Adds the registered exports of a source and whom they hold; of one path, what was written last counts.
+void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 
 }  // namespace study::merging

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "libstudy/store/merge_parts.hpp"
+#include "stats/base/error.hpp"
 
 namespace study::merging {
 
@@ -37,6 +38,15 @@ const Table session_tables[] = {
     {"event", "event_id", of_session},
 };
 
+/// A row that points to one of another session: SQLite sees nothing wrong with it.
+[[noreturn]] void throw_stray(const Connection& source, const Statement& row, const std::string& table,
+                              const std::string& key, int column) {
+  throw base::Error(source.path().string(),
+                    (key.empty() ? "a row of " : "row " + row.text(0) + " of ") + table + " points to " +
+                        row.column_name(column) + " " + row.text(column) + ", which is not of its session",
+                    "make a sound copy with vip-study salvage, or leave this database out");
+}
+
 /// Copies the rows of one table: row numbers become new ones, `changed` columns their new values.
 void copy_rows(Connection& source, Connection& target, const Table& table, std::int64_t parent,
                RowNumbers& numbers, const std::map<std::string, std::string>& changed = {}) {
@@ -68,7 +78,9 @@ void copy_rows(Connection& source, Connection& target, const Table& table, std::
       } else if (fixed[column]) {
         insert.bind(i, *fixed[column]);
       } else if (mapped[column] && !row.is_null(i)) {
-        insert.bind(i, mapped[column]->at(row.integer(i)));
+        const auto number = mapped[column]->find(row.integer(i));
+        if (number == mapped[column]->end()) throw_stray(source, row, name, key, i);
+        insert.bind(i, number->second);
       } else {
         insert.bind_from(i, row, i);
       }
@@ -210,7 +222,28 @@ void write_union(Content& content, const std::vector<SessionCopy>& chosen,
   all.add_tombstones();
   all.add_common_events();
   for (const SessionCopy& copy : chosen) all.add_session(copy);
+  for (const auto& source : content.sources) add_exports(*source, target);
   transaction.commit();
+}
+
+void add_exports(Connection& source, Connection& target) {
+  Statement row(source,
+                "SELECT kind, path, host, sha256, utc, tackled, export_id FROM export ORDER BY host, path");
+  Statement add(target,
+                "INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,?,?,?) "
+                "ON CONFLICT (host, path) DO UPDATE SET kind = excluded.kind, sha256 = excluded.sha256, "
+                "utc = excluded.utc, tackled = excluded.tackled "
+                "WHERE (excluded.utc, excluded.sha256) > (export.utc, export.sha256)");
+  Statement person(source, "SELECT person FROM export_person WHERE export_id = ?");
+  Statement add_person(target,
+                       "INSERT OR IGNORE INTO export_person "
+                       "SELECT export_id, ?3 FROM export WHERE host = ?1 AND path = ?2");
+  while (row.step()) {
+    for (int i = 0; i < 6; ++i) add.bind_from(i, row, i);
+    add.run();
+    for (person.bind(0, row.integer(6)); person.step();)
+      add_person.bind(0, row.text(2)).bind(1, row.text(1)).bind(2, person.text(0)).run();
+  }
 }
 
 }  // namespace study::merging

@@ -60,9 +60,32 @@ void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
   }
 }
 
+/// The rows of a table without row numbers are told by what they point to.
+std::string dangling_row(Connection& source, const std::string& table, const std::string& parent,
+                         std::int64_t foreign_key) {
+  Statement link(source, "SELECT \"from\" FROM pragma_foreign_key_list(?) WHERE id = ?");
+  if (!link.bind(0, table).bind(1, foreign_key).step()) return "a row of " + table;
+  const std::string column = link.text(0);
+  Statement lost(source, "SELECT " + column + " FROM " + table + " WHERE " + column + " NOT IN (SELECT " +
+                             column + " FROM " + parent + ") LIMIT 1");
+  return "a row of " + table + " with " + column + " " + (lost.step() ? lost.text(0) : "");
+}
+
+/// Rows that belong to nothing would be lost in the union, or end it.
+void check_references(Connection& source) {
+  Statement lost(source, "PRAGMA foreign_key_check");
+  if (!lost.step()) return;
+  const std::string table = lost.text(0), parent = lost.text(2);
+  const std::string row = lost.is_null(1) ? dangling_row(source, table, parent, lost.integer(3))
+                                          : "row " + lost.text(1) + " of " + table;
+  throw base::Error(source.path().string(), row + " belongs to no " + parent,
+                    "make a sound copy with vip-study salvage, or leave this database out");
+}
+
 }  // namespace
 
 void add_source(Content& content, std::unique_ptr<Connection> source) {
+  check_references(*source);
   const std::size_t index = content.sources.size();
   for (Statement row(*source, sessions_sql); row.step();) {
     SessionCopy copy;

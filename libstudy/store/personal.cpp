@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "libstudy/store/beside.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -21,7 +22,8 @@ namespace {
 constexpr const char* opening =
     "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA;"
     "CREATE TABLE IF NOT EXISTS personal (participant TEXT NOT NULL, question TEXT NOT NULL, "
-    "wording TEXT NOT NULL, answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT";
+    "wording TEXT NOT NULL, answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT;"
+    "CREATE TABLE IF NOT EXISTS renaming (batch TEXT PRIMARY KEY) STRICT";
 
 /// Made, or taken over, with no rights for others before anything stands in it.
 void make_private(const fs::path& path) {
@@ -44,7 +46,7 @@ PersonalFile::PersonalFile(const fs::path& database) {
   file_->execute(opening);
 }
 
-fs::path PersonalFile::beside(const fs::path& database) { return database.string() + ".personal"; }
+fs::path PersonalFile::beside(const fs::path& database) { return study::beside(database, ".personal"); }
 
 void PersonalFile::keep(const std::vector<PersonalEntry>& entries) {
   Transaction transaction(*file_);
@@ -64,8 +66,12 @@ std::vector<PersonalEntry> PersonalFile::read(const std::string& participant) {
   return entries;
 }
 
-void PersonalFile::rename(const std::map<std::string, std::string>& codes) {
+void PersonalFile::rename(const std::string& batch, const std::map<std::string, std::string>& codes) {
   Transaction transaction(*file_);
+  Statement done(*file_, "INSERT OR IGNORE INTO renaming VALUES (?) RETURNING 1");
+  const bool again = !done.bind(0, batch).step();
+  done.reset();
+  if (again) return;
   // In two steps, since one may take the code that another gives up.
   Statement aside(*file_, "UPDATE personal SET participant = ' ' || ? WHERE participant = ?");
   for (const auto& [before, now] : codes) aside.bind(0, now).bind(1, before).run();

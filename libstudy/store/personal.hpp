@@ -25,11 +25,13 @@ class PersonalFile {
   /// Commits; an answer to the same question replaces the former one.
   void keep(const std::vector<PersonalEntry>& entries);
   std::vector<PersonalEntry> read(const std::string& participant);
-  /// Gives participants other codes, all at once.
-  void rename(const std::map<std::string, std::string>& codes);
+  /// Gives participants other codes (by the one before), all at once. What was done under the same `batch` is
+  /// not done again: the new code of one may be the former one of another.
+  void rename(const std::string& batch, const std::map<std::string, std::string>& codes);
   /// Deletes what stands of a participant and overwrites where it stood.
   void forget(const std::string& participant);
 
+  /// Beside the real file, whatever link leads to it.
   static std::filesystem::path beside(const std::filesystem::path& database);
 
  private:

@@ -13,6 +13,8 @@
 #include <string>
 #include <string_view>
 
+#include "stats/base/error.hpp"
+
 struct sqlite3;
 struct sqlite3_stmt;
 
@@ -35,6 +37,11 @@ struct Temporary {};
 /// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
 /// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
 using Waiting = std::function<bool(const std::string& holder)>;
+
+/// Another program kept the database locked for longer than was waited.
+class LockedOut : public base::Error {
+  using Error::Error;
+};
 
 /// What to do about a file that SQLite itself cannot make whole again.
 std::string salvage_mend(const std::filesystem::path& path);

@@ -3,6 +3,8 @@
 #include <regex>
 
 #include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/beside.hpp"
+#include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "stats/base/error.hpp"
@@ -75,27 +77,49 @@ struct Store::Statements {
 };
 
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
-    : path_(path), lock_(path, how) {
-  database_ = open_database(path, how, read_schema_steps(), max_pages, waiting);
+    : path_(real_file(path)), lock_(std::in_place, path_, how) {
+  database_ = open_database(path_, how, read_schema_steps(), max_pages, waiting);
+  left_ = clean_up(*database_).left;
   statements_ = std::make_unique<Statements>(*database_);
   journal_ = std::make_unique<AnswerJournal>(*database_);
-  if (!lock_.made()) keep_file();
+  if (!lock_->made()) keep_file();
 }
 
 // Members go in the reverse of their order: the lock is given back after SQLite has closed the file.
 Store::~Store() {
-  if (lock_.made()) journal_->remove_if_blank();
+  if (lock_ && lock_->made()) journal_->remove_if_blank();
+}
+
+Store::Store(Store& locked)
+    : path_(locked.path_), database_(std::make_unique<sqlite::Connection>(path_, sqlite::Temporary{})) {
+  database_->copy_from(*locked.database_);
+  statements_ = std::make_unique<Statements>(*database_);
+  journal_ = std::make_unique<AnswerJournal>(*database_);
+}
+
+void Store::make(const std::function<void(Store&)>& change) {
+  try {
+    change(*this);
+  } catch (const sqlite::LockedOut&) {
+    if (!copy_) copy_.reset(new Store(*this));
+    change(*copy_);
+    throw;
+  }
 }
 
 void Store::keep_file() {
-  lock_.keep();
+  lock_->keep();
   database_->go_on_with("run vip-study resume --db " + path_.string() + "; all answers given are kept");
 }
 
 void Store::commit(Transaction& transaction) {
+  if (copy_) {
+    throw sqlite::LockedOut(path_.string(), "was locked by another program; nothing more is written now",
+                            "run vip-study resume --db " + path_.string());
+  }
   journal_->write();
   transaction.commit();
-  journal_->kept();
+  if (lock_) journal_->kept();
 }
 
 std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
@@ -168,6 +192,12 @@ void Store::interrupt_presentation(std::int64_t session, std::int64_t presentati
 void Store::answer(std::int64_t session, const OpenUnit& unit, int attempt,
                    std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,
                    const std::optional<Ending>& ending) {
+  make([&](Store& store) { store.write_answers(session, unit, attempt, answers, last, clock_ns, ending); });
+}
+
+void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attempt,
+                          std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,
+                          const std::optional<Ending>& ending) {
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
   Statement& insert = statements_->response;
@@ -314,6 +344,10 @@ std::int64_t Store::trial_unit(std::int64_t trial) {
 }
 
 void Store::note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
+  make([&](Store& store) { store.write_note(session, unit, words); });
+}
+
+void Store::write_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
   Transaction transaction(*database_);
   insert_note(session, unit, words);
   insert_event(session, {}, "note", "", {});

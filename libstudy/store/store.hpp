@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -97,13 +98,16 @@ struct KeptAnswer {
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
-  /// is removed again when nothing comes to stand in it. waiting: for locks of other programs, five seconds
-  /// without it.
+  /// is removed again when nothing comes to stand in it. What a withdrawal or a merge left to be done is done
+  /// first (chores.hpp). waiting: for locks of other programs, five seconds without it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
+
+  /// What is still left of it, each with reason and mend: a session may go on, the command ends as an error.
+  std::vector<std::string> left_to_clean() const { return left_; }
 
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
   /// base::Error when one of the participants has that visit under that protocol already, or when the same
@@ -157,6 +161,16 @@ class Store {
  private:
   struct Statements;
 
+  /// A copy of a database that is locked by another program: what is written to it goes into the journal
+  /// alone, from which the next opening takes it over.
+  explicit Store(Store& locked);
+  /// Makes a change that nobody can make again, an answer or a note: where the file is locked, in such a
+  /// copy, and then throws LockedOut.
+  void make(const std::function<void(Store&)>& change);
+  void write_answers(std::int64_t session, const OpenUnit& unit, int attempt,
+                     std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,
+                     const std::optional<Ending>& ending);
+  void write_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   /// Every change ends here: into the journal, then into the database.
   void commit(sqlite::Transaction& transaction);
   std::int64_t find_or_add_protocol(const RunPlan& run);
@@ -179,10 +193,12 @@ class Store {
   void keep_file();
 
   std::filesystem::path path_;
-  WriterLock lock_;
+  std::optional<WriterLock> lock_;  ///< none: a copy
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;
+  std::unique_ptr<Store> copy_;  ///< once it is there, nothing more goes into the file
+  std::vector<std::string> left_;
 };
 
 }  // namespace study

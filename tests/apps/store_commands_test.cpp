@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stats/base/file.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -35,9 +36,95 @@ TEST(StoreCommandsE2e, StationsAreMergedExportedAndWithdrawnFrom) {
   EXPECT_EQ(count_in(all, "SELECT count(*) FROM session"), 2);
   const Ended withdrawn = call({vip_study, "withdraw", "P01-north", "--db", all, "--yes"});
   EXPECT_EQ(withdrawn.exit_code, 0) << withdrawn.err;
-  EXPECT_THAT(withdrawn.out, HasSubstr((folder / "bids").string()));
+  for (const char* format : {"csv", "bids", "psych"}) {
+    EXPECT_THAT(withdrawn.out, HasSubstr("deleted, make it again: " + (folder / format).string()));
+    EXPECT_FALSE(fs::exists(folder / format));
+  }
   EXPECT_EQ(call({vip_study, "merge", folder / "north.db", "--into", all}).exit_code, 0);
   EXPECT_EQ(count_in(all, "SELECT count(*) FROM session"), 1);
+}
+
+/// Files below a folder, but the database and its journal, in whose bytes a text stands.
+std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_regular_file() || name.starts_with("s.db")) continue;
+    if (base::read_file(entry.path(), 1u << 30).find(text) != std::string::npos) names.push_back(name);
+  }
+  return names;
+}
+
+TEST(StoreCommandsE2e, AWithdrawalReachesEveryReport) {
+  const TemporaryFolder folder;
+  const std::string database = folder / "s.db", stats = VIP_BIN_DIR "/vip-stats";
+  const auto call = [](const std::vector<std::string>& arguments) {
+    const Ended ended = Process(arguments).wait();
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    return ended;
+  };
+  for (const char* protocol : {"protocols/task2.toml", "protocols/ptpe_pilot.toml"}) {
+    std::vector<std::string> run{vip_study, "run", protocol, "--db", database, "--observer", "random"};
+    for (const char* code : {"QZ7", "P02", "P03"}) run.insert(run.end(), {"--participant", code});
+    call(run);
+  }
+  call({stats, "report", database, "--html", folder / "r.html", "--json", folder / "r.json", "--csv",
+        folder / "csv"});
+  call({stats, "task2", database, "--json", folder / "t.json", "--csv", folder / "t"});
+  Process({stats, "fit-ptpe", database, "--json", folder / "fit.json"}).wait();  // of random answers
+  ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("task2_choices.csv"));
+  ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("t.json"));
+  call({vip_study, "withdraw", "QZ7", "--db", database, "--yes"});
+  EXPECT_THAT(files_with(folder.path(), "QZ7"), ::testing::IsEmpty());
+  EXPECT_TRUE(fs::exists(folder / "fit.json"));  // of all, and of nobody alone
+  EXPECT_EQ(count_in(database, "SELECT count(*) FROM export"), 0);
+  call({stats, "report", database, "--html", folder / "r.html"});
+}
+
+TEST(StoreCommandsE2e, WhatIsLeftOfAWithdrawalIsNamedByEveryCommandUntilItIsDone) {
+  const TemporaryFolder folder;
+  const std::string protocol = folder / "short.toml", database = folder / "s.db";
+  base::write_file_atomically(protocol, short_protocol("1"));
+  const auto run = [&](const std::string& code) {
+    return Process(run_arguments(protocol, database, {"--clock", "virtual", "--participant", code})).wait();
+  };
+  EXPECT_EQ(run("P01").exit_code, 0);
+  EXPECT_EQ(Process({vip_study, "export", "--db", database, "--csv", folder / "csv"}).wait().exit_code, 0);
+  base::write_file_atomically(folder / "csv" / "mine.txt", "mine");
+  const Ended withdrawn = Process({vip_study, "withdraw", "P01", "--db", database, "--yes"}).wait();
+  EXPECT_EQ(withdrawn.exit_code, 1);
+  EXPECT_THAT(withdrawn.out, HasSubstr("export " + (folder / "csv").string()));
+  EXPECT_THAT(withdrawn.err, HasSubstr("one clean-up named above is left"));
+  const Ended next = run("P02");  // the session is played, the exit status tells
+  EXPECT_EQ(next.exit_code, 1);
+  EXPECT_THAT(next.out, HasSubstr("export " + (folder / "csv").string()));
+  EXPECT_EQ(count_in(database, "SELECT count(*) FROM session WHERE state = 'done'"), 1);
+  fs::remove_all(folder / "csv");
+  EXPECT_EQ(Process({vip_study, "resume", "--db", database}).wait().exit_code, 0);
+}
+
+TEST(StoreCommandsE2e, WhoCannotWriteTheDatabaseCannotExport) {
+  if (::getuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  const TemporaryFolder folder;
+  const std::string protocol = folder / "short.toml", database = folder / "s.db";
+  base::write_file_atomically(protocol, short_protocol("1"));
+  EXPECT_EQ(Process(run_arguments(protocol, database, {"--clock", "virtual", "--participant", "P01"}))
+                .wait()
+                .exit_code,
+            0);
+  fs::permissions(folder.path(), fs::perms(0755));
+  for (const auto& entry : fs::directory_iterator(folder.path()))
+    fs::permissions(entry.path(), fs::perms(0644));
+  fs::create_directory(folder / "theirs");
+  fs::permissions(folder / "theirs", fs::perms(0777));
+  const auto as_nobody = [] {
+    if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(125);
+  };
+  const Ended refused =
+      Process({vip_study, "export", "--db", database, "--csv", folder / "theirs" / "csv"}, as_nobody).wait();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("an export is registered in it"));
+  EXPECT_TRUE(fs::is_empty(folder / "theirs"));
 }
 
 }  // namespace

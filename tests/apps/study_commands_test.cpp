@@ -152,7 +152,7 @@ TEST_F(StudyCommandsE2e, FullAtThePlanLeavesNoFile) {
 }
 
 TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
-  const Ended full = run({"--participants", "4", "--max-pages", "60"});
+  const Ended full = run({"--participants", "4", "--max-pages", "70"});
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_THAT(full.err, AllOf(HasSubstr("no room left"), HasSubstr("vip-study resume")));
   const auto said = acknowledged(full.out);
@@ -193,7 +193,8 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
   if (::geteuid() != 0) fs::permissions(database_, fs::perms(0444));
   expect_error({vip_study, "resume", "--db", database_}, "study.db", become_nobody);
-  expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "out"}, "out", become_nobody);
+  expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "out"}, "registered in it",
+               become_nobody);
   const auto before = snapshot(folder_.path());
   EXPECT_EQ(run_program({vip_study, "status", "--db", database_}, become_nobody).exit_code, 0);
   EXPECT_TRUE(snapshot(folder_.path()) == before);

@@ -144,7 +144,7 @@ TEST(TaskCsv, FlattensQuotesAndLeavesMissingEmpty) {
 
 TEST(TaskCsv, EveryNumberIsTheJsons) {
   const TemporaryFolder folder;
-  write_csv_folder(whole_study(), folder / "csv");
+  write_csv_folder(whole_study(), folder / "csv", base::write_file_atomically);
   std::istringstream text(base::read_file(folder / "csv" / "task2_pairs.csv", 1 << 20));
   std::string header, line;
   std::getline(text, header);
@@ -164,7 +164,7 @@ TEST(TaskCsv, EveryNumberIsTheJsons) {
 TEST(TaskCsv, AnEmptyListOfExclusionsHasItsColumns) {
   const TemporaryFolder folder;
   ASSERT_THAT(whole_study().at("exclusions"), IsEmpty());
-  write_csv_folder(whole_study(), folder / "csv");
+  write_csv_folder(whole_study(), folder / "csv", base::write_file_atomically);
   EXPECT_EQ(base::read_file(folder / "csv" / "exclusions.csv", 1 << 20),
             "task,participant,visit,position,rule,reason,actor,answers\r\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "csv" / "task1_retest.csv"));

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 
@@ -10,7 +11,7 @@ namespace faults {
 
 namespace {
 
-/// Words of somebody who withdraws: they must stand nowhere afterwards.
+/// Noted on somebody who withdraws: they must stand nowhere afterwards.
 constexpr const char* secret = "zebra-of-the-north";
 
 void call(const Arguments& arguments) {
@@ -55,19 +56,16 @@ void cut_session(const fs::path& folder) {
   program.wait();
 }
 
-/// The words of P02, where an observer has none.
-void say_secrets(const fs::path& database) {
-  study::sqlite::Connection file(database, study::sqlite::Open::Write);
-  file.execute(
-      std::string("UPDATE response SET words = '") + secret +
-      "' WHERE response_id IN (SELECT response_id FROM response r JOIN question q USING (question_id) "
-      "JOIN unit u USING (unit_id) JOIN session s USING (session_id) WHERE s.participant = 'P02' AND "
-      "q.kind = 'text')");
+/// A note on P02.
+void note_secret(const fs::path& database) {
+  const auto session = study::sqlite::Connection(database, study::sqlite::Open::Read)
+                           .integer("SELECT session_id FROM session WHERE participant = 'P02'");
+  study::Store(database, study::sqlite::Open::Write).note(session, {}, secret);
 }
 
 void prepare_withdrawal(const fs::path& folder) {
   run_whole(folder, "s.db", {"P01", "P02", "P03"});
-  say_secrets(folder / "s.db");
+  note_secret(folder / "s.db");
   call(vip_study({"export", "--db", folder / "s.db", "--csv", folder / "csv", "--words"}));
 }
 
@@ -75,7 +73,7 @@ Lines withdrawal_content(const fs::path& folder) {
   Lines all = database_content(folder / "s.db") + personal_content(folder / "s.db");
   std::string where;
   fs::remove_all(folder / "csv");  // deleted or named: the store's own tests tell which
-  if (stands_in(folder, secret, where)) all.push_back("the words of P02 stand in " + where);
+  if (stands_in(folder, secret, where)) all.push_back("the note on P02 stands in " + where);
   return all;
 }
 

@@ -65,7 +65,6 @@ class Bench {
   const Flow& flow_;
   fs::path start_, now_, peek_;
   Lines wanted_;
-  int exit_code_ = 0;
   long calls_ = 0, microseconds_ = 0;
   long tries_ = 0;
   bool mounted_ = false;

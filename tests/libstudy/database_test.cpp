@@ -218,13 +218,21 @@ TEST(Database, Version1IsReadWithoutBeingChanged) {
   const std::string before = test::bytes_of(path);
   const auto rows = read_ratings(path);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 15u);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0].rating, 5);
   EXPECT_TRUE(rows[2].practice);
   EXPECT_FALSE(rows[3].rating);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  test::write_version_1(path);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 15u);
+  EXPECT_EQ(read_status(path).sessions.size(), 2u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // and the copy that upgrades leave
 }
 
 TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {

@@ -57,8 +57,7 @@ class ForeignLock : public ::testing::Test {
  protected:
   ForeignLock() { Store(path_, Open::Create).add_run(test::run_plan(test::pilot(), {"P01"})); }
 
-  static void give_consent(Store& store) {
-    const OpenSession session = store.open_runs().at(0).sessions.at(0);
+  static void give_consent(Store& store, const OpenSession& session) {
     for (const OpenUnit& unit : session.units) {
       if (unit.trial_id != 0) continue;
       KeptAnswer answer{"take_part", {}};
@@ -92,19 +91,27 @@ TEST_F(ForeignLock, IsWaitedForAndNamed) {
   EXPECT_EQ(Connection(path_, Open::Read).integer("SELECT count(*) FROM event WHERE kind = 'test'"), 1);
 }
 
-TEST_F(ForeignLock, EndsInOrderWhenAStopIsWished) {
+TEST_F(ForeignLock, AnAnswerThatCannotBeCommittedIsKeptForTheNextOpening) {
   std::string name;
   {
     bool stop = false;
     Store store(path_, Open::Write, 0, [&](const std::string&) { return !stop; });
+    const OpenSession session = store.open_runs().at(0).sessions.at(0);
     Browser browser(path_);
     stop = true;
     name = browser.name();
-    EXPECT_THAT([&] { give_consent(store); },
+    EXPECT_THAT([&] { give_consent(store, session); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr("is locked by"), HasSubstr(name),
                                                  HasSubstr("vip-study resume --db " + path_.string()))));
+    EXPECT_THROW(store.note(1, {}, "said while it waited"), sqlite::LockedOut);
+    browser.close();
+    EXPECT_THROW(store.log({}, "test", ""), sqlite::LockedOut);
   }
   EXPECT_EQ(answers(), 0);
+  Store again(path_, Open::Write);
+  EXPECT_EQ(answers(), 1);
+  EXPECT_EQ(again.open_runs().at(0).sessions.at(0).done, 1u);
+  EXPECT_EQ(Connection(path_, Open::Read).text("SELECT words FROM note"), "said while it waited");
 }
 
 }  // namespace

@@ -350,6 +350,31 @@ TEST_F(Stations, ASecondSessionUnderOneVisitIsRefused) {
       ThrowsMessage<base::Error>(HasSubstr("a second time")));
 }
 
+TEST_F(Stations, RowsThatBelongToNothingAreNamed) {
+  merge({path("south")}, path("all"));
+  const Lines before = everything(path("all"));
+  const auto refused = [&](const std::string& harm, const std::string& words) {
+    fs::remove(path("broken"));
+    fs::copy_file(path("north"), path("broken"));
+    Connection(path("broken"), Open::Write).execute("PRAGMA foreign_keys = OFF;" + harm);
+    EXPECT_THAT([&] { merge({path("broken")}, path("all")); },
+                ThrowsMessage<base::Error>(
+                    ::testing::AllOf(HasSubstr("broken.db"), HasSubstr(words), HasSubstr("salvage"))))
+        << harm;
+  };
+  refused("DELETE FROM session WHERE session_id = 2", "belongs to no session");
+  refused("UPDATE frame SET presentation_id = 99 WHERE presentation_id = 3 AND frame_index = 0",
+          "presentation_id 99 belongs to no presentation");
+  refused("UPDATE response SET question_id = 99 WHERE response_id = 2",
+          "row 2 of response belongs to no question");
+  refused("UPDATE session SET run_id = 99", "belongs to no run");
+  refused(
+      "UPDATE unit SET trial_id = (SELECT min(trial_id) FROM trial WHERE session_id = 2) WHERE unit_id = "
+      "(SELECT min(unit_id) FROM unit WHERE session_id = 1 AND trial_id IS NOT NULL)",
+      "which is not of its session");
+  EXPECT_EQ(everything(path("all")), before);
+}
+
 TEST(MergeOfOldDatabases, Version1IsJoinedAndStaysAsItIs) {
   const test::TemporaryFolder folder;
   const fs::path old = folder / "old.db", now = folder / "now.db", all = folder / "all.db";

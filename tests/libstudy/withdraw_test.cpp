@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
@@ -67,9 +66,9 @@ TEST(Withdraw, LeavesNoTraceOfTheAnswers) {
   ASSERT_GE(occurrences(folder.path(), telling_bytes), 1);
   ASSERT_GE(occurrences(folder.path(), leaver), 4);
   const Withdrawal done = withdraw(path, leaver);
-  EXPECT_EQ(done.sessions, 1);
-  EXPECT_EQ(done.answers, 2);
-  EXPECT_EQ(done.frames, 300);
+  EXPECT_EQ(done.deleted.sessions, 1);
+  EXPECT_EQ(done.deleted.answers, 2);
+  EXPECT_EQ(done.deleted.frames, 300);
   EXPECT_EQ(occurrences(folder.path(), secret), 0);
   EXPECT_EQ(occurrences(folder.path(), telling_bytes), 0);
   Connection look(path, Open::Read);
@@ -129,10 +128,10 @@ TEST(Withdraw, CleansBackupsOfBothSchemas) {
   }
   ASSERT_GE(occurrences(folder.path(), telling_bytes), 6);
   const Withdrawal done = withdraw(path, leaver);
-  EXPECT_EQ(done.scrubbed.size(), 2u);
-  EXPECT_TRUE(done.failed.empty());
+  EXPECT_EQ(done.beside.cleaned.size(), 2u);
+  EXPECT_TRUE(done.beside.left.empty());
   EXPECT_EQ(occurrences(folder.path(), telling_bytes), 0);
-  for (const fs::path& backup : done.scrubbed) {
+  for (const fs::path& backup : done.beside.cleaned) {
     const auto rows = read_ratings(backup);
     ASSERT_EQ(rows.size(), 2u) << backup;
     EXPECT_EQ(rows[0].participant, "P01");
@@ -149,20 +148,14 @@ TEST(Withdraw, NamesBackupsThatItCannotClean) {
   write_study(path);
   base::write_file_atomically(path.string() + ".v1-old.bak", std::string(5000, 'x'));
   const Withdrawal done = withdraw(path, leaver);
-  ASSERT_EQ(done.failed.size(), 1u);
-  EXPECT_THAT(done.failed[0], HasSubstr(".v1-old.bak"));
+  ASSERT_EQ(done.beside.left.size(), 1u);
+  EXPECT_THAT(done.beside.left[0], HasSubstr(".v1-old.bak"));
 }
 
-TEST(Withdraw, ListsExportsAndStationsThatItCannotReach) {
+TEST(Withdraw, NamesTheStationsWhoseDatabasesItDoesNotReach) {
   const test::TemporaryFolder folder;
-  const fs::path path = folder / "study.db";
-  write_study(path);
-  export_csv(path, folder / "first");
-  export_csv(path, folder / "second");
-  export_csv(path, folder / "first");
-  const Withdrawal done = withdraw(path, leaver);
-  EXPECT_THAT(done.exports, ElementsAre((folder / "first").string(), (folder / "second").string()));
-  EXPECT_THAT(done.stations, ElementsAre("north"));
+  write_study(folder / "study.db");
+  EXPECT_THAT(withdraw(folder / "study.db", leaver).deleted.stations, ElementsAre("north"));
 }
 
 TEST(Withdraw, FreesTheSlotButNotTheCode) {
@@ -194,7 +187,7 @@ TEST(Withdraw, TakesEveryVisitUnderEveryProtocol) {
     store.add_run(test::run_plan(test::pilot(), {"P01", "P02"}));
     store.add_run(test::run_plan(test::pairs(), {"P01"}));
   }
-  EXPECT_EQ(withdraw(path, "P01").sessions, 2);
+  EXPECT_EQ(withdraw(path, "P01").deleted.sessions, 2);
   Connection look(path, Open::Read);
   EXPECT_EQ(look.integer("SELECT count(*) FROM session"), 1);
   EXPECT_EQ(look.integer("SELECT count(*) FROM run"), 1);
@@ -205,7 +198,7 @@ TEST(Withdraw, MayBeRepeatedAndRefusesStrangers) {
   const fs::path path = folder / "study.db";
   write_study(path);
   withdraw(path, leaver);
-  EXPECT_EQ(withdraw(path, leaver).sessions, 0);
+  EXPECT_EQ(withdraw(path, leaver).deleted.sessions, 0);
   EXPECT_THAT([&] { withdraw(path, "P99"); },
               ThrowsMessage<base::Error>(HasSubstr("knows no participant P99")));
   const Store running(path, Open::Write);

@@ -151,31 +151,29 @@ std::string csv_text(const Json& list, const std::vector<std::string>& if_empty)
   return out;
 }
 
-void write_csv_folder(const Json& results, const std::filesystem::path& folder) {
-  std::vector<std::pair<std::string, Json>> files{
-
+void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
+  std::vector<std::pair<std::string, Json>> lists{
       {"timing", results.at("timing")},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
   if (results.contains("task1") && !results.at("task1").contains("refused")) {
     const Json& task = results.at("task1");
-    for (const char* list : {"participant_means", "cells", "by_scene", "comparisons", "omnibus", "retest"})
-      files.emplace_back(std::string("task1_") + list, task.at(list));
-    files.emplace_back("task1_ordinal", effects_of(task.at("ordinal")));
+    for (const char* name : {"participant_means", "cells", "by_scene", "comparisons", "omnibus", "retest"})
+      lists.emplace_back(std::string("task1_") + name, task.at(name));
+    lists.emplace_back("task1_ordinal", effects_of(task.at("ordinal")));
   }
   if (results.contains("task2") && !results.at("task2").contains("refused")) {
     const Json& task = results.at("task2");
-    for (const char* list : {"choices", "pairs", "by_scene"})
-      files.emplace_back(std::string("task2_") + list, task.at(list));
+    for (const char* name : {"choices", "pairs", "by_scene"})
+      lists.emplace_back(std::string("task2_") + name, task.at(name));
     if (task.at("bradley_terry").contains("abilities"))
-      files.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
-    files.emplace_back("task2_triads", task.at("triads").at("participants"));
+      lists.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
+    lists.emplace_back("task2_triads", task.at("triads").at("participants"));
   }
   make_folder(folder);
-  base::write_file_atomically(folder / "exclusions.csv",
-                              csv_text(results.at("exclusions"), exclusion_columns));
-  for (const auto& [name, list] : files) {
-    if (!list.empty()) base::write_file_atomically(folder / (name + ".csv"), csv_text(list));
+  write(folder / "exclusions.csv", csv_text(results.at("exclusions"), exclusion_columns));
+  for (const auto& [name, list] : lists) {
+    if (!list.empty()) write(folder / (name + ".csv"), csv_text(list));
   }
 }
 

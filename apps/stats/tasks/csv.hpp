@@ -2,6 +2,7 @@
 /// Lists of the results as CSV: the same fields under the same names, so that both agree.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ std::string csv_text(const Json& list, const std::vector<std::string>& if_empty 
 
 /// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Lists that
 /// are empty or absent make no file; exclusions.csv is always there.
-void write_csv_folder(const Json& results, const std::filesystem::path& folder);
+using WriteFile = std::function<void(const std::filesystem::path&, const std::string& bytes)>;
+void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write);
 
 }  // namespace apps

@@ -3,13 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "apps/stats/commands.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -110,13 +111,19 @@ void run(const TaskCommand& command) {
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
   ResultsRequest request{command.database, {command.task}, command.protocol, {}};
   if (!command.plan.empty()) request.plan = read_plan(command.plan);
+  // Before the data are read; without a file nothing is to be registered.
+  std::optional<study::RegisteredFiles> files;
+  if (!command.json.empty() || !command.csv.empty()) files.emplace(command.database);
+  const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
+    files->write(std::string("vip-stats ") + task_name(command.task), path, bytes);
+  };
   const Results results = study_results(request);
   if (!results.missing.empty()) {
     throw base::Error(command.database, results.missing.front().reason,
                       "collect answers, or choose another --protocol or --plan; nothing was written");
   }
-  if (!command.json.empty()) base::write_file_atomically(command.json, results.json.dump(2) + "\n");
-  if (!command.csv.empty()) write_csv_folder(results.json, command.csv);
+  if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
+  if (!command.csv.empty()) write_csv_folder(results.json, command.csv, write);
   print_results(results.json, command.task);
 }
 
@@ -131,6 +138,10 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   sub->add_option("--plan", command->plan,
                   "Analysis plan (TOML): margins, level, exclusion rules, seed; without: the defaults");
   sub->add_option("--protocol", command->protocol, "First digits of the protocol's SHA-256");
+  sub->footer(
+      "Files hold values of single participants, so they are registered in the database, which must be "
+      "writable\n"
+      "for that: when one of them withdraws, the files are deleted, to be made again.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     run(*command);

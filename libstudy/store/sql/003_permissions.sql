@@ -39,7 +39,10 @@ CREATE TABLE export (
   kind TEXT NOT NULL, -- csv, bids, psych-ds, or the command that wrote it
   path TEXT NOT NULL, -- where: absolute, without links
   host TEXT NOT NULL, -- name of the computer; empty: not known
-  utc TEXT NOT NULL -- when
+  sha256 TEXT NOT NULL, -- of a file's bytes, of the names in a folder; empty: not known, or never finished
+  utc TEXT NOT NULL, -- when
+  tackled INTEGER NOT NULL CHECK (tackled IN (0, 1)), -- 1: a withdrawal began to delete it or said that it cannot
+  UNIQUE (host, path)
 ) STRICT;
 
 CREATE TABLE export_person (
@@ -48,16 +51,17 @@ CREATE TABLE export_person (
   PRIMARY KEY (export_id, person)
 ) STRICT, WITHOUT ROWID;
 
--- What a withdrawal or a merge has still to do in files beside this one: written with its commit, deleted when done.
+-- What a withdrawal or a merge has still to do after its commit: written with it, deleted when done.
 CREATE TABLE chore (
   chore_id INTEGER PRIMARY KEY, -- order
-  kind TEXT NOT NULL CHECK (kind IN ('forget', 'rename')), -- forget: delete a person; rename: give a code instead of another
-  person TEXT NOT NULL, -- person concerned
+  kind TEXT NOT NULL CHECK (kind IN ('backups', 'personal', 'rename', 'rewrite')), -- backups, personal: delete a person there; rename: new codes in the personal file; rewrite: this file
+  batch TEXT NOT NULL, -- the commit that wrote it: renames of one are done at once, and once only
+  person TEXT NOT NULL, -- person concerned; empty: nobody
   participant TEXT NOT NULL, -- code under which files beside this one know the person
-  code TEXT NOT NULL, -- code as given at the station
   renamed TEXT -- rename: the new code
 ) STRICT;
 
 -- Earlier versions wrote exports into the log alone, without saying who was in them: all who were there.
-INSERT INTO export (kind, path, host, utc) SELECT 'unknown', detail, '', min(utc) FROM event WHERE kind = 'export' GROUP BY detail;
+INSERT INTO export (kind, path, host, sha256, utc, tackled)
+  SELECT 'unknown', detail, '', '', min(utc), 0 FROM event WHERE kind = 'export' GROUP BY detail;
 INSERT INTO export_person SELECT DISTINCT e.export_id, s.person FROM export e CROSS JOIN session s;

@@ -1,0 +1,185 @@
+#include "libstudy/store/chores.hpp"
+
+#include <algorithm>
+
+#include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/backups.hpp"
+#include "libstudy/store/export_register.hpp"
+#include "libstudy/store/personal.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using sqlite::Connection;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+namespace {
+
+/// One row; of renames, all of a batch.
+struct Chore {
+  std::vector<std::int64_t> rows;
+  std::string kind, batch, person, participant;
+  std::map<std::string, std::string> codes;  ///< new by old
+};
+
+std::vector<Chore> pending(Connection& database) {
+  std::vector<Chore> chores;
+  Statement row(database,
+                "SELECT chore_id, kind, batch, person, participant, renamed FROM chore "
+                "WHERE kind <> 'rewrite' ORDER BY chore_id");
+  while (row.step()) {
+    const std::string kind = row.text(1), batch = row.text(2);
+    const bool same =
+        kind == "rename" && !chores.empty() && chores.back().kind == kind && chores.back().batch == batch;
+    if (!same) chores.push_back({{}, kind, batch, row.text(3), row.text(4), {}});
+    chores.back().rows.push_back(row.integer(0));
+    if (kind == "rename") chores.back().codes[row.text(4)] = row.text(5);
+  }
+  return chores;
+}
+
+/// Its own bytes are left in the file where it stood, so the file is to be rewritten.
+void strike_out(Connection& database, const Chore& chore) {
+  Transaction transaction(database);
+  for (const std::int64_t row : chore.rows)
+    Statement(database, "DELETE FROM chore WHERE chore_id = ?").bind(0, row).run();
+  ChorePlan(database).rewrite();
+  transaction.commit();
+}
+
+/// Each backup by itself: one that cannot be cleaned keeps no other from it.
+bool clean_backups(const fs::path& database, const std::string& person, CleanUp& done) {
+  bool all = true;
+  for (const fs::path& backup : backups_of(database)) {
+    try {
+      if (delete_from_backup(backup, person)) done.cleaned.push_back(backup);
+    } catch (const base::Error& error) {
+      done.left.push_back("backup " + std::string(error.what()) + ", or delete it");
+      all = false;
+    }
+  }
+  return all;
+}
+
+void clean_personal(const fs::path& database, const Chore& chore, CleanUp& done) {
+  const fs::path personal = PersonalFile::beside(database);
+  std::error_code ignored;
+  if (!fs::exists(personal, ignored)) return;
+  if (chore.kind == "rename")
+    PersonalFile(database).rename(chore.batch, chore.codes);
+  else
+    PersonalFile(database).forget(chore.participant);
+  done.cleaned.push_back(personal);
+}
+
+void do_chores(Connection& database, CleanUp& done) {
+  const fs::path path = database.path();
+  bool personal_waits = false;  // its chores keep their order
+  for (const Chore& chore : pending(database)) {
+    try {
+      if (chore.kind == "backups") {
+        if (!clean_backups(path, chore.person, done)) continue;
+      } else {
+        if (personal_waits) continue;
+        clean_personal(path, chore, done);
+      }
+      strike_out(database, chore);
+    } catch (const std::exception& error) {
+      if (chore.kind != "backups") personal_waits = true;
+      done.left.emplace_back(error.what());
+    }
+  }
+}
+
+void empty_log(Connection& database) {
+  if (database.integer("PRAGMA wal_checkpoint(TRUNCATE)") == 0) return;
+  throw base::Error(database.path().string(),
+                    "its log, which holds what was deleted, cannot be emptied: another program reads it",
+                    "close that program and do this again");
+}
+
+void rewrite_file(Connection& database) {
+  if (database.integer("SELECT count(*) FROM chore WHERE kind = 'rewrite'") == 0) return;
+  empty_log(database);
+  database.execute("VACUUM");
+  empty_log(database);
+  database.execute("DELETE FROM chore WHERE kind = 'rewrite'");
+}
+
+bool is_anything_left(Connection& database) {
+  return database.integer("SELECT EXISTS (SELECT 1 FROM chore)") != 0 || holds_withdrawn(database);
+}
+
+template <class Value>
+void keep_one_of_each(std::vector<Value>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace
+
+void check_nothing_left(const fs::path& database, const std::vector<std::string>& left) {
+  if (left.empty()) return;
+  throw base::Error(database.string(),
+                    left.size() == 1 ? "one clean-up named above is left"
+                                     : std::to_string(left.size()) + " clean-ups named above are left",
+                    "mend each as it says; the next vip-study run, resume, withdraw or merge finishes them");
+}
+
+ChorePlan::ChorePlan(Connection& database)
+    : database_(database), batch_(database.text("SELECT lower(hex(randomblob(16)))")) {}
+
+void ChorePlan::forget(const std::string& person, const std::string& participant) {
+  add("backups", person, participant);
+  add("personal", person, participant);
+}
+
+void ChorePlan::rename(const std::map<std::string, Rename>& people) {
+  for (const auto& [person, codes] : people) add("rename", person, codes.before, codes.now);
+}
+
+void ChorePlan::rewrite() {
+  if (database_.integer("SELECT count(*) FROM chore WHERE kind = 'rewrite'") == 0) add("rewrite", "", "");
+}
+
+void ChorePlan::add(const char* kind, const std::string& person, const std::string& participant,
+                    const std::string& renamed) {
+  Statement insert(database_,
+                   "INSERT INTO chore (kind, batch, person, participant, renamed) VALUES (?,?,?,?,?)");
+  insert.bind(0, kind).bind(1, batch_).bind(2, person).bind(3, participant);
+  if (renamed.empty())
+    insert.bind_null(4);
+  else
+    insert.bind(4, renamed);
+  insert.run();
+}
+
+CleanUp clean_up(Connection& database) {
+  CleanUp done;
+  if (!is_anything_left(database)) return done;
+  database.execute("PRAGMA secure_delete = ON; PRAGMA temp_store = MEMORY");
+  do_chores(database, done);
+  try {
+    delete_exports_of_withdrawn(database, done);
+    rewrite_file(database);
+  } catch (const std::exception& error) {
+    done.left.emplace_back(error.what());
+  }
+  keep_one_of_each(done.cleaned);
+  keep_one_of_each(done.left);
+  return done;
+}
+
+CleanUp clean_up_all(Connection& database) {
+  CleanUp done = clean_up(database);
+  try {
+    rewrite_journal(database);
+  } catch (const std::exception& error) {
+    done.left.emplace_back(error.what());
+  }
+  return done;
+}
+
+}  // namespace study

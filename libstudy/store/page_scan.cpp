@@ -1,0 +1,346 @@
+#include "libstudy/store/page_scan.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "stats/base/error.hpp"
+
+// The format: https://www.sqlite.org/fileformat2.html
+namespace study::salvaging {
+
+namespace fs = std::filesystem;
+using sqlite::Statement;
+
+namespace {
+
+constexpr std::size_t default_page_bytes = 4096, most_payload_bytes = std::size_t{1} << 30;
+constexpr std::size_t wal_header_bytes = 32, frame_header_bytes = 24, header_bytes = 100;
+
+std::uint64_t big_endian(std::string_view bytes) {
+  std::uint64_t value = 0;
+  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
+  return value;
+}
+
+std::uint32_t u32(std::string_view bytes, std::size_t at) {
+  return at + 4 <= bytes.size() ? static_cast<std::uint32_t>(big_endian(bytes.substr(at, 4))) : 0;
+}
+
+/// Reads numbers of one to nine bytes; none: behind the end.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
+  std::size_t at() const { return at_; }
+
+  std::optional<std::uint64_t> number() {
+    std::uint64_t value = 0;
+    for (int i = 0; i < 9; ++i) {
+      if (at_ >= bytes_.size()) return {};
+      const auto byte = static_cast<unsigned char>(bytes_[at_++]);
+      if (i == 8) return value << 8 | byte;
+      value = value << 7 | (byte & 0x7f);
+      if (byte < 0x80) return value;
+    }
+    return {};
+  }
+
+  std::optional<std::string_view> take(std::size_t count) {
+    if (count > bytes_.size() || at_ > bytes_.size() - count) return {};
+    at_ += count;
+    return bytes_.substr(at_ - count, count);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_;
+};
+
+class File {
+ public:
+  explicit File(const fs::path& path)
+      : path_(path), fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    if (fd_ < 0 && errno != ENOENT) fail();
+    const off_t end = fd_ < 0 ? 0 : ::lseek(fd_, 0, SEEK_END);
+    size = end > 0 ? static_cast<std::size_t>(end) : 0;
+  }
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// Shorter at the end. A sector that the disk cannot read is as good as zeros.
+  std::string read(std::size_t at, std::size_t count) const {
+    if (at >= size) return {};
+    std::string bytes(std::min(count, size - at), '\0');
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t n = ::pread(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0 && errno != EIO) fail();
+      if (n <= 0) break;
+      done += static_cast<std::size_t>(n);
+    }
+    return bytes;
+  }
+
+  std::size_t size = 0;
+
+ private:
+  [[noreturn]] void fail() const {
+    throw base::Error(path_.string(), std::string("cannot be read: ") + std::strerror(errno),
+                      "check the path and its permissions");
+  }
+  fs::path path_;
+  int fd_;
+};
+
+std::optional<std::size_t> page_size(std::uint64_t bytes) {
+  if (bytes == 1) return 65536;
+  if (bytes < 512 || bytes > 65536 || !std::has_single_bit(bytes)) return {};
+  return bytes;
+}
+
+/// Which page stands where in a log, as of its last commit.
+class Log {
+ public:
+  explicit Log(const fs::path& path) : file_(path) {
+    const std::string head = file_.read(0, wal_header_bytes);
+    if (head.size() < wal_header_bytes || (u32(head, 0) & ~1U) != 0x377f0682) return;
+    const auto bytes = page_size(u32(head, 8));
+    if (!bytes) return;
+    page_bytes = *bytes;
+    std::uint32_t first = 0, second = 0;
+    const bool big = (u32(head, 0) & 1U) != 0;
+    add(first, second, std::string_view(head).substr(0, 24), big);
+    std::map<std::uint32_t, std::size_t> open;
+    for (std::size_t at = wal_header_bytes; at + frame_header_bytes + page_bytes <= file_.size;
+         at += frame_header_bytes + page_bytes) {
+      const std::string frame = file_.read(at, frame_header_bytes + page_bytes);
+      if (frame.compare(8, 8, head, 16, 8) != 0) return;  // of an earlier round
+      add(first, second, std::string_view(frame).substr(0, 8), big);
+      add(first, second, std::string_view(frame).substr(frame_header_bytes), big);
+      if (u32(frame, 16) != first || u32(frame, 20) != second) return;
+      open[u32(frame, 0)] = at + frame_header_bytes;
+      if (u32(frame, 4) == 0) continue;
+      for (const auto& [page, place] : open) pages[page] = place;
+      open.clear();
+      page_count = u32(frame, 4);
+    }
+  }
+
+  std::string read(std::size_t at) const { return file_.read(at, page_bytes); }
+
+  std::size_t page_bytes = 0, page_count = 0;
+  std::map<std::uint32_t, std::size_t> pages;
+
+ private:
+  static void add(std::uint32_t& first, std::uint32_t& second, std::string_view bytes, bool big) {
+    const auto word = [&](std::size_t at) {
+      const std::uint32_t value = u32(bytes, at);
+      return big ? value : __builtin_bswap32(value);
+    };
+    for (std::size_t at = 0; at + 8 <= bytes.size(); at += 8) {
+      first += word(at) + second;
+      second += word(at + 4) + first;
+    }
+  }
+  File file_;
+};
+
+/// The pages of a database, those in its log in place of the older ones.
+class Pages {
+ public:
+  explicit Pages(const fs::path& path) : file_(path), log_(path.string() + "-wal") {
+    const std::string head = first_bytes();
+    const auto told =
+        head.starts_with("SQLite format 3") ? page_size(big_endian(head.substr(16, 2))) : std::nullopt;
+    if (told && head.size() > 20) reserved_ = static_cast<unsigned char>(head[20]);
+    page_bytes_ = log_.page_bytes ? log_.page_bytes : told.value_or(default_page_bytes);
+    count_ = std::max((file_.size + page_bytes_ - 1) / page_bytes_, log_.page_count);
+    if (told) find_free(u32(head, 32));
+  }
+
+  std::size_t count() const { return count_; }
+  std::size_t usable() const { return page_bytes_ - reserved_; }
+  bool is_free(std::size_t page) const { return free_.contains(page); }
+  /// Numbers count from 1.
+  std::string read(std::size_t page) const {
+    const auto logged = log_.pages.find(static_cast<std::uint32_t>(page));
+    return logged != log_.pages.end() ? log_.read(logged->second)
+                                      : file_.read((page - 1) * page_bytes_, page_bytes_);
+  }
+
+ private:
+  std::string first_bytes() const {
+    const auto logged = log_.pages.find(1);
+    return logged != log_.pages.end() ? log_.read(logged->second).substr(0, header_bytes)
+                                      : file_.read(0, header_bytes);
+  }
+
+  void find_free(std::size_t trunk) {
+    while (trunk > 1 && trunk <= count_ && free_.insert(trunk).second) {
+      const std::string page = read(trunk);
+      const std::size_t leaves = std::min<std::size_t>(u32(page, 4), page.size() / 4);
+      for (std::size_t i = 0; i < leaves; ++i) free_.insert(u32(page, 8 + 4 * i));
+      trunk = u32(page, 0);
+    }
+  }
+
+  File file_;
+  Log log_;
+  std::size_t page_bytes_ = default_page_bytes, count_ = 0, reserved_ = 0;
+  std::set<std::size_t> free_;
+};
+
+/// The payload of a cell, with what of it stands on further pages.
+std::optional<std::string> payload_at(const Pages& pages, std::string_view page, Cursor cell,
+                                      std::uint64_t size, bool table) {
+  const std::size_t usable = pages.usable();
+  const std::size_t most = table ? usable - 35 : (usable - 12) * 64 / 255 - 23;
+  const std::size_t least = (usable - 12) * 32 / 255 - 23;
+  if (size > most_payload_bytes) return {};
+  if (size <= most) {
+    const auto all = cell.take(size);
+    if (!all) return {};
+    return std::string(*all);
+  }
+  const std::size_t fits = least + (size - least) % (usable - 4);
+  const auto here = cell.take(fits <= most ? fits : least);
+  if (!here) return {};
+  std::string payload(*here);
+  std::size_t next = u32(page, cell.at());
+  for (std::size_t steps = 0; payload.size() < size; ++steps) {
+    if (next < 2 || next > pages.count() || steps > pages.count()) return {};
+    const std::string more = pages.read(next);
+    if (more.size() < usable) return {};
+    payload += more.substr(4, std::min(usable - 4, size - payload.size()));
+    next = u32(more, 0);
+  }
+  return payload;
+}
+
+std::optional<Value> value_of(std::uint64_t type, Cursor& body) {
+  constexpr std::size_t bytes_of[] = {0, 1, 2, 3, 4, 6, 8, 8, 0, 0};
+  if (type >= 12) {
+    const auto text = body.take((type - 12) / 2);
+    if (!text || type % 2 == 0) return {};  // bytes: no table of ours holds any
+    return Value(std::string(*text));
+  }
+  if (type >= 10) return {};
+  const auto bytes = body.take(bytes_of[type]);
+  if (!bytes) return {};
+  if (type == 0) return Value();
+  if (type >= 8) return Value(static_cast<std::int64_t>(type - 8));
+  const std::uint64_t bits = big_endian(*bytes);
+  if (type == 7) return Value(std::bit_cast<double>(bits));
+  const unsigned unused = static_cast<unsigned>(64 - 8 * bytes->size());
+  return Value(static_cast<std::int64_t>(bits << unused) >> unused);
+}
+
+std::optional<Values> record(std::string_view payload) {
+  Cursor head(payload);
+  const auto head_size = head.number();
+  if (!head_size || *head_size > payload.size()) return {};
+  Cursor body(payload, *head_size);
+  Values values;
+  while (head.at() < *head_size) {
+    const auto type = head.number();
+    if (!type || head.at() > *head_size) return {};
+    auto value = value_of(*type, body);
+    if (!value) return {};
+    values.push_back(std::move(*value));
+  }
+  if (body.at() != payload.size()) return {};
+  return values;
+}
+
+bool is_time(const std::string& text) { return text.size() >= 10 && text[4] == '-' && text[7] == '-'; }
+
+bool fits(const Shape::Column& column, const Value& value) {
+  if (std::holds_alternative<std::monostate>(value)) return column.may_be_null;
+  if (column.type == "TEXT") {
+    const auto* text = std::get_if<std::string>(&value);
+    return text && (!column.name.ends_with("utc") || is_time(*text));
+  }
+  const bool whole = std::holds_alternative<std::int64_t>(value);
+  return column.type == "INTEGER" ? whole : whole || std::holds_alternative<double>(value);
+}
+
+bool fits(const Shape& shape, const Values& values) {
+  if (values.size() != shape.columns.size()) return false;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    // The row number stands before the record, which has NULL in its place.
+    const bool number = static_cast<int>(i) == shape.row_number_column;
+    if (number ? !std::holds_alternative<std::monostate>(values[i]) : !fits(shape.columns[i], values[i]))
+      return false;
+  }
+  return true;
+}
+
+/// All cells of one page, if it is one that holds rows.
+void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes,
+               const std::function<void(const Shape&, Values)>& take) {
+  const std::string page = pages.read(number);
+  const std::size_t start = number == 1 ? header_bytes : 0;
+  if (page.size() < start + 8) return;
+  const int type = page[start];
+  const bool table = type == 0x0d, inner = type == 0x02;
+  if (!table && !inner && type != 0x0a) return;
+  const std::size_t cells = big_endian(std::string_view(page).substr(start + 3, 2));
+  for (std::size_t i = 0; i < cells; ++i) {
+    const std::size_t pointer = start + (inner ? 12 : 8) + 2 * i;
+    if (pointer + 2 > page.size()) return;
+    Cursor cell(page, big_endian(std::string_view(page).substr(pointer, 2)) + (inner ? 4 : 0));
+    const auto size = cell.number();
+    const auto row = table ? cell.number() : std::optional<std::uint64_t>(0);
+    if (!size || !row) continue;
+    const auto payload = payload_at(pages, page, cell, *size, table);
+    auto values = payload ? record(*payload) : std::nullopt;
+    if (!values) continue;
+    for (const Shape& shape : shapes) {
+      if (shape.row_numbers != table || !fits(shape, *values)) continue;
+      if (shape.row_number_column >= 0)
+        (*values)[static_cast<std::size_t>(shape.row_number_column)] = static_cast<std::int64_t>(*row);
+      take(shape, std::move(*values));
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Shape> shapes_of(sqlite::Connection& database) {
+  std::vector<Shape> shapes;
+  Statement table(database,
+                  "SELECT name, wr FROM pragma_table_list WHERE schema = 'main' AND type = 'table' "
+                  "AND name NOT LIKE 'sqlite_%'");
+  Statement column(database, "SELECT name, type, \"notnull\", pk FROM pragma_table_info(?)");
+  while (table.step()) {
+    Shape shape{table.text(0), {}, table.integer(1) == 0, -1};
+    for (column.bind(0, shape.table); column.step();) {
+      if (shape.row_numbers && column.integer(3) > 0 && column.text(1) == "INTEGER")
+        shape.row_number_column = static_cast<int>(shape.columns.size());
+      shape.columns.push_back({column.text(0), column.text(1), column.integer(2) == 0});
+    }
+    shapes.push_back(std::move(shape));
+  }
+  return shapes;
+}
+
+void scan_pages(const fs::path& file, const std::vector<Shape>& shapes,
+                const std::function<void(const Shape&, Values)>& take) {
+  const Pages pages(file);
+  for (std::size_t number = 1; number <= pages.count(); ++number) {
+    if (!pages.is_free(number)) scan_page(pages, number, shapes, take);
+  }
+}
+
+}  // namespace study::salvaging

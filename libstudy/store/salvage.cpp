@@ -1,0 +1,174 @@
+#include "libstudy/store/salvage.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/salvage_rows.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using salvaging::RowsByTable;
+using salvaging::Shape;
+using salvaging::Values;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+/// A folder beside the result, for its owner only, gone in the end.
+class Workplace {
+ public:
+  explicit Workplace(const fs::path& into) : path_(into.string() + ".salvage-XXXXXX") {
+    if (!::mkdtemp(path_.data())) {
+      throw base::Error(into.string(), std::string("cannot be made: ") + std::strerror(errno),
+                        "name a file in a folder that you may write to");
+    }
+  }
+  ~Workplace() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  fs::path operator/(const char* name) const { return fs::path(path_) / name; }
+
+ private:
+  std::string path_;
+};
+
+void refuse(const fs::path& into) {
+  for (const fs::path& path : {into, journal_beside(into), fs::path(into.string() + "-wal")}) {
+    std::error_code ignored;
+    if (fs::symlink_status(path, ignored).type() != fs::file_type::not_found)
+      throw base::Error(path.string(), "exists", "name a new file for --into");
+  }
+}
+
+void copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (!fs::is_regular_file(from, error)) return;
+  fs::copy_file(from, to, error);
+  if (error)
+    throw base::Error(from.string(), "cannot be copied: " + error.message(), "check the disk and its room");
+}
+
+/// A copy of the database as SQLite reads it; null: it is damaged, or none.
+std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied) {
+  for (const char* beside : {"", "-wal", "-journal"})
+    copy(database.string() + beside, copied.string() + beside);
+  try {
+    auto sound = open_database(copied, Open::Write, read_schema_steps());
+    if (Statement lost(*sound, "PRAGMA foreign_key_check"); lost.step()) return {};
+    return sound;
+  } catch (const base::Error&) {
+    return {};
+  }
+}
+
+using Take = std::function<void(const Shape&, Values)>;
+
+void read_sound(Connection& database, const std::vector<Shape>& shapes, bool large, const Take& take) {
+  for (const Shape& shape : shapes) {
+    if (salvaging::is_large(shape.table) != large) continue;
+    for (Statement row(database, "SELECT * FROM " + shape.table); row.step();) {
+      Values values(shape.columns.size());
+      for (int i = 0; i < row.columns(); ++i) {
+        auto& value = values[static_cast<std::size_t>(i)];
+        if (row.is_text(i))
+          value = row.text(i);
+        else if (row.is_real(i))
+          value = row.real(i);
+        else if (!row.is_null(i))
+          value = row.integer(i);
+      }
+      take(shape, std::move(values));
+    }
+  }
+}
+
+/// Rows of the tables that are large, or of those that are not.
+void read_rows(Connection* sound, const fs::path& database, const std::vector<Shape>& shapes, bool large,
+               const Take& take) {
+  if (sound) return read_sound(*sound, shapes, large, take);
+  salvaging::scan_pages(database, shapes, [&](const Shape& shape, Values values) {
+    if (salvaging::is_large(shape.table) == large) take(shape, std::move(values));
+  });
+}
+
+void fill(Connection& target, Connection* sound, const fs::path& database, const JournalContent& journal,
+          Salvage& told) {
+  sqlite::Transaction transaction(target);
+  const auto shapes = salvaging::shapes_of(target);
+  RowsByTable rows;
+  read_rows(sound, database, shapes, false,
+            [&](const Shape& shape, Values values) { rows[shape.table].push_back(std::move(values)); });
+  salvaging::Rebuild rebuild(target, journal, told);
+  rebuild.take(std::move(rows));
+  read_rows(sound, database, shapes, true,
+            [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
+  rebuild.sum_up();
+  Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")
+      .bind(0, base::utc_now())
+      .bind(1, std::to_string(told.answers_database) + " answers from the database, " +
+                   std::to_string(told.answers_journal) + " from its journal alone")
+      .run();
+  transaction.commit();
+}
+
+void check(Connection& made) {
+  const std::string found = made.text("PRAGMA integrity_check(1)");
+  Statement lost(made, "PRAGMA foreign_key_check");
+  if (found == "ok" && !lost.step()) return;
+  throw base::Error(made.path().string(), "did not become sound: " + found,
+                    "report this with the damaged file");
+}
+
+/// A link fails where something stands already.
+void put_in_place(const fs::path& made, const fs::path& into) {
+  if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0) return;
+  throw base::Error(into.string(), std::string("cannot be put in place: ") + std::strerror(errno),
+                    "name a new file for --into, on a disk with room");
+}
+
+}  // namespace
+
+Salvage salvage(const fs::path& database, const fs::path& into) {
+  refuse(into);
+  const JournalContent journal = read_journal(journal_beside(database));
+  const Workplace workplace(into);
+  const auto sound = open_sound(database, workplace / "copy.db");
+  Salvage told;
+  told.sound = sound != nullptr;
+  told.journal = journal.exists;
+  told.unreadable = journal.unreadable;
+  const fs::path made = workplace / "made.db";
+  {
+    const auto target = open_database(made, Open::Create, read_schema_steps());
+    fill(*target, sound.get(), database, journal, told);
+    if (told.sessions == 0 && told.withdrawn.empty()) {
+      throw base::Error(database.string(),
+                        "nothing of a study was found in it" +
+                            std::string(journal.exists ? ", nor in its journal of answers"
+                                                       : ", and there is no journal of answers beside it"),
+                        "restore a backup; " + journal_beside(database).string() +
+                            " is what a database can be made of when it is gone");
+    }
+    check(*target);
+  }
+  put_in_place(made, into);
+  const auto finished = open_database(into, Open::Write, read_schema_steps());
+  rewrite_journal(*finished);
+  return told;
+}
+
+}  // namespace study

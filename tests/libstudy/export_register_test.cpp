@@ -1,0 +1,191 @@
+/// Exports are registered with whom they hold, and go when one of those withdraws.
+#include "libstudy/store/export_register.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/export_bids.hpp"
+#include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/merge.hpp"
+#include "libstudy/store/withdraw.hpp"
+#include "stats/base/error.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace study {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::Connection;
+using sqlite::Open;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+class Exports : public ::testing::Test {
+ protected:
+  Exports() { add("P01"); }
+  void add(const std::string& code) {
+    Store(path, Open::Create).add_run(test::run_plan(test::pairs(), {code}));
+  }
+  void change(const std::string& sql) { Connection(path, Open::Write).execute(sql); }
+  std::int64_t count(const std::string& table) {
+    return Connection(path, Open::Read).integer("SELECT count(*) FROM " + table);
+  }
+
+  test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db", csv = folder / "csv";
+};
+
+TEST_F(Exports, OfEveryKindGoWithWhomTheyHold) {
+  add("P02");
+  const RegisteredFiles files(path);
+  export_csv(path, csv);
+  export_bids(path, folder / "bids");
+  export_psych_ds(path, folder / "psych");
+  files.write("vip-stats report", folder / "report.json", "{}");
+  base::write_file_atomically(folder / "other.json", "{}");
+  const Withdrawal done = withdraw(path, "P02");
+  EXPECT_THAT(done.beside.left, IsEmpty());
+  EXPECT_THAT(done.beside.cleaned,
+              ElementsAre(folder / "bids", csv, folder / "psych", folder / "report.json"));
+  for (const fs::path& gone : done.beside.cleaned) EXPECT_FALSE(fs::exists(gone));
+  EXPECT_TRUE(fs::exists(folder / "other.json"));
+  EXPECT_EQ(count("export"), 0);
+  EXPECT_EQ(count("export_person"), 0);
+  EXPECT_EQ(export_csv(path, csv).size(), 15u);  // of those who stay
+}
+
+TEST_F(Exports, FromBeforeSomebodyCameStayWhateverTheClockSays) {
+  export_csv(path, folder / "early");
+  add("P02");
+  export_csv(path, folder / "late");
+  change("UPDATE export SET utc = iif(path LIKE '%late', '1999-01-01T00:00:00Z', '2999-01-01T00:00:00Z')");
+  EXPECT_THAT(withdraw(path, "P02").beside.cleaned, ElementsAre(folder / "late"));
+  EXPECT_TRUE(fs::exists(folder / "early"));
+  EXPECT_THAT(withdraw(path, "P01").beside.cleaned, ElementsAre(folder / "early"));
+}
+
+TEST_F(Exports, OfOnePathAreOne) {
+  export_csv(path, csv);
+  fs::create_directory_symlink(folder.path(), folder / "link");
+  add("P02");
+  export_csv(path, folder / "link" / "csv");
+  EXPECT_EQ(count("export"), 1);
+  EXPECT_EQ(count("export_person"), 2);
+  export_bids(path, folder / "bids");
+  EXPECT_EQ(count("export"), 2);
+}
+
+// A kill leaves the draft, a row that was written before it, and no target.
+TEST_F(Exports, DraftsOfAKilledExportGoToo) {
+  const fs::path draft = csv.string() + ".tmp4711", old = csv.string() + ".tmp4711.old";
+  export_csv(path, csv);
+  for (const fs::path& left : {draft, old}) fs::copy(csv, left, fs::copy_options::recursive);
+  fs::create_directory(csv.string() + ".tmp_mine");
+  base::write_file_atomically(folder / "report.json.tmp0123456789abcdef", "P01");
+  RegisteredFiles(path).write("vip-stats report", folder / "report.json", "{}");
+  EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
+  for (const fs::path& gone : {csv, draft, old, folder / "report.json.tmp0123456789abcdef"})
+    EXPECT_FALSE(fs::exists(gone)) << gone;
+  EXPECT_TRUE(fs::exists(csv.string() + ".tmp_mine"));
+}
+
+TEST_F(Exports, AnExportThatNeverCameToItsPlaceIsNotAskedFor) {
+  const auto people = everybody(*open_database(path, Open::Read, read_schema_steps()));
+  { const RegisteredExport failed(path, "csv", csv, people); }
+  EXPECT_EQ(count("export"), 0);
+  export_csv(path, csv);
+  { const RegisteredExport failed(path, "csv", csv, people); }
+  EXPECT_EQ(count("export"), 1);            // the earlier one is there
+  change("UPDATE export SET sha256 = ''");  // killed before its first
+  fs::remove_all(csv);
+  EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
+  EXPECT_EQ(count("export"), 0);
+}
+
+TEST_F(Exports, WithFilesOfOthersAreNamedAndLeft) {
+  export_csv(path, csv);
+  std::ofstream(csv / "my notes.txt") << "mine";
+  const fs::path report = folder / "report.json";
+  RegisteredFiles(path).write("vip-stats report", report, "{}");
+  std::ofstream(report) << "changed";
+  EXPECT_THAT(withdraw(path, "P01").beside.left,
+              ElementsAre(HasSubstr(csv.string()), HasSubstr(report.string())));
+  EXPECT_TRUE(fs::exists(csv / "sessions.csv"));
+  EXPECT_TRUE(fs::exists(report));
+  EXPECT_EQ(Store(path, Open::Write).left_to_clean().size(), 2u);
+  fs::remove_all(csv);
+  fs::remove(report);
+  EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
+  EXPECT_EQ(count("export"), 0);
+}
+
+TEST_F(Exports, OnAnotherComputerAreNamed) {
+  export_csv(path, csv);
+  change("UPDATE export SET host = 'elsewhere'");
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("'elsewhere'")));
+  EXPECT_TRUE(fs::exists(csv));
+  EXPECT_THAT(Store(path, Open::Write).left_to_clean(), IsEmpty());  // nothing to be done here
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("'elsewhere'")));
+}
+
+TEST_F(Exports, ThatWereMovedAreNamedOnce) {
+  export_csv(path, csv);
+  fs::rename(csv, folder / "moved");
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("no longer there")));
+  EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
+}
+
+// Stopped after the mark, after the step aside, and within the removal.
+TEST_F(Exports, ADeletionThatWasCutIsFinished) {
+  for (const int step : {0, 1, 2}) {
+    const std::string code = "Q" + std::to_string(step);
+    add(code);
+    export_csv(path, csv);
+    change("UPDATE export SET tackled = 1");
+    if (step > 0) fs::rename(csv, draft_of(csv));
+    if (step > 1) fs::remove(draft_of(csv) / "sessions.csv");
+    EXPECT_THAT(withdraw(path, code).beside.left, IsEmpty()) << step;
+    EXPECT_FALSE(fs::exists(csv) || fs::exists(draft_of(csv))) << step;
+    EXPECT_EQ(count("export"), 0);
+  }
+}
+
+TEST_F(Exports, DoNotOutliveAWithdrawalWhileTheyAreWritten) {
+  const auto people = everybody(*open_database(path, Open::Read, read_schema_steps()));
+  RegisteredExport record(path, "csv", csv, people);
+  record.will_be("0");
+  withdraw(path, "P01");
+  fs::create_directory(csv);
+  EXPECT_THAT([&] { record.is_in_place(); }, ThrowsMessage<base::Error>(HasSubstr("withdrew while")));
+  EXPECT_FALSE(fs::exists(csv));
+}
+
+TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
+  export_csv(path, csv);
+  merge({path}, folder / "all.db");
+  EXPECT_THAT(withdraw(folder / "all.db", "P01").beside.cleaned, ElementsAre(csv));
+  // Elsewhere: the export of a station that merges a tombstone.
+  add("P02");
+  export_csv(path, csv);
+  EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
+}
+
+TEST_F(Exports, OfEarlierVersionsAreNamed) {
+  change(
+      "DELETE FROM export_person; DELETE FROM export;"
+      "INSERT INTO export VALUES (1, 'unknown', '" +
+      csv.string() +
+      "', '', '', 't', 0);"
+      "INSERT INTO export_person SELECT 1, person FROM session");
+  fs::create_directory(csv);
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr(csv.string())));
+}
+
+}  // namespace
+}  // namespace study
