@@ -10,6 +10,7 @@
 #include "apps/bench/commands.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timing.hpp"
+#include "apps/common/finite_water.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/settled_state.hpp"
@@ -129,6 +130,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
                         {"launches_a_frame", static_cast<double>(pass.launches) / options.frames},
                         {"ms_a_frame", pass.ms / options.frames}});
   }
+  check_finite(*fluid, options.scene);
   const auto report = fluid->report();
   const double mean =
       std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
@@ -229,8 +231,8 @@ void add_frame_command(CLI::App& app) {
       ->check(CLI::Range(0, 64));
   command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
       ->check(CLI::Range(0, 64));
-  command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; 0 = the scene's")
-      ->check(number_in(0.0, 1.0));
+  command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; the scene's when left out")
+      ->check(number_in(1e-5, 1.0));
   command->add_option("--relaxation", options->fluid.relaxation, "Constraint relaxation")
       ->check(number_in(0.0, 100.0));
   command->add_option("--tensile", options->fluid.tensile, "s_corr strength")->check(number_in(0.0, 100.0));

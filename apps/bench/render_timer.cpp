@@ -49,18 +49,6 @@ void add(std::vector<Pass>& passes, const sim::PassTime& time) {
 
 }  // namespace
 
-PictureSize parse_picture_size(const std::string& text) {
-  PictureSize size;
-  int read = 0;
-  const int values = std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &read);
-  if (values != 2 || static_cast<std::size_t>(read) != text.size() || size.width < 16 || size.height < 16 ||
-      size.width > 8192 || size.height > 8192) {
-    throw base::Error("--size " + text, "not a picture size of 16 to 8192 px a side",
-                      "write it like 1280x720");
-  }
-  return size;
-}
-
 struct RenderTimer::State {
   PictureSize size;
   sim::GlContext context;

@@ -5,19 +5,12 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "apps/common/picture_size.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/simulation.hpp"
 
 namespace apps {
-
-/// Of one view, px.
-struct PictureSize {
-  int width = 0, height = 0;
-};
-
-/// "1280x720"; 16 to 8192 px a side, otherwise a base::Error.
-PictureSize parse_picture_size(const std::string& text);
 
 /// An off-screen picture of a scene, drawn and timed. The context stays current on this thread.
 class RenderTimer {

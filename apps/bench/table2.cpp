@@ -12,6 +12,7 @@
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/timing.hpp"
+#include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/render/gl_context.hpp"
@@ -83,6 +84,7 @@ CellRun run_cell(const CellScene& scene, const sim::SimulationOptions& choice, c
     run.frame_ms.push_back(drawn - looked);
     run.seen_ms += (looked - start) / (options.frames - options.warm_up);
   }
+  check_finite(*fluid, scene.name);
   run.seen_way = fluid->report().seen.way;
   return run;
 }

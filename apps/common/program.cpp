@@ -2,14 +2,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 
+#include "apps/common/streams.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -42,36 +43,45 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
-CLI::Validator number_in(double low, double high) {
-  const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);
-  const auto check = [low, high, range](std::string& text) -> std::string {
-    double value = 0;
-    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    if (number && value >= low && value <= high) return "";
-    return "\"" + text + "\" is not a number from " + range;
-  };
-  return CLI::Validator(check, range);
+namespace {
+
+/// Runs what the command line asks for; whether all of it came to its end.
+int run_commands(CLI::App& app, int argc, char** argv) {
+  try {
+    check_arguments(argc, argv);
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const bool asks_for_command = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
+  if (!asks_for_command || !app.get_subcommands().empty()) return 0;
+  std::fprintf(stderr, "%s", app.help().c_str());
+  return 2;
 }
 
+}  // namespace
+
 int run_program(CLI::App& app, int argc, char** argv) {
+  if (!open_standard_streams()) return 1;
   wait_passively(argv);
   app.set_version_flag("--version", base::version());
   app.require_subcommand(0, 1);
-  // A file-size limit is then an error of the write, with the file's name, and not the end of the process.
+  app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
+    return for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";
+  });
+  check_numbers(app);
+  // A file-size limit or a pipe without a reader is then an error of the write, and not the end of the
+  // process.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   try {
-    app.parse(argc, argv);
-    const bool asks_for_command = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
-    if (!asks_for_command || !app.get_subcommands().empty()) return 0;
-    std::fprintf(stderr, "%s", app.help().c_str());
-    return 2;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const int status = run_commands(app, argc, argv);
+    return finish_output() ? status : std::max(status, 1);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: error: out of memory\n  mend: use a smaller --n-star or free memory\n",
                  app.get_name().c_str());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: error: %s\n", app.get_name().c_str(), error.what());
+    std::fprintf(stderr, "%s: error: %s\n", app.get_name().c_str(), for_terminal(error.what()).c_str());
   }
   return 1;
 }

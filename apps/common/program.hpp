@@ -6,15 +6,16 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
+
 namespace apps {
 
-/// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr; 2 = the
-/// command line was wrong (a missing command shows the help). Call it first in main(): unless OMP_WAIT_POLICY
-/// or GOMP_SPINCOUNT is set, it starts the program over, once, with OMP_WAIT_POLICY=passive.
+/// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr, such as
+/// output that could not be written (a reader that left a pipe is told nothing); 2 = the command line was
+/// wrong (a missing command shows the help). Call it first in main(): it opens /dev/null where a standard
+/// stream is closed, and unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, it starts the program over, once,
+/// with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
-
-/// Accepts finite numbers from low to high (CLI::Range lets NaN through).
-CLI::Validator number_in(double low, double high);
 
 /// Makes a folder and its parents unless it is there; base::Error when that fails.
 void make_folder(const std::filesystem::path& folder);

@@ -21,6 +21,7 @@
 #include "libstudy/store/ratings.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace apps {
 
@@ -145,8 +146,10 @@ void refuse_too_wide(const FitCommand& command, const PilotFit& fit) {
                     "figure were written");
 }
 
-/// The record first: a calibration that is in force is always in it.
+/// The record first: a calibration that is in force is always in it. Locked, so that of two fits neither
+/// loses the other's line, and the file in force is the record's last.
 void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
+  const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(ptpe_file(fit));
   const auto main = fit.main();
   append_calibration(command.out, text,

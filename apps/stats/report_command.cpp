@@ -123,6 +123,7 @@ void add_report_command(CLI::App& app) {
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
       ->excludes(plan);
   sub->footer(
+      "All of it is the lab's own: it is made of everybody's data, also of those who refused to share it.\n"
       "The files hold values of single participants, so they are registered in the database, which must be\n"
       "writable for that: when one of them withdraws, the files are deleted, to be made again.");
   sub->callback([command] {

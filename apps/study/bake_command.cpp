@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/picture_size.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
@@ -60,22 +62,6 @@ class PictureTaker {
   std::vector<std::uint8_t> picture_;
 };
 
-struct PictureSize {
-  int width_px = 0, height_px = 0;
-};
-PictureSize parse_size(const std::string& text) {
-  PictureSize size;
-  if (text.empty()) return size;
-  char rest = 0;
-  const int read = std::sscanf(text.c_str(), "%dx%d%c", &size.width_px, &size.height_px, &rest);
-  const auto good = [](int px) { return px >= 16 && px <= sim::max_picture_side; };
-  if (read != 2 || !good(size.width_px) || !good(size.height_px)) {
-    throw base::Error("--pictures " + text, "is not a size",
-                      "write width x height in pixels, 16 to 8192 each, such as 640x360");
-  }
-  return size;
-}
-
 void stop_if_wished(const std::string& out) {
   if (StopSignals::stop_wished()) {
     throw base::Error(out, "stopped on request; no file was written", "run the same command again");
@@ -118,12 +104,13 @@ Work prepare(const BakeCommand& command) {
   options.backend = sim::choose_backend(command.backend);
   options.frame_dt_s = command.content_step_s > 0 ? command.content_step_s : work.scene.frame_dt_s;
   sim::BakeWriter::check_target(command.out, command.force);
-  const PictureSize size = parse_size(command.pictures);
-  work.header.picture_width_px = size.width_px;
-  work.header.picture_height_px = size.height_px;
+  PictureSize size;
+  if (!command.pictures.empty()) size = parse_picture_size(command.pictures, "--pictures");
+  work.header.picture_width_px = size.width;
+  work.header.picture_height_px = size.height;
   if (work.header.has_pictures()) {
     const sim::Camera& camera = command.camera == "overview" ? work.scene.overview : work.scene.view;
-    work.pictures = std::make_unique<PictureTaker>(work.scene, camera, size.width_px, size.height_px);
+    work.pictures = std::make_unique<PictureTaker>(work.scene, camera, size.width, size.height);
   }
   std::unique_ptr<Progress> progress;
   options.settling = [&](int done, int total) {
@@ -176,6 +163,7 @@ void bake(const BakeCommand& command) {
     if (work.pictures) writer.add_picture(work.pictures->take(*work.simulation));
     progress.update(static_cast<std::size_t>(frame + 1));
   }
+  check_finite(*work.simulation, command.out);
   print_sizes(command.out, writer.finish());
 }
 

@@ -14,6 +14,7 @@ void add_run_command(CLI::App& app);
 void add_resume_command(CLI::App& app);
 void add_status_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_consent_command(CLI::App& app);
 void add_withdraw_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);

@@ -17,12 +17,30 @@ void print_files(const std::vector<study::ExportedFile>& files) {
     std::printf("%s: %lld rows\n", file.name.c_str(), static_cast<long long>(file.rows));
 }
 
+void print_people(const study::SharingCount& people, const std::string& folder) {
+  const auto number = [](std::int64_t count) { return static_cast<long long>(count); };
+  std::printf(
+      "%s: %lld people are in it; %lld left out: %lld refused that their data be shared, %lld were asked and "
+      "have not answered\n",
+      folder.c_str(), number(people.allowed + people.not_asked), number(people.refused + people.not_answered),
+      number(people.refused), number(people.not_answered));
+  if (people.not_asked > 0) {
+    std::printf("%s: %lld of those in it were never asked whether their data may be shared\n", folder.c_str(),
+                number(people.not_asked));
+  }
+}
+
+void print_public(const study::PublicExport& done, const std::string& folder) {
+  print_files(done.files);
+  print_people(done.people, folder);
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& app) {
   struct Options {
     std::string database, csv, bids, psych_ds;
-    bool words = false;
+    bool words = false, gaze = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
@@ -34,16 +52,30 @@ void add_export_command(CLI::App& app) {
   formats->require_option(1, 3);
   sub.add_flag("--words", options->words,
                "CSV: also free words of participants and the experimenter's notes");
+  sub.add_flag("--gaze", options->gaze,
+               "CSV, BIDS: also where people looked, of those who allowed that; the mouse is marked as such");
   sub.footer(
+      "BIDS and Psych-DS leave out whoever refused that data be shared; CSV is the lab's own copy and holds "
+      "everybody. \n"
       "A folder is made, or replaced when it is an earlier export. It is registered in the database, which "
       "must be\n"
       "writable for that: when one of the people in it withdraws, the folder is deleted, to be exported "
-      "again.");
+      "again.\n"
+      "CSV is the owner's alone to read (folder 0700, files 0600), since it holds all that is known of "
+      "people;\n"
+      "BIDS and Psych-DS are for others, as the umask says.\n"
+      "A text that a spreadsheet would take for a formula has an apostrophe before it (dictionary.csv says "
+      "how\n"
+      "to take it away).");
   sub.callback([options] {
     if (!options->csv.empty())
-      print_files(study::export_csv(options->database, options->csv, options->words));
-    if (!options->bids.empty()) print_files(study::export_bids(options->database, options->bids));
-    if (!options->psych_ds.empty()) print_files(study::export_psych_ds(options->database, options->psych_ds));
+      print_files(study::export_csv(options->database, options->csv, {options->words, options->gaze}));
+    if (!options->bids.empty()) {
+      print_public(study::export_bids(options->database, options->bids, options->gaze), options->bids);
+    }
+    if (!options->psych_ds.empty()) {
+      print_public(study::export_psych_ds(options->database, options->psych_ds), options->psych_ds);
+    }
   });
 }
 

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   apps::add_resume_command(app);
   apps::add_status_command(app);
   apps::add_export_command(app);
+  apps::add_consent_command(app);
   apps::add_withdraw_command(app);
   apps::add_merge_command(app);
   apps::add_salvage_command(app);

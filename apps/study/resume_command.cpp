@@ -16,7 +16,8 @@ namespace {
 /// A protocol that an earlier version wrote may be of a format that is no longer read.
 study::Protocol read_again(const study::OpenRun& run, const std::string& place) {
   try {
-    return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name);
+    return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name,
+                                 study::ProtocolUse::Stored);
   } catch (const base::Error& error) {
     const std::string reason = error.what();
     throw base::Error(place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),

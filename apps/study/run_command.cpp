@@ -1,9 +1,12 @@
 /// vip-study run: plan sessions, write the plan, play them.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "apps/common/option_checks.hpp"
+#include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/session_player.hpp"
@@ -53,14 +56,13 @@ void choose_defaults(RunOptions& run) {
 
 /// Without a size a window fills the monitor.
 void read_size(const std::string& text, RunOptions& run) {
-  char rest = 0;
   if (text.empty()) {
     if (run.display == "window") run.width_px = run.height_px = 0;
     return;
   }
-  if (std::sscanf(text.c_str(), "%dx%d%c", &run.width_px, &run.height_px, &rest) != 2) {
-    throw base::Error("--size " + text, "is not a size", "write width x height in pixels, such as 640x360");
-  }
+  const PictureSize size = parse_picture_size(text);
+  run.width_px = size.width;
+  run.height_px = size.height;
 }
 
 study::Protocol read_checked_protocol(const RunCommand& command) {
@@ -110,6 +112,12 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
+bool asks_gaze(const study::Protocol& protocol) {
+  const auto all = study::all_questions(protocol);
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto& entry) { return entry.second->id == study::gaze_question; });
+}
+
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   choose_defaults(command.run);
@@ -126,6 +134,10 @@ void run(RunCommand& command) {
   if (!setup.stimuli->departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
                  setup.stimuli->departure().c_str());
+  }
+  if (setup.gaze && !asks_gaze(protocol)) {
+    std::fprintf(stderr, "%s: does not ask %s; where the mouse is will not be recorded\n",
+                 command.protocol.c_str(), study::gaze_question);
   }
 
   const StopSignals signals;
@@ -175,12 +187,13 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--display", command->run.display,
                  "Where frames go: a window (a person's), drawn without a window, or nowhere (an observer's)")
       ->check(CLI::IsMember({"window", "headless", "none"}));
-  sub.add_option("--gaze", command->run.gaze,
-                 "Where one is taken to look: the middle of the picture, the mouse, or not known; tracked: "
-                 "an observer's, "
-                 "kept as if a tracker had told it")
+  sub.add_option(
+         "--gaze", command->run.gaze,
+         "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "
+         "answered with yes), or not known; tracked: an observer's, as if a tracker had told it")
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
-  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions");
+  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
+      ->check(text_up_to(100));
   sub.add_option("--screen-width-mm", command->run.screen_width_mm,
                  "Width of the picture on the screen; gives the camera's angle");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/common/picture_size.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -17,6 +18,17 @@ nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
 std::optional<double> optional_number(const nlohmann::json& json) {
   if (json.is_null()) return {};
   return json.get<double>();
+}
+
+[[noreturn]] void unreadable(const std::string& place) {
+  throw base::Error(place, "options of its run cannot be read", "restore a backup of it");
+}
+
+/// Of a display; 0: the whole monitor.
+int side_of(const nlohmann::json& json, const std::string& place) {
+  const auto side = json.get<double>();
+  if (side != 0 && !(side >= least_picture_side && side <= most_picture_side)) unreadable(place);
+  return static_cast<int>(side);
 }
 
 }  // namespace
@@ -49,8 +61,8 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.observer = json.at("observer");
     options.clock = json.at("clock");
     options.display = json.at("display");
-    options.width_px = json.at("width_px");
-    options.height_px = json.at("height_px");
+    options.width_px = side_of(json.at("width_px"), place);
+    options.height_px = side_of(json.at("height_px"), place);
     options.monitor = json.value("monitor", 0);
     options.bake = json.at("bake");
     options.backend = json.at("backend");
@@ -59,9 +71,8 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));
     options.viewing_distance_mm = optional_number(json.at("viewing_distance_mm"));
     return options;
-  } catch (const nlohmann::json::exception& error) {
-    throw base::Error(place, std::string("options of its run cannot be read: ") + error.what(),
-                      "restore a backup of it");
+  } catch (const nlohmann::json::exception&) {
+    unreadable(place);
   }
 }
 

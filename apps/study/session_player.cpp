@@ -52,12 +52,17 @@ std::optional<stats::PtpeModel> ptpe_of(const study::OpenSession& session,
 
 StopSignals::StopSignals() {
   stop_flag = false;
-  std::signal(SIGINT, ask_to_stop);
-  std::signal(SIGTERM, ask_to_stop);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    struct sigaction before {};
+    ::sigaction(signal, nullptr, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;
+    before_.emplace_back(signal, before);
+    std::signal(signal, ask_to_stop);
+  }
 }
 
 StopSignals::~StopSignals() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  for (const auto& [signal, before] : before_) ::sigaction(signal, &before, nullptr);
 }
 
 bool StopSignals::stop_wished() { return stop_flag; }
@@ -170,6 +175,7 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
+  parts.gaze = setup.gaze.get();
   for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
   Steering steering(store, run, protocol, setup.wish, options);
   try {

@@ -1,14 +1,18 @@
 #pragma once
 /// Plays what a database says is left to do; shared by run and resume.
 
+#include <csignal>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "apps/study/session_setup.hpp"
 #include "libstudy/store/store.hpp"
 
 namespace apps {
 
-/// While it lives, SIGINT and SIGTERM ask the session to stop at the next frame.
+/// While it lives, SIGINT, SIGTERM, SIGHUP (unless it was ignored, as nohup does) and SIGPIPE ask the session
+/// to stop at the next frame: a terminal that goes away ends it in order.
 class StopSignals {
  public:
   StopSignals();
@@ -16,6 +20,9 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
   static bool stop_wished();
+
+ private:
+  std::vector<std::pair<int, struct sigaction>> before_;
 };
 
 /// Tells on stderr who keeps the database locked, after a second and every ten from then on; waits until the

@@ -92,7 +92,10 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     WindowParts window = make_window_parts(options, protocol);
     setup.display = std::move(window.display);
     setup.participant = std::move(window.person);
-    if (options.gaze == "mouse") viewing.gaze = window.gaze;
+    if (options.gaze == "mouse") {
+      viewing.gaze = window.gaze;
+      setup.gaze = std::move(window.mouse);
+    }
     setup.wish = std::move(window.wish);
     setup.screen = window.screen;
   } else {

@@ -15,16 +15,24 @@ std::string state_of(const study::SessionRow& session) {
   return session.done > 0 ? "under way" : "planned";
 }
 
+/// Only what the protocol asks.
+std::string permissions_of(const study::SessionRow& session) {
+  std::string text;
+  if (session.gaze) text += *session.gaze ? ", gaze kept" : ", gaze not kept";
+  if (session.sharing) text += *session.sharing ? ", data shared" : ", data not shared";
+  return text;
+}
+
 void print_session(const study::SessionRow& session) {
   std::printf(
       "  %-12s visit %d  %3lld of %lld trials, %lld of %lld steps, %lld cut short, %lld excluded  %-12s  %s "
-      "clock, %s%s\n",
+      "clock, %s%s%s\n",
       session.participant.c_str(), session.visit, static_cast<long long>(session.answered),
       static_cast<long long>(session.trials), static_cast<long long>(session.done),
       static_cast<long long>(session.units), static_cast<long long>(session.interrupted),
       static_cast<long long>(session.excluded), state_of(session).c_str(), session.clock.c_str(),
       session.observer.empty() ? "person" : ("simulated " + session.observer).c_str(),
-      session.test_data ? ", test data" : "");
+      session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
 void status(const std::string& database) {
@@ -39,7 +47,8 @@ void status(const std::string& database) {
     }
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
-  std::printf("%lld frames recorded\n", static_cast<long long>(found.frames));
+  std::printf("%lld frames recorded, %lld samples of gaze\n", static_cast<long long>(found.frames),
+              static_cast<long long>(found.gaze));
 }
 
 }  // namespace

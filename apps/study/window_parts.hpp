@@ -8,6 +8,7 @@
 
 #include "apps/study/desk/preflight.hpp"
 #include "apps/study/run_options.hpp"
+#include "libstudy/display/gaze.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/session/session.hpp"
@@ -23,6 +24,7 @@ struct WindowParts {
   std::unique_ptr<study::Participant> person;  ///< answers where no observer was named
   /// LiveViewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
+  std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
   WindowWish wish;
   ScreenFacts screen;
 };

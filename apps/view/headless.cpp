@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
@@ -102,12 +103,12 @@ void print_render_counts(const sim::RenderCounts& c) {
 
 void run_headless(const ViewOptions& options) {
   auto context = sim::GlContext::make_headless();
-  const sim::Offscreen target(options.width_px, options.height_px);
+  const sim::Offscreen target(options.size.width, options.size.height);
   PictureFolder pictures(options);
   const PreparedFluid prepared = prepare_fluid(options);
   std::printf("OpenGL: %s\n", sim::gl_description().c_str());
   FluidPicture picture(prepared.scene);
-  const sim::View view = sim::make_view(prepared.camera, options.width_px, options.height_px);
+  const sim::View view = sim::make_view(prepared.camera, options.size.width, options.size.height);
 
   Timing timing;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
@@ -140,6 +141,7 @@ void run_headless(const ViewOptions& options) {
     if (kept) pictures.write(frame, prepared, picture, view, target);
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
+  check_finite(*prepared.fluid, options.scene);
   print_timing(timing);
   if (prepared.follows_picture) std::printf("seen   %s\n", in_words(prepared.fluid->report().seen).c_str());
   if (timing.draws) print_render_counts(picture.renderer().counts());

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
                  "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
-    apps::parse_size(size, options);
+    options.size = apps::parse_picture_size(size);
     if (options.headless) {
       apps::run_headless(options);
     } else {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/common/picture_size.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/simulation.hpp"
 
@@ -25,15 +26,12 @@ struct ViewOptions {
   std::string camera = "view";    ///< view | overview
   std::string ptpe;               ///< fitted.toml; empty = none
   std::string png_folder;         ///< empty = no pictures
-  int width_px = 1280, height_px = 720;
+  PictureSize size{1280, 720};
   int frames = 100;
   int every = 1;  ///< a picture every so many frames
   bool headless = false;
   bool explain = false;
 };
-
-/// "1280x720"; 16 to 16384 px a side, otherwise a base::Error.
-void parse_size(const std::string& text, ViewOptions& options);
 
 /// A scene with its fluid at frame 0.
 struct PreparedFluid {

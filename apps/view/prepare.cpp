@@ -12,18 +12,6 @@
 
 namespace apps {
 
-void parse_size(const std::string& text, ViewOptions& options) {
-  int width = 0, height = 0, read = 0;
-  const int values = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &read);
-  if (values != 2 || static_cast<std::size_t>(read) != text.size() || width < 16 || height < 16 ||
-      width > 16384 || height > 16384) {
-    throw base::Error("--size " + text, "not a picture size of 16 to 16384 px a side",
-                      "write it like 1280x720");
-  }
-  options.width_px = width;
-  options.height_px = height;
-}
-
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));

@@ -16,7 +16,7 @@ namespace {
 class Source {
  public:
   Source(const std::filesystem::path& path) : name_(path.string()) {
-    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd_ < 0) {
       throw base::Error(name_, std::string("cannot be read: ") + std::strerror(errno),
                         "check the path and its permissions");

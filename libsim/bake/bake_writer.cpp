@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -7,6 +6,7 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/bake/layout.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace sim {
 
@@ -17,9 +17,9 @@ constexpr int particle_zstd_level = 1;
 constexpr int picture_zstd_level = 3;
 
 struct BakeWriter::State {
-  fs::path path, temporary;
+  fs::path path;
   BakeHeader header;
-  int fd = -1;
+  std::optional<base::NewFile> file;
   std::uint64_t offset = 0;
   std::vector<bake::IndexEntry> index;
   XXH3_state_t* content = nullptr;
@@ -28,36 +28,19 @@ struct BakeWriter::State {
   Bytes chunk, previous;
   BakeSizes sizes;
 
-  ~State() {
-    XXH3_freeState(content);
-    if (fd >= 0) ::close(fd);
-    if (!temporary.empty()) ::unlink(temporary.c_str());
-  }
-
-  [[noreturn]] void fail(const std::string& step) const {
-    throw base::Error(path.string(), step + ": " + std::strerror(errno),
-                      "free space, or write to a folder that you may write to");
-  }
+  ~State() { XXH3_freeState(content); }
 
   void open(bool overwrite) {
     check_target(path, overwrite);
-    const fs::path wanted = path.string() + ".tmp" + std::to_string(::getpid());
-    fd = ::open(wanted.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) fail("cannot be created");
-    temporary = wanted;
+    file.emplace(path);
     content = XXH3_createState();
     if (!content) throw std::bad_alloc();
     XXH3_64bits_reset(content);
   }
 
   void write(ByteSpan bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) fail("cannot be written");
-      bytes = bytes.subspan(static_cast<std::size_t>(n));
-      offset += static_cast<std::uint64_t>(n);
-    }
+    file->write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    offset += bytes.size();
   }
 
   void write_header() {
@@ -96,15 +79,6 @@ struct BakeWriter::State {
     out.put(static_cast<std::uint64_t>(XXH3_64bits_digest(content)));
     out.bytes(bake::as_bytes(bake::end_magic));
     write(bytes);
-  }
-
-  void put_in_place() {
-    if (::fsync(fd) != 0) fail("cannot be written");
-    const int closing = fd;
-    fd = -1;
-    if (::close(closing) != 0) fail("cannot be written");
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be put in place");
-    temporary.clear();
   }
 };
 
@@ -171,7 +145,7 @@ BakeSizes BakeWriter::finish() {
     throw std::logic_error("BakeWriter: frames are missing");
   }
   s.write_index();
-  s.put_in_place();
+  s.file->put_in_place();
   s.sizes.file_bytes = s.offset;
   return s.sizes;
 }

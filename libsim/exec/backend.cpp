@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
@@ -51,6 +52,7 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
   if (options.backend == Backend::Cuda) return cuda::make_simulation(scene, options);
 #endif
   if (options.backend == Backend::Cuda) choose_backend("cuda");
+  check_memory(options.method, options.n_star, available_memory_bytes());
   return cpu::make_simulation(scene, options);
 }
 }  // namespace

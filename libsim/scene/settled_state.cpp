@@ -1,6 +1,8 @@
 #include "libsim/scene/settled_state.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -20,6 +22,17 @@ constexpr std::size_t digest_size = 64;
 constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_size;
 constexpr std::chrono::hours forgotten_after{30 * 24};
 static_assert(std::is_trivially_copyable_v<ParticleState> && sizeof(ParticleState) == 32);
+
+/// A hash tells of damage, not of what was kept: numbers that are none, or other particles than a fill makes,
+/// are settled anew.
+bool is_sound(const std::vector<ParticleState>& state) {
+  int id = 0;
+  return std::all_of(state.begin(), state.end(), [&](const ParticleState& p) {
+    const bool finite = std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.z_m) &&
+                        std::isfinite(p.vx_m_s) && std::isfinite(p.vy_m_s) && std::isfinite(p.vz_m_s);
+    return finite && p.id == id++ && p.level >= 0 && p.level < most_levels;
+  });
+}
 
 fs::path file_of(const fs::path& folder, const std::string& key) { return folder / (key + suffix); }
 
@@ -71,6 +84,7 @@ std::optional<std::vector<ParticleState>> read_settled(const fs::path& folder, c
     if (base::sha256_hex(body) != bytes.substr(0, digest_size)) return {};
     std::vector<ParticleState> out(body.size() / sizeof(ParticleState));
     std::memcpy(out.data(), body.data(), body.size());
+    if (!is_sound(out)) return {};
     fs::last_write_time(path, fs::file_time_type::clock::now());
     return out;
   } catch (const base::Error&) {
@@ -81,7 +95,7 @@ std::optional<std::vector<ParticleState>> read_settled(const fs::path& folder, c
 }
 
 void write_settled(const fs::path& folder, const std::string& key, const std::vector<ParticleState>& state) {
-  if (folder.empty()) return;
+  if (folder.empty() || !is_sound(state)) return;
   try {
     fs::create_directories(folder);
     const std::string_view body(reinterpret_cast<const char*>(state.data()),

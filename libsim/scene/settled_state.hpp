@@ -18,7 +18,8 @@ std::filesystem::path default_cache_folder();
 /// and the program's own bytes, so that a changed solver never reads an old state.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);
 
-/// The state kept under `key`; nothing when there is none or it is damaged (checksum), which is no error.
+/// The state kept under `key`; nothing when there is none or it is damaged (checksum, or
+/// values that are not finite), which is no error.
 std::optional<std::vector<ParticleState>> read_settled(const std::filesystem::path& folder,
                                                        const std::string& key);
 /// Keeps a state by rename and forgets those that nobody read for 30 days. A folder that cannot be written is

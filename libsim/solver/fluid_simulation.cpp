@@ -5,6 +5,7 @@
 
 #include "libsim/exec/gl_sharing.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
 #include "stats/base/error.hpp"
 
@@ -81,6 +82,8 @@ class FluidSimulation final : public Simulation {
       open(*options.start);
       if (options.start_projections > 0) prepare_start();
     } else {
+      const double edge = static_cast<double>(state_.parameters.coarse_edge) * 2 * resolution_.spacing_m;
+      check_extent(scene, options.method, options.n_star, edge);
       open(filled(scene, options, resolution_.level));
       settle();
     }
@@ -376,7 +379,12 @@ class FluidSimulation final : public Simulation {
     state_.walls = walls_of(scene_, false);
     state_.one_level = !adaptive();
     state_.lists_hold = false;
-    // What was met on the way to rest is not part of the run.
+    if (const auto lost = state_.guards.to_host()[0].not_finite; lost > 0) {
+      throw base::Error("scene " + scene_.name + ", settling",
+                        std::to_string(lost) + " times a particle was not finite",
+                        "use a longer or shorter time step, or other numbers of the solver");
+    }
+    // What else was met on the way to rest is not part of the run.
     state_.guards.zero();
   }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "libstudy/pacing/truncated_normal.hpp"
 #include "stats/base/error.hpp"
@@ -51,6 +53,17 @@ struct Problem {
   }
 };
 
+/// Where `excess` is 0. Moments that double precision cannot tell apart leave it without a change of sign.
+double root_of(const Problem& problem, const std::function<double(double)>& excess, double low, double high) {
+  try {
+    return stats::find_root(excess, low, high);
+  } catch (const std::invalid_argument&) {
+    problem.fail(
+        "no list of frame rates was found that has this mean and sd",
+        "use an sd of 0 or of at least " + shown(least_sd_fps) + ", and a mean and sd further from the cuts");
+  }
+}
+
 /// Distances y above the cut, scaled to rates low + scale y.
 std::vector<double> scaled(const Problem& problem, std::vector<double> strata, double scale) {
   for (double& y : strata) y = problem.low + scale * y;
@@ -76,7 +89,7 @@ std::vector<double> solve_open(const Problem& problem) {
                      shown(least),
                  "lower fps_min (and raise max_interval_ms), lengthen the trial, or lower the sd");
   }
-  return rates(stats::find_root(excess, bell, exponential));
+  return rates(root_of(problem, excess, bell, exponential));
 }
 
 /// The parent whose window is `width` of its standard deviations wide and whose strata have the wished mean.
@@ -96,7 +109,7 @@ std::vector<double> with_mean(const Problem& problem, double width) {
                      " frames/s) for any list of this length",
                  "widen fps_min and fps_max");
   }
-  return rates(stats::find_root(excess, left, right));
+  return rates(root_of(problem, excess, left, right));
 }
 
 /// With an upper cut: the standard deviation falls as the window grows in the parent's standard deviations.
@@ -112,7 +125,7 @@ std::vector<double> solve_capped(const Problem& problem) {
                      shown(problem.setting.sd + excess(flat)),
                  "raise fps_max, lower fps_min, or lower the sd");
   }
-  return with_mean(problem, std::exp(stats::find_root(excess, flat, narrow)));
+  return with_mean(problem, std::exp(root_of(problem, excess, flat, narrow)));
 }
 
 void check_constant(const Problem& problem) {

@@ -74,7 +74,7 @@ std::string id_of(const base::TomlTable& table, std::string_view key) {
   return id;
 }
 
-Protocol read_protocol_table(const base::TomlTable& root) {
+Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   check_format(root);
   Protocol protocol;
   protocol.name = text_of(root, "name");
@@ -87,13 +87,13 @@ Protocol read_protocol_table(const base::TomlTable& root) {
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
   protocol.content = read_content(root.table("content"));
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));
-  protocol.blocks = read_blocks(root, protocol.design, protocol.language);
+  protocol.blocks = read_blocks(root, protocol.design, protocol.language, use);
   return protocol;
 }
 
-Protocol parse_protocol(std::string_view text, const std::string& name) {
+Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use) {
   const auto root = base::parse_toml(text, name);
-  Protocol protocol = read_protocol_table(root);
+  Protocol protocol = read_protocol_table(root, use);
   root.finish();
   protocol.text = text;
   protocol.sha256 = base::sha256_hex(text);

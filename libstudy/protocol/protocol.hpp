@@ -44,9 +44,12 @@ struct Protocol {
 /// Every question of the protocol with its block's index, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
+/// Earlier versions asked gaze_question and sharing_question in any way: what they stored is still read.
+enum class ProtocolUse { New, Stored };
+
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range
 /// or two keys that contradict each other. `name` stands for the file in messages.
-Protocol parse_protocol(std::string_view text, const std::string& name);
+Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use = ProtocolUse::New);
 Protocol read_protocol(const std::filesystem::path& path);
 /// Sets the length of every trial, 0.1 to 3600 s; changes the hash and marks the data as test. Equal texts
 /// and seconds give equal hashes.

@@ -44,6 +44,11 @@ std::vector<Question> ssq_questions(const std::string& language);
 /// "fms": the Fast Motion Sickness scale, 0 (no sickness) to 20 (severe): Keshavarz and Hecht 2011.
 Question fms_question(const std::string& language, std::optional<int> stop_at);
 
+/// Questions whose answers the program obeys. They stand in a block of kind consent with the answers 0 = no
+/// and 1 = yes: may be recorded where one looks, may the data be part of public exports.
+inline constexpr const char* gaze_question = "gaze_kept";
+inline constexpr const char* sharing_question = "data_shared";
+
 /// An answer: a score on the question's scale, words, or neither when it was left empty.
 struct Answer {
   std::optional<int> score;

@@ -122,8 +122,8 @@ bool has_trials(BlockKind kind) {
   return any_of(kind, {BlockKind::Practice, BlockKind::Stimulus, BlockKind::Repeat});
 }
 
-std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design,
-                               const std::string& language) {
+std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
+                               ProtocolUse use) {
   const auto tables = root.tables("block");
   if (tables.size() > most_blocks) {
     root.fail_at("block", most_blocks, "is one more than the " + std::to_string(most_blocks) + " allowed",
@@ -137,6 +137,7 @@ std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design
     root.fail("block", "has " + std::to_string(trials) + " blocks of kind stimulus",
               "write exactly one, which shows the design");
   }
+  if (use == ProtocolUse::New) check_obeyed_questions(tables, blocks);
   join_blocks(tables, design, blocks);
   return blocks;
 }

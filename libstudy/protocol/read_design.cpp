@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/protocol/readers.hpp"
 
 namespace study {
@@ -44,10 +45,15 @@ std::vector<double> distinct_numbers(const base::TomlTable& table, std::string_v
 
 using Moments = std::pair<double, double>;  // mean, standard deviation, frames/s
 
+std::string too_small(double sd) { return "= " + shown(sd) + " is too small to be told from 0"; }
+std::string use_more() { return "use 0, or at least " + shown(least_sd_fps); }
+
 /// Every mean with every standard deviation below it.
 std::vector<Moments> read_moments(const base::TomlTable& table) {
   const auto means = distinct_numbers(table, "mean_fps", fps_range);
   const auto sds = distinct_numbers(table, "sd_fps", {0, fps_range.max});
+  for (std::size_t i = 0; i < sds.size(); ++i)
+    if (sds[i] > 0 && sds[i] < least_sd_fps) table.fail_at("sd_fps", i, too_small(sds[i]), use_more());
   std::vector<Moments> out;
   for (const double mean : means) {
     for (const double sd : sds) {
@@ -82,6 +88,8 @@ class PublishedMoments {
       check_level(row, "method", what.method, factors.methods);
       check_level(row, "n_star", what.n_star, factors.sizes);
       const Moments moments{row.number("mean_fps", fps_range), row.number("sd_fps", {0, fps_range.max})};
+      if (moments.second > 0 && moments.second < least_sd_fps)
+        row.fail("sd_fps", too_small(moments.second), use_more());
       if (moments.second >= moments.first)
         row.fail("sd_fps", "is not below mean_fps", "name a standard deviation smaller than the mean");
       if (!moments_.emplace(key_of(what), moments).second)

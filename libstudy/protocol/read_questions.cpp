@@ -149,7 +149,31 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   return question;
 }
 
+/// Why the program could not obey the answers to a question; empty: it can.
+std::string why_not_obeyed(BlockKind block, const Question& question) {
+  if (block != BlockKind::Consent) return "stands in a block of kind " + block_kind_name(block);
+  if (question.kind != AnswerKind::Choice) return "is not of kind choice";
+  if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
+    return "has other answers than 0 and 1";
+  return question.personal ? "is personal" : "";
+}
+
 }  // namespace
+
+void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    for (std::size_t q = 0; q < blocks[i].questions.size(); ++q) {
+      const Question& question = blocks[i].questions[q];
+      if (question.id != gaze_question && question.id != sharing_question) continue;
+      const std::string why = why_not_obeyed(blocks[i].kind, question);
+      if (why.empty()) continue;
+      tables[i].fail_at(
+          "question", q, "\"" + question.id + "\" " + why + ", so that its answer cannot be obeyed",
+          "ask it in a block of kind consent with kind = \"choice\" and anchors = {0 = \"no\", 1 = "
+          "\"yes\"}, without personal; or use another id");
+    }
+  }
+}
 
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language) {

@@ -22,14 +22,17 @@ std::string id_of(const base::TomlTable& table, std::string_view key);
 std::string shown(double value);
 
 /// Everything but the text itself; `root` is not finished, so that it can still tell what was asked of it.
-Protocol read_protocol_table(const base::TomlTable& root);
+Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 Design read_design(const base::TomlTable& table);
 PacingRules read_pacing(const base::TomlTable& table, const Design& design);
-std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design,
-                               const std::string& language);
+std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
+                               ProtocolUse use);
 /// What each trial of a block does.
 std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
+/// The questions that the program obeys are asked so that it can. tables: those that the blocks were read
+/// from.
+void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
 /// The questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);

@@ -50,7 +50,19 @@ const std::vector<TableText>& table_texts() {
       {"block.question", "[[block.question]]",
        "What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its "
        "block. "
-       "Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one."},
+       "Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.\n\n"
+       "Two ids are kept for questions whose answers the program obeys. They stand in a block of kind "
+       "consent, "
+       "with "
+       "`kind = \"choice\"`, the answers 0 (no) and 1 (yes) and not personal:\n\n"
+       "- `gaze_kept`: may be recorded where one looks. No row of gaze is written unless it was answered "
+       "with "
+       "1; a "
+       "protocol that does not ask records none.\n"
+       "- `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was "
+       "asked "
+       "and has not answered, is left out of them whole. Those whom no protocol asked are in them.\n\n"
+       "`vip-study consent` changes both later."},
       {"block.question.anchors", "anchors",
        "Words by score, as in `anchors = {1 = \"poor\", 7 = \"good\"}`."}};
   return texts;
@@ -181,7 +193,8 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block", "question", "tables", "", where_needed, "what is asked"},
 
       {"block.question", "id", "text", "", "",
-       "unique in the file; as the id of a block, but not fms or ssq_..."},
+       "unique in the file; as the id of a block, but not fms or ssq_...; gaze_kept and data_shared as "
+       "above"},
       {"block.question", "text", "text", "", "", "the exact wording"},
       {"block.question", "language", "text", "", "that of the file", "of the wording"},
       {"block.question", "kind", "text", "\"scale\", \"choice\", \"number\", \"text\"", "",

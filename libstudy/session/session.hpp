@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/display/gaze.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "libstudy/pacing/pacer.hpp"
@@ -37,6 +38,8 @@ struct SessionParts {
   bool virtual_clock = false;
   /// The PTPE model in force: each frame's record then holds tau (RunningTolerance).
   std::optional<stats::PtpeModel> ptpe = {};
+  /// Recorded while a stimulus is shown to who allows it. Without: nothing is measured.
+  GazeSource* gaze = nullptr;
 };
 
 /// What happened to a unit, told once it is committed. Answers themselves stay in the store.

@@ -36,6 +36,26 @@ std::vector<Question> questions_of(const Protocol& protocol, const std::vector<s
   return out;
 }
 
+/// The gaze of one presentation, where there is a source and the participant allows it: asked anew each time.
+class RecordedGaze {
+ public:
+  explicit RecordedGaze(const Running& run)
+      : source_(run.parts.gaze && run.parts.store.allows_gaze(run.session.id) ? run.parts.gaze : nullptr) {
+    if (source_) source_->start();
+  }
+  ~RecordedGaze() {
+    if (source_) source_->stop();
+  }
+  RecordedGaze(const RecordedGaze&) = delete;
+  RecordedGaze& operator=(const RecordedGaze&) = delete;
+
+  GazeOrigin origin() const { return source_ ? source_->origin() : GazeOrigin::Mouse; }
+  std::vector<GazeSample> take() { return source_ ? source_->take() : std::vector<GazeSample>(); }
+
+ private:
+  GazeSource* source_;
+};
+
 /// What a solver goes by: the moments of the schedule where they are replayed, else those of the last frames.
 class FrameTolerance {
  public:
@@ -167,11 +187,12 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
                                    const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
                                    ShownStimulus& shown) const {
   const SessionParts& parts = run_.parts;
-  FrameJournal journal(parts.store, presentation, start_ns, !parts.virtual_clock);
+  RecordedGaze gaze(run_);
+  FrameJournal journal(parts.store, presentation, start_ns, gaze.origin(), !parts.virtual_clock);
   FrameTolerance tolerance(parts.ptpe, run_.protocol.design.timing, cell.setting);
   const auto each = [&](FrameRecord frame) {
     frame.facts.tolerance = tolerance.of(frame);
-    journal.add(frame);
+    journal.add(frame, gaze.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);
     heed(run_, true);
   };
@@ -183,15 +204,16 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
             ? play_native(cell.setting.duration_s, content, stimulus, parts.display, parts.clock, each)
             : play_trial(intervals, content, stimulus, parts.display, parts.clock, late_after_ns, each);
     const TimingVerdict verdict = judge(cell, played);
-    parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(), verdict);
+    parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(gaze.take()), verdict);
     shown.realised = verdict.realised;
     shown.longest_ms = verdict.longest_ms;
     shown.play_speed = play_speed(played);
     return verdict;
   } catch (...) {
     // What cut it is the error to tell; should keeping the rest fail too, the next opening marks the cut.
+    // Gaze that came after the last frame was on what cut it.
     try {
-      parts.store.add_frames(presentation, start_ns, journal.finish());
+      parts.store.add_frames(presentation, start_ns, journal.finish({}));
       parts.store.interrupt_presentation(run_.session.id, presentation, run_.now_ns());
     } catch (const std::exception&) {
     }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "libstudy/store/bids_writer.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "stats/base/file.hpp"
@@ -12,7 +12,11 @@
 namespace study {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using bids::described;
+using bids::field;
+using bids::Json;
+using bids::Table;
+using bids::Writer;
 using sqlite::Connection;
 using sqlite::Open;
 using sqlite::Statement;
@@ -20,7 +24,6 @@ using sqlite::Statement;
 namespace {
 
 constexpr const char* description_file = "dataset_description.json";
-constexpr double ns_per_s = 1e9;
 
 /// A question as a column.
 struct Item {
@@ -28,56 +31,8 @@ struct Item {
   std::string code, wording, anchors;
 };
 
-/// A table of texts, the first line its header.
-using Table = std::vector<std::vector<std::string>>;
-
-/// A field of a TSV file, which knows no quotes.
-std::string field(std::string text) {
-  for (char& c : text) {
-    if (c == '\t' || c == '\n' || c == '\r') c = ' ';
-  }
-  return text.empty() ? "n/a" : text;
-}
-
-std::string field(const Statement& row, int column) {
-  if (row.is_null(column)) return "n/a";
-  return row.is_real(column) ? number_text(row.real(column)) : field(row.text(column));
-}
-
-class Writer {
- public:
-  explicit Writer(const ExportDraft& draft) : draft_(draft) {}
-
-  void table(const std::string& name, const Table& rows) {
-    ExportFile file(draft_, name);
-    for (const auto& row : rows) {
-      std::string line;
-      for (const std::string& value : row) line += (line.empty() ? "" : "\t") + value;
-      file.write(line + '\n');
-    }
-    file.finish();
-    files.push_back({name, static_cast<std::int64_t>(rows.size()) - 1});
-  }
-  void text(const std::string& name, const std::string& text) {
-    ExportFile file(draft_, name);
-    file.write(text);
-    file.finish();
-  }
-  void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
-
-  std::vector<ExportedFile> files;
-
- private:
-  const ExportDraft& draft_;
-};
-
-Json described(const std::string& meaning) { return {{"Description", meaning}}; }
-Json described(const std::string& meaning, const std::string& unit) {
-  return {{"Description", meaning}, {"Units", unit}};
-}
-
 /// With the words that stand at its scores.
-Json described(const Item& item) {
+Json question_column(const Item& item) {
   Json json = described(item.wording);
   std::istringstream lines(item.anchors);
   for (std::string line; std::getline(lines, line);) {
@@ -153,18 +108,13 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
   for (const auto& [name, meaning] : columns.items()) rows[0].push_back(name);
   Statement row(database, events_sql);
   row.bind(0, session);
-  std::int64_t zero = 0, end = 0;
-  for (bool first = true; row.step(); first = false) {
-    const std::int64_t start = row.integer(0);
-    if (first)
-      zero = start;
-    else if (start - zero < end)
-      zero = start - end;  // the clock of another process
-    const std::int64_t onset = start - zero;
-    end = std::max(onset, row.is_null(1) ? onset : row.integer(1) - zero);
-    std::vector<std::string> line{
-        number_text(static_cast<double>(onset) / ns_per_s),
-        row.is_null(1) ? "n/a" : number_text(static_cast<double>(end - onset) / ns_per_s)};
+  bids::SessionTime time;
+  while (row.step()) {
+    std::optional<std::int64_t> end_ns;
+    if (!row.is_null(1)) end_ns = row.integer(1);
+    const std::int64_t onset_ns = time.onset_of(row.integer(0), end_ns);
+    std::vector<std::string> line{bids::seconds(onset_ns),
+                                  end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
     for (int i = 2; i <= 20; ++i) line.push_back(field(row, i));
     const bool judged = row.integer(5) == row.integer(22);
     for (const Item& item : asked) {
@@ -182,22 +132,29 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
   const auto asked = items(database, session.id, "u.trial_id IS NOT NULL");
   Json columns = event_columns();
   for (const Item& item : asked) {
-    columns[item.code] = described(item);
+    columns[item.code] = question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }
-  const std::string sub = "sub-" + session.subject, ses = "ses-" + session.session;
-  const std::string stem =
-      sub + "/" + ses + "/beh/" + sub + "_" + ses + "_task-" + session.protocol + "_events";
+  const std::string stem = bids::stem_of(session) + "_events";
   writer.table(stem + ".tsv", event_rows(database, session.id, asked, columns));
-  Statement screen(database,
-                   "SELECT refresh_hz, screen_width_mm, viewing_distance_mm, machine, program_version "
-                   "FROM session JOIN run USING (run_id) WHERE session_id = ?");
+  Statement screen(
+      database,
+      "SELECT refresh_hz, screen_width_mm, viewing_distance_mm, machine, program_version, display "
+      "FROM session JOIN run USING (run_id) WHERE session_id = ?");
   screen.bind(0, session.id).step();
   Json presentation{{"OperatingSystem", screen.text(3)},
                     {"SoftwareName", "vip-study"},
                     {"SoftwareVersion", screen.text(4)}};
   if (!screen.is_null(0)) presentation["ScreenRefreshRate"] = screen.real(0);
   if (!screen.is_null(2)) presentation["ScreenDistance"] = screen.real(2) / 1000;
+  if (int width = 0, height = 0; std::sscanf(screen.text(5).c_str(), "window %dx%d", &width, &height) == 2) {
+    presentation["ScreenOrigin"] = {"top", "left"};
+    presentation["ScreenResolution"] = {width, height};
+    if (!screen.is_null(1)) {
+      const double width_m = screen.real(1) / 1000;
+      presentation["ScreenSize"] = {width_m, width_m * height / width};
+    }
+  }
   columns["StimulusPresentation"] = presentation;
   writer.json(stem + ".json", columns);
 }
@@ -209,7 +166,7 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
     const std::string sub = "sub-" + session.subject;
     auto [rows, fresh] = visits.try_emplace(sub);
     if (fresh) {
-      people.push_back({sub, session.participant});
+      people.push_back({sub, field(session.participant)});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
                        "test_data", "observer", "station", "gaze_source", "state"}};
     }
@@ -243,7 +200,7 @@ class Questionnaire {
   void add_page(std::vector<std::string> key, const std::vector<Item>& asked,
                 const std::vector<std::string>& answers) {
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      meaning_[asked[i].code] = described(asked[i]);
+      meaning_[asked[i].code] = question_column(asked[i]);
       const auto column = std::find(header_.begin(), header_.end(), asked[i].code);
       const auto place = static_cast<std::size_t>(column - header_.begin());
       if (column == header_.end()) header_.push_back(asked[i].code);
@@ -305,25 +262,31 @@ bool is_export(const fs::path& folder) {
 
 }  // namespace
 
-std::vector<ExportedFile> export_bids(const fs::path& path, const fs::path& folder) {
+PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze) {
   const auto database = open_database(path, Open::Read, read_schema_steps());
   database->execute("BEGIN");
-  ExportDraft draft({path, "bids", everybody(*database)}, folder, is_export);
+  const auto sessions = shared_sessions(*database);
+  const SharingCount people = count_sharing(*database);
+  ExportDraft draft({path, "bids", people_of(sessions), Readers::AsUmask}, folder, is_export);
   Writer writer(draft);
-  const auto sessions = labelled_sessions(*database);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},
                {"BIDSVersion", "1.11.0"},
                {"DatasetType", "raw"},
                {"GeneratedBy", Json::array({{{"Name", "vip-study"}, {"Version", base::version()}}})}});
-  writer.text("README.md",
-              "# Ratings of real-time fluid\n\nBehaviour only: what was shown when, how it was rated.\n");
+  writer.text(
+      "README.md",
+      std::string("# Ratings of real-time fluid\n\nBehaviour: what was shown when, how it was rated") +
+          (gaze ? ", where people looked.\n" : ".\n") + "\nIn every table, " + formula_guard_meaning + ".\n");
   write_people(*database, sessions, writer);
-  for (const LabelledSession& session : sessions) write_events(*database, session, writer);
+  for (const LabelledSession& session : sessions) {
+    write_events(*database, session, writer);
+    if (gaze) bids::write_gaze(*database, session, writer);
+  }
   write_phenotypes(*database, sessions, writer);
   database->execute("COMMIT");
   draft.put_in_place();
-  return writer.files;
+  return {std::move(writer.files), people};
 }
 
 }  // namespace study

@@ -2,7 +2,6 @@
 /// The database as a BIDS data set of behaviour.
 
 #include <filesystem>
-#include <vector>
 
 #include "libstudy/store/export_folder.hpp"
 
@@ -12,8 +11,10 @@ namespace study {
 /// sub-<code>/ses-<protocol>v<visit>/beh/..._task-<protocol>_events.tsv with a sidecar (one line for each
 /// stimulus shown, onset and duration in seconds first; the answers stand at the last stimulus that they
 /// judge), and phenotype/<block>.tsv with what was answered on pages, without free words. "n/a" = not known.
-/// Errors and folder as export_csv().
-std::vector<ExportedFile> export_bids(const std::filesystem::path& database,
-                                      const std::filesystem::path& folder);
+/// With `gaze` also where people looked: ..._recording-eye1_physio.tsv.gz of an eye tracker,
+/// ..._acq-mouse_beh.tsv of the mouse. A public export: only shared_sessions() are in it. Errors and folder
+/// as export_csv().
+PublicExport export_bids(const std::filesystem::path& database, const std::filesystem::path& folder,
+                         bool gaze = false);
 
 }  // namespace study

@@ -22,6 +22,7 @@ struct Table {
   const char* order;        // makes equal databases equal files
   const char* left = "";    // column left out
   bool free_words = false;  // written on demand alone
+  bool gaze = false;        // likewise
 };
 
 constexpr std::array tables{
@@ -35,12 +36,30 @@ constexpr std::array tables{
     Table{"trial", "trials.csv", "trial_id"},
     Table{"presentation", "presentations.csv", "presentation_id"},
     Table{"frame", "frames.csv", "presentation_id, frame_index"},
+    Table{"gaze", "gaze.csv", "presentation_id, sample_index", "", false, true},
     Table{"response", "responses.csv", "response_id", "words"},
     Table{"response", "words.csv", "response_id", "", true},
     Table{"note", "notes.csv", "note_id", "", true},
+    Table{"permission_change", "permission_changes.csv", "permission_change_id"},
     Table{"tombstone", "tombstones.csv", "participant"},
     Table{"event", "events.csv", "event_id"},
 };
+
+/// What holds for a session, of the schema's views.
+struct PermissionColumn {
+  const char *name, *expression, *meaning;
+};
+constexpr std::array permission_columns{
+    PermissionColumn{"sharing_allowed", "(SELECT granted FROM sharing h WHERE h.person = session.person)",
+                     "1: the participant may stand in public exports (BIDS, Psych-DS); 0: refused in some "
+                     "session, or asked "
+                     "and not answered; empty: never asked"},
+    PermissionColumn{
+        "gaze_allowed",
+        "(SELECT granted FROM permission p WHERE p.session_id = session.session_id AND p.what = 'gaze')",
+        "1: gaze may be recorded in this session; 0: refused, or asked and not answered; empty: not asked"}};
+bool has_permissions(const Table& table) { return std::strcmp(table.name, "session") == 0; }
+
 constexpr const char* ratings_file = "ratings.csv";
 constexpr const char* dictionary_file = "dictionary.csv";
 constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
@@ -77,21 +96,32 @@ std::string select_sql(Connection& database, const Table& table) {
   std::string list;
   for (const ColumnMeaning& column : columns_of(database, table))
     list += (list.empty() ? "" : ", ") + column.column;
+  for (const PermissionColumn& column : permission_columns) {
+    if (has_permissions(table)) list += std::string(", ") + column.expression + " AS " + column.name;
+  }
   return "SELECT " + list + " FROM " + table.name + " ORDER BY " + table.order;
 }
 
-std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, bool words) {
+bool is_written(const Table& table, const CsvChoice& choice) {
+  return (!table.free_words || choice.words) && (!table.gaze || choice.gaze);
+}
+
+std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, const CsvChoice& choice) {
   ExportFile file(draft, dictionary_file);
   file.write(dictionary_header);
-  std::int64_t rows = 0;
+  file.write("(all),(all),TEXT," + csv_field(formula_guard_meaning) + "\r\n");
+  std::int64_t rows = 1;
   const auto write = [&](const char* name, const ColumnMeaning& column) {
     file.write(std::string(name) + ',' + csv_field(column.column) + ',' + column.type + ',' +
                csv_field(column.meaning) + "\r\n");
     ++rows;
   };
   for (const Table& table : tables) {
-    if (table.free_words && !words) continue;
+    if (!is_written(table, choice)) continue;
     for (const ColumnMeaning& column : columns_of(database, table)) write(table.file, column);
+    for (const PermissionColumn& column : permission_columns) {
+      if (has_permissions(table)) write(table.file, {table.name, column.name, "INTEGER", column.meaning});
+    }
   }
   for (const RatingColumn& column : rating_columns()) write(ratings_file, meaning_of(database, column));
   file.finish();
@@ -139,18 +169,18 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
   return columns;
 }
 
-std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folder, bool words) {
+std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folder, const CsvChoice& choice) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
-  ExportDraft draft({path, "csv", everybody(*database)}, folder, is_export);
+  ExportDraft draft({path, "csv", everybody(*database), Readers::Owner}, folder, is_export);
   std::vector<ExportedFile> files;
   for (const Table& table : tables) {
-    if (table.free_words && !words) continue;
+    if (!is_written(table, choice)) continue;
     files.push_back({table.file, write_csv(*database, select_sql(*database, table), draft, table.file)});
   }
   files.push_back({ratings_file, write_csv(*database, rating_table_sql(), draft, ratings_file)});
-  files.push_back({dictionary_file, write_dictionary(*database, draft, words)});
+  files.push_back({dictionary_file, write_dictionary(*database, draft, choice)});
   write_protocols(*database, draft);
   database->execute("COMMIT");
   draft.put_in_place();

@@ -1,5 +1,6 @@
 #pragma once
-/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary.
+/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary. Texts
+/// are formula_guarded(), which the dictionary's first line explains; numbers stay numbers.
 
 #include <filesystem>
 #include <string>
@@ -10,16 +11,23 @@
 
 namespace study {
 
+/// What is written on demand alone.
+struct CsvChoice {
+  bool words = false;  ///< free words of participants and the experimenter's notes: words.csv, notes.csv
+  bool gaze = false;   ///< gaze.csv
+};
+
 /// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from
 /// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
-/// Free words of participants and the experimenter's notes (words.csv, notes.csv) only with `words`.
+/// This is the lab's own copy: it holds everybody; sessions.csv says who may stand in public exports.
 ///
+/// Folder and files are the owner's alone.
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
 /// changed, when it holds anything else, or when the database cannot be written: the folder is registered in
 /// it with whom it holds, and a withdrawal of one of them deletes it (export_register.hpp).
 std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
-                                     const std::filesystem::path& folder, bool words = false);
+                                     const std::filesystem::path& folder, const CsvChoice& choice = {});
 
 /// A column of the schema with the comment that stands beside it.
 struct ColumnMeaning {

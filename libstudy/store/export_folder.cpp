@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -39,11 +40,11 @@ void check_target(const fs::path& folder, const ExportDraft::IsExport& is_export
 }  // namespace
 
 ExportDraft::ExportDraft(const ExportSource& source, const fs::path& target, const IsExport& is_export)
-    : target_(whole_path(target)) {
+    : target_(whole_path(target)), readers_(source.readers) {
   check_target(target_, is_export);
   record_.emplace(source.database, source.kind, target_, source.people);
   path_ = draft_of(target_);
-  if (::mkdir(path_.c_str(), 0777) != 0) fail("cannot be made");
+  if (::mkdir(path_.c_str(), readers_ == Readers::Owner ? 0700 : 0777) != 0) fail("cannot be made");
 }
 
 ExportDraft::~ExportDraft() {
@@ -93,7 +94,9 @@ ExportFile::ExportFile(const ExportDraft& draft, const std::string& name)
   const fs::path path = draft.path() / name;
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
-  file_ = std::fopen(path.c_str(), "wb");
+  const mode_t rights = draft.readers() == Readers::Owner ? 0600 : 0666;
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, rights);
+  file_ = fd < 0 ? nullptr : ::fdopen(fd, "wb");
   if (!file_) fail();
 }
 
@@ -114,8 +117,23 @@ void ExportFile::fail() const {
                     "free space, or name a folder where you may write");
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+const char* const formula_guard_meaning =
+    "text that begins with = + - @ (also in full width), a tab or a line end, or with apostrophes and one of "
+    "these, has one more apostrophe before it, so that no spreadsheet takes it for a formula; take one "
+    "apostrophe away where apostrophes and one of these begin a field";
+
+std::string formula_guarded(const std::string& text) {
+  const std::size_t first = std::min(text.find_first_not_of('\''), text.size());
+  const std::string_view rest = std::string_view(text).substr(first);
+  for (const char* sign : {"=", "+", "-", "@", "\t", "\r", "\n", "\uFF1D", "\uFF0B", "\uFF0D", "\uFF20"}) {
+    if (rest.starts_with(sign)) return "'" + text;
+  }
+  return text;
+}
+
+std::string csv_field(const std::string& words) {
+  const std::string text = formula_guarded(words);
+  if (text.size() == words.size() && text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"') quoted += '"';
@@ -131,8 +149,8 @@ std::string number_text(double value) {
 
 std::string csv_value(const Statement& row, int column) {
   if (row.is_null(column)) return {};
-  if (!row.is_real(column)) return csv_field(row.text(column));
-  return number_text(row.real(column));
+  if (row.is_text(column)) return csv_field(row.text(column));
+  return row.is_real(column) ? number_text(row.real(column)) : row.text(column);
 }
 
 std::int64_t write_csv(Connection& database, const std::string& sql, const ExportDraft& draft,

@@ -8,8 +8,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "libstudy/store/export_register.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace study {
@@ -20,11 +22,21 @@ struct ExportedFile {
   std::int64_t rows = 0;
 };
 
-/// What is exported.
+/// Who may read an export: the owner alone (folder 0700, files 0600), or whoever the umask lets.
+enum class Readers { Owner, AsUmask };
+
+/// An export that others may read, and whom it leaves out.
+struct PublicExport {
+  std::vector<ExportedFile> files;
+  SharingCount people;
+};
+
+/// What is exported, and for whom.
 struct ExportSource {
   std::filesystem::path database;
   const char* kind;              ///< csv, bids, psych-ds
   std::set<std::string> people;  ///< who stands in the export (session.person)
+  Readers readers;
 };
 
 /// A folder beside the target that is gone unless put in place, so that the target never holds a part. It is
@@ -42,6 +54,7 @@ class ExportDraft {
   /// Where the export goes, as an absolute path.
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& path() const { return path_; }
+  Readers readers() const { return readers_; }
   /// Makes the draft the target; an earlier export there goes. base::Error, and the target is gone, when one
   /// of its people withdrew meanwhile.
   void put_in_place();
@@ -52,6 +65,7 @@ class ExportDraft {
   [[noreturn]] void fail(const std::string& problem);
 
   std::filesystem::path target_, path_;
+  Readers readers_;
   std::optional<RegisteredExport> record_;
 };
 
@@ -73,11 +87,17 @@ class ExportFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Quoted where RFC 4180 asks for it.
+/// Text with an apostrophe before it where a spreadsheet would take it for a formula: where it begins with
+/// = + - @ (also in full width), a tab or a line end, or with apostrophes and one of these. Whoever reads it
+/// takes one apostrophe away where apostrophes and one of these begin a field, and has what it was.
+std::string formula_guarded(const std::string& text);
+/// The same in words, for the descriptions of an export.
+extern const char* const formula_guard_meaning;
+/// A text as a field of CSV: formula_guarded(), quoted where RFC 4180 asks for it or where it was guarded.
 std::string csv_field(const std::string& text);
 /// The shortest text that reads back as the same number.
 std::string number_text(double value);
-/// A value of a row; empty for NULL.
+/// A value of a row: a text as csv_field(), a number as it is, empty for NULL.
 std::string csv_value(const sqlite::Statement& row, int column);
 /// The rows that `sql` selects, under a line with the names of its columns; returns their number.
 std::int64_t write_csv(sqlite::Connection& database, const std::string& sql, const ExportDraft& draft,

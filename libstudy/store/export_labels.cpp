@@ -14,12 +14,14 @@ const std::string& Labels::of(const std::string& text) {
   return labels_[text] = label;
 }
 
-std::vector<LabelledSession> labelled_sessions(sqlite::Connection& database) {
+std::vector<LabelledSession> shared_sessions(sqlite::Connection& database) {
   Labels people, protocols, visits;
   std::vector<LabelledSession> sessions;
-  sqlite::Statement row(database,
-                        "SELECT s.session_id, s.participant, p.name, p.sha256, s.visit FROM session s "
-                        "JOIN protocol p USING (protocol_id) ORDER BY s.participant, s.session_id");
+  sqlite::Statement row(
+      database,
+      "SELECT s.session_id, s.participant, p.name, p.sha256, s.visit, s.person FROM session s "
+      "JOIN protocol p USING (protocol_id) JOIN sharing h USING (person) "
+      "WHERE h.granted IS NOT 0 ORDER BY s.participant, s.session_id");
   std::map<std::string, std::string> name_of;  // by hash: two texts under one name are two data sets
   while (row.step()) {
     const std::string sha256 = row.text(3);
@@ -29,10 +31,16 @@ std::vector<LabelledSession> labelled_sessions(sqlite::Connection& database) {
       name_of[sha256] = fresh ? protocols.of(row.text(2)) : protocols.of(row.text(2) + sha256.substr(0, 6));
     }
     const std::string& protocol = name_of[sha256];
-    sessions.push_back({row.integer(0), row.text(1), people.of(row.text(1)),
+    sessions.push_back({row.integer(0), row.text(5), row.text(1), people.of(row.text(1)),
                         visits.of(protocol + "v" + row.text(4)), protocol});
   }
   return sessions;
+}
+
+std::set<std::string> people_of(const std::vector<LabelledSession>& sessions) {
+  std::set<std::string> people;
+  for (const LabelledSession& session : sessions) people.insert(session.person);
+  return people;
 }
 
 }  // namespace study

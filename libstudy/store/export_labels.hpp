@@ -24,11 +24,15 @@ class Labels {
 /// A session as exports name it.
 struct LabelledSession {
   std::int64_t id = 0;
+  std::string person;                      ///< as in session
   std::string participant;                 ///< code
   std::string subject, session, protocol;  ///< labels; session: protocol and visit
 };
 
-/// All sessions, by participant, then in the order of planning.
-std::vector<LabelledSession> labelled_sessions(sqlite::Connection& database);
+/// The sessions that may stand in a public export, by participant, then in the order of planning. Whoever
+/// refused that in one session, or was asked and has not answered, is left out with all of them.
+std::vector<LabelledSession> shared_sessions(sqlite::Connection& database);
+/// Whose they are: session.person.
+std::set<std::string> people_of(const std::vector<LabelledSession>& sessions);
 
 }  // namespace study

@@ -84,18 +84,21 @@ void write_description(Connection& database, const ExportDraft& draft) {
   write_text(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
-      "what each column means. Empty: not known.\n");
+      "what each column means. Empty: not known.\n\nIn every column, " +
+          std::string(formula_guard_meaning) + ".\n");
 }
 
 }  // namespace
 
-std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& folder) {
+PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   const auto database = open_database(path, Open::Read, read_schema_steps());
   database->execute("BEGIN");
-  ExportDraft draft({path, "psych-ds", everybody(*database)}, folder, is_export);
+  const auto sessions = shared_sessions(*database);
+  const SharingCount people = count_sharing(*database);
+  ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
-  for (const LabelledSession& session : labelled_sessions(*database)) {
+  for (const LabelledSession& session : sessions) {
     const std::string stem =
         "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
     const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
@@ -106,7 +109,7 @@ std::vector<ExportedFile> export_psych_ds(const fs::path& path, const fs::path& 
   write_description(*database, draft);
   database->execute("COMMIT");
   draft.put_in_place();
-  return files;
+  return {std::move(files), people};
 }
 
 }  // namespace study

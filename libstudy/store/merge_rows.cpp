@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "libstudy/store/merge_parts.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
 
 namespace study::merging {
@@ -25,17 +26,19 @@ struct Table {
 };
 
 constexpr const char* of_session = "session_id = ?1";
+constexpr const char* of_presentation =
+    "presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
+    "WHERE session_id = ?1)";
 const Table session_tables[] = {
     {"session", "session_id", of_session},
     {"trial", "trial_id", of_session},
     {"unit", "unit_id", of_session},
     {"presentation", "presentation_id", "trial_id IN (SELECT trial_id FROM trial WHERE session_id = ?1)"},
-    {"frame", "",
-     "presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
-     "WHERE session_id = ?1)"},
+    {"frame", "", of_presentation},
+    {"gaze", "", of_presentation},
     {"response", "response_id", "unit_id IN (SELECT unit_id FROM unit WHERE session_id = ?1)"},
     {"note", "note_id", of_session},
-    {"event", "event_id", of_session},
+    {"event", "event_id", "session_id = ?1 AND kind <> 'permission changed'"},
 };
 
 /// A row that points to one of another session: SQLite sees nothing wrong with it.
@@ -132,9 +135,34 @@ class Union {
     add_run(source, copy, numbers);
     for (const Table& table : session_tables)
       copy_rows(source, target_, table, copy.id, numbers, changes_to(table, copy));
+    add_permissions(copy.uid, numbers.at("session_id").at(copy.id));
   }
 
  private:
+  /// Changes of permissions in whatever copy, each once, in the order of time: the last one counts, and of
+  /// two in the same second the refusal.
+  void add_permissions(const std::string& uid, std::int64_t session) {
+    std::set<std::tuple<std::string, bool, std::string>> changes;  // when, refused, what
+    std::set<std::pair<std::string, std::string>> events;          // when, detail
+    for (const SessionCopy& copy : content_.copies) {
+      if (copy.uid != uid) continue;
+      Connection& source = *content_.sources[copy.source];
+      Statement change(source, "SELECT utc, granted, what FROM permission_change WHERE session_id = ?");
+      for (change.bind(0, copy.id); change.step();)
+        changes.emplace(change.text(0), change.integer(1) == 0, change.text(2));
+      Statement event(source, "SELECT utc, detail FROM event WHERE session_id = ? AND kind = ?");
+      for (event.bind(0, copy.id).bind(1, permission_event); event.step();)
+        events.emplace(event.text(0), event.text(1));
+    }
+    Statement change(target_,
+                     "INSERT INTO permission_change (session_id, utc, granted, what) VALUES (?,?,?,?)");
+    for (const auto& [utc, refused, what] : changes)
+      change.bind(0, session).bind(1, utc).bind(2, refused ? 0 : 1).bind(3, what).run();
+    Statement event(target_, "INSERT INTO event (session_id, utc, kind, detail) VALUES (?,?,?,?)");
+    for (const auto& [utc, detail] : events)
+      event.bind(0, session).bind(1, utc).bind(2, permission_event).bind(3, detail).run();
+  }
+
   std::map<std::string, std::string> changes_to(const Table& table, const SessionCopy& copy) const {
     if (std::string(table.name) != "session") return {};
     return {{"participant", names_.at(copy.person)}};
@@ -222,6 +250,7 @@ void write_union(Content& content, const std::vector<SessionCopy>& chosen,
   all.add_tombstones();
   all.add_common_events();
   for (const SessionCopy& copy : chosen) all.add_session(copy);
+  drop_unallowed_gaze(target);
   for (const auto& source : content.sources) add_exports(*source, target);
   transaction.commit();
 }

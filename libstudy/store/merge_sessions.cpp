@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "libstudy/store/merge_parts.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
 
 namespace study::merging {
@@ -14,18 +15,19 @@ namespace {
 
 constexpr const char* sessions_sql =
     "SELECT s.session_id, s.uid, s.person, s.code, s.station, r.uid, r.started_utc, p.sha256, s.visit, "
-    "s.test_data, (SELECT count(*) FROM event e WHERE e.session_id = s.session_id), "
+    "s.test_data, (SELECT count(*) FROM event e WHERE e.session_id = s.session_id AND e.kind <> ?1), "
     "(SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
     "WHERE t.session_id = s.session_id), "
     "(SELECT count(*) FROM presentation q JOIN trial t USING (trial_id) WHERE t.session_id = s.session_id "
     "AND q.state = 'played') "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
+/// Without changes of permissions, which go on in any copy: Union::add_permissions joins them.
 std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   Statement row(source,
                 "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
-                "WHERE session_id = ? ORDER BY event_id");
-  row.bind(0, session);
+                "WHERE session_id = ? AND kind <> ? ORDER BY event_id");
+  row.bind(0, session).bind(1, permission_event);
   std::vector<std::string> log;
   while (row.step()) log.push_back(row.text(0));
   return log;
@@ -87,7 +89,8 @@ void check_references(Connection& source) {
 void add_source(Content& content, std::unique_ptr<Connection> source) {
   check_references(*source);
   const std::size_t index = content.sources.size();
-  for (Statement row(*source, sessions_sql); row.step();) {
+  Statement row(*source, sessions_sql);
+  for (row.bind(0, permission_event); row.step();) {
     SessionCopy copy;
     copy.source = index;
     copy.id = row.integer(0);
@@ -105,8 +108,9 @@ void add_source(Content& content, std::unique_ptr<Connection> source) {
     copy.played = row.integer(12);
     content.copies.push_back(std::move(copy));
   }
-  for (Statement row(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone"); row.step();) {
-    const Tombstone found{row.text(0), row.text(1), row.text(2), row.text(3)};
+  Statement stone(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone");
+  while (stone.step()) {
+    const Tombstone found{stone.text(0), stone.text(1), stone.text(2), stone.text(3)};
     const auto key = [](const Tombstone& t) { return std::tie(t.withdrawn_utc, t.station); };
     const auto [known, fresh] = content.tombstones.try_emplace(found.person, found);
     if (!fresh && key(found) < key(known->second)) known->second = found;

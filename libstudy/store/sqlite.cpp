@@ -41,7 +41,7 @@ void check_is_file(const fs::path& path, Open how) {
     throw base::Error(path.string(), "there is no such database", "check the path of --db");
   if (fs::is_directory(found)) throw base::Error(path.string(), "is a folder, not a database", "name a file");
   if (fs::exists(found) && !fs::is_regular_file(found))
-    throw base::Error(path.string(), "is not a file", "name a file");
+    throw base::Error(path.string(), "is not a regular file", "name the file that vip-study run wrote");
 }
 
 }  // namespace
@@ -261,7 +261,9 @@ void Connection::save_as(const fs::path& path) {
   }
 }
 
-Transaction::Transaction(Connection& connection) : connection_(&connection) { connection.begin(); }
+Transaction::Transaction(Connection& connection) : connection_(&connection), turn_(connection.turn_) {
+  connection.begin();
+}
 
 Transaction::~Transaction() {
   // A full disk may already have undone it.

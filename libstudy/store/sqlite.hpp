@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,7 +47,7 @@ class LockedOut : public base::Error {
 /// What to do about a file that SQLite itself cannot make whole again.
 std::string salvage_mend(const std::filesystem::path& path);
 
-/// One connection. Not for two threads at a time.
+/// One connection. Two threads may share it where each keeps to Transactions, which take turns.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
@@ -97,7 +98,6 @@ class Connection {
   friend class Transaction;
   void protect();
   static int wait(void* connection, int tries);
-  void open(int flags);
   [[noreturn]] void fail(int code, const std::string& message, int system_error) const;
   void begin();
   void commit();
@@ -114,7 +114,8 @@ class Connection {
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;  ///< nothing more is written
+  std::optional<Lost> lost_;   ///< nothing more is written
+  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
 /// A prepared statement: bind all, step, reset. Indices count from 0.
@@ -161,7 +162,8 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-/// A transaction that takes the write lock at once and is undone unless committed.
+/// A transaction that takes the write lock at once and is undone unless committed. It waits for that of
+/// another thread on the same connection.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);
@@ -172,6 +174,7 @@ class Transaction {
 
  private:
   Connection* connection_;
+  std::lock_guard<std::recursive_mutex> turn_;
   bool open_ = true;
 };
 

@@ -21,7 +21,9 @@ constexpr const char* sessions_sql =
     "count(t.trial_id), count(t.trial_id) FILTER (WHERE t.state = 'answered'), "
     "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) "
     "WHERE v.session_id = s.session_id AND p.state = 'interrupted'), s.ended_utc IS NOT NULL, s.state, "
-    "count(u.unit_id), count(u.unit_id) FILTER (WHERE u.state = 'done'), count(t.excluded) "
+    "count(u.unit_id), count(u.unit_id) FILTER (WHERE u.state = 'done'), count(t.excluded), "
+    "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'gaze'), "
+    "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'sharing') "
     "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
@@ -51,6 +53,11 @@ std::string sorted_grades(std::string grades) {
   return out;
 }
 
+std::optional<bool> flag(const Statement& row, int column) {
+  if (row.is_null(column)) return {};
+  return row.integer(column) != 0;
+}
+
 }  // namespace
 
 StudyStatus read_status(const std::filesystem::path& path) {
@@ -66,11 +73,12 @@ StudyStatus read_status(const std::filesystem::path& path) {
     status.sessions.push_back({row.integer(0), row.text(1), static_cast<int>(row.integer(2)), row.text(3),
                                row.text(4), row.integer(5) != 0, row.integer(6), row.integer(7),
                                row.integer(8), row.integer(9) != 0, row.text(10), row.integer(11),
-                               row.integer(12), row.integer(13)});
+                               row.integer(12), row.integer(13), flag(row, 14), flag(row, 15)});
   }
   for (Statement row(*database, "SELECT participant FROM tombstone ORDER BY participant"); row.step();)
     status.withdrawn.push_back(row.text(0));
   status.frames = database->integer("SELECT count(*) FROM frame");
+  status.gaze = database->integer("SELECT count(*) FROM gaze");
   return status;
 }
 

@@ -32,9 +32,10 @@ struct SessionRow {
   std::int64_t trials = 0, answered = 0;
   std::int64_t interrupted = 0;  ///< presentations cut short
   bool ended = false;
-  std::string state;                 ///< "open", "done", "not eligible", "stopped" or "dropped out"
-  std::int64_t units = 0, done = 0;  ///< pages and trials
-  std::int64_t excluded = 0;         ///< trials
+  std::string state;                  ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::int64_t units = 0, done = 0;   ///< pages and trials
+  std::int64_t excluded = 0;          ///< trials
+  std::optional<bool> gaze, sharing;  ///< allowed; none: not asked
 };
 
 struct StudyStatus {
@@ -42,6 +43,7 @@ struct StudyStatus {
   std::vector<SessionRow> sessions;    ///< by protocol, then in the order of planning
   std::vector<std::string> withdrawn;  ///< codes of those who withdrew
   std::int64_t frames = 0;
+  std::int64_t gaze = 0;  ///< samples
 };
 StudyStatus read_status(const std::filesystem::path& database);
 

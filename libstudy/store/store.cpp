@@ -9,6 +9,7 @@
 #include "libstudy/store/names.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -44,10 +45,10 @@ std::optional<std::string> words_of(const Answer& answer) {
 }  // namespace
 
 void check_participant_code(const std::string& code) {
-  static const std::regex pattern("[A-Za-z0-9_-]{1,32}");
-  if (!std::regex_match(code, pattern)) {
-    throw base::Error("participant '" + code + "'", "is not a participant code",
-                      "use 1 to 32 letters, digits, _ or -, and never a name");
+  static const std::regex pattern("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
+  if (code.size() > 32 || !std::regex_match(code, pattern)) {
+    throw base::Error("participant '" + base::shortened(code) + "'", "is not a participant code",
+                      "use 1 to 32 letters, digits, _ or -, a letter or digit first, and never a name");
   }
 }
 
@@ -101,6 +102,8 @@ void Store::make(const std::function<void(Store&)>& change) {
   try {
     change(*this);
   } catch (const sqlite::LockedOut&) {
+    const std::lock_guard guard(copying_);
+    given_up_ = true;
     if (!copy_) copy_.reset(new Store(*this));
     change(*copy_);
     throw;
@@ -113,7 +116,7 @@ void Store::keep_file() {
 }
 
 void Store::commit(Transaction& transaction) {
-  if (copy_) {
+  if (given_up_) {
     throw sqlite::LockedOut(path_.string(), "was locked by another program; nothing more is written now",
                             "run vip-study resume --db " + path_.string());
   }
@@ -214,10 +217,11 @@ void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attemp
           "run vip-study resume, which asks what is open");
     }
   }
+  for (const KeptAnswer& kept : answers) answer_over_change(session, kept.question, now);
   const std::string where = "unit " + std::to_string(unit.plan.position);
   if (!answers.empty()) insert_event(session, {}, "answered", where, clock_ns);
   if (ending) mark_ended(session, *ending, clock_ns);
-  if (last) mark_done(session, unit.id, now, clock_ns);
+  if (last && !set_aside(unit, attempt)) mark_done(session, unit.id, now, clock_ns);
   commit(transaction);
 }
 
@@ -336,6 +340,11 @@ void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::s
 
 void Store::throw_no_trial() const {
   throw base::Error(path_.string(), "holds no such trial of this session", "name a trial of the session");
+}
+
+bool Store::set_aside(const OpenUnit& unit, int attempt) {
+  Statement row(*database_, "SELECT 1 FROM trial WHERE trial_id = ? AND set_aside >= ?");
+  return row.bind(0, unit.trial_id).bind(1, attempt).step();
 }
 
 std::int64_t Store::trial_unit(std::int64_t trial) {

@@ -2,16 +2,19 @@
 /// A study's database as the session writes it: the whole plan first, one commit for each answer.
 /// All failures are base::Error and name the file; what was committed before stays.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "libstudy/design/plan.hpp"
+#include "libstudy/display/gaze.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/sqlite.hpp"
@@ -21,7 +24,8 @@ namespace study {
 
 class AnswerJournal;
 
-/// A participant code is 1 to 32 of A-Z a-z 0-9 _ and -. base::Error otherwise.
+/// A new participant code is 1 to 32 of A-Z a-z 0-9 _ and -, and begins with a letter or digit, so that it is
+/// never taken for an option or a formula. base::Error otherwise. Earlier databases may hold others.
 void check_participant_code(const std::string& code);
 
 /// What is written of a session before its first unit.
@@ -94,7 +98,8 @@ struct KeptAnswer {
   TimedAnswer answer;
 };
 
-/// The only writer of a database: a second Store on the same file is an error while the first lives.
+/// The only writer of a database: a second Store on the same file is an error while the first lives. Every
+/// call that commits may come from any thread; they take turns.
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
@@ -110,8 +115,9 @@ class Store {
   std::vector<std::string> left_to_clean() const { return left_; }
 
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
-  /// base::Error when one of the participants has that visit under that protocol already, or when the same
-  /// name and version stand there with another text.
+  /// base::Error when one of the participants has that visit under that protocol already, or a code that
+  /// differs from another's in upper and lower case alone, or when the same name and version stand there with
+  /// another text.
   std::int64_t add_run(const RunPlan& run);
 
   /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
@@ -127,6 +133,12 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  /// Whether the participant allows that gaze is recorded in this session, as it stands now.
+  bool allows_gaze(std::int64_t session);
+  /// Commits samples of a presentation, after those that it has. base::Error, with nothing kept, unless the
+  /// participant allows it.
+  void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
+                std::span<const GazeSample> samples);
   /// Commits the rest of the frames and the verdict; no verdict is kept where nothing was scheduled
   /// (nominal mean 0).
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
@@ -134,9 +146,10 @@ class Store {
   /// Commits that a presentation was cut short; its frames stay.
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
-  /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well.
-  /// An `ending` to which the answers led is kept with them. base::Error, with nothing kept, for a question
-  /// that is personal, unknown or answered here before.
+  /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well;
+  /// not so where the trial was set aside since that showing.
+  /// An `ending` to which the answers led is kept with them. What they allow counts from then on.
+  /// base::Error, with nothing kept, for a question that is personal, unknown or answered here before.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
               bool last, std::int64_t clock_ns, const std::optional<Ending>& ending = {});
   /// Commits that a unit without answers is done.
@@ -184,6 +197,8 @@ class Store {
   void mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
   void mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason);
   void set_trial_aside(std::int64_t session, std::int64_t trial);
+  void answer_over_change(std::int64_t session, const std::string& question, const std::string& now);
+  bool set_aside(const OpenUnit& unit, int attempt);
   std::int64_t trial_unit(std::int64_t trial);
   void insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   void insert_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
@@ -197,7 +212,9 @@ class Store {
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;
-  std::unique_ptr<Store> copy_;  ///< once it is there, nothing more goes into the file
+  std::mutex copying_;                  ///< of copy_: the console writes notes from a thread of its own
+  std::unique_ptr<Store> copy_;         ///< see make()
+  std::atomic<bool> given_up_ = false;  ///< there is one: nothing more goes into the file
   std::vector<std::string> left_;
 };
 

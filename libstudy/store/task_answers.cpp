@@ -208,7 +208,8 @@ TaskStudy read_tasks(const std::filesystem::path& path) {
                 "(SELECT count(DISTINCT c.method) FROM cell c WHERE c.protocol_id = p.protocol_id) > 1 "
                 "ORDER BY p.protocol_id");
   while (row.step()) {
-    Protocol protocol = parse_protocol(row.text(2), path.string() + ", protocol " + row.text(1));
+    Protocol protocol =
+        parse_protocol(row.text(2), path.string() + ", protocol " + row.text(1), ProtocolUse::Stored);
     if (!row.is_null(3)) override_trial_seconds(protocol, row.real(3));
     TaskProtocol out = describe(protocol);
     out.sessions = Reader(*database, row.integer(0), protocol).sessions();

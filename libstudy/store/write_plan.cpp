@@ -169,6 +169,16 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
             " of this protocol already",
         "continue with vip-study resume --db " + path_.string() + ", or give other codes or another --visit");
   }
+  Statement alike(*database_,
+                  "SELECT participant FROM (SELECT participant FROM session UNION SELECT participant FROM "
+                  "tombstone) WHERE lower(participant) = lower(?1) AND participant <> ?1 AND NOT EXISTS "
+                  "(SELECT 1 FROM session WHERE participant = ?1)");
+  if (alike.bind(0, plan.participant).step()) {
+    throw base::Error(path_.string(),
+                      "participant " + plan.participant + " differs from " + alike.text(0) +
+                          " in upper and lower case alone, and people take them for one",
+                      "write " + alike.text(0) + " if that is who it is, or give another code");
+  }
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind(0, plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",

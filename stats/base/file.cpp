@@ -12,6 +12,7 @@
 #include <ctime>
 
 #include "stats/base/error.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace base {
 
@@ -29,11 +30,6 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  bool close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return ::close(fd) == 0;
-  }
 
  private:
   int fd_;
@@ -41,20 +37,11 @@ class Descriptor {
 
 std::string reason() { return std::strerror(errno); }
 
-bool write_all(int fd, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(n));
-  }
-  return true;
-}
-
 }  // namespace
 
+// Without O_NONBLOCK a pipe would be waited for.
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0)
     throw Error(path.string(), "cannot be read: " + reason(), "check the path and its permissions");
   struct stat status {};
@@ -82,16 +69,9 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
 }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
-  const fs::path temporary = path.string() + ".tmp" + std::to_string(::getpid());
-  const auto fail = [&](const std::string& step) {
-    const std::string why = reason();
-    ::unlink(temporary.c_str());
-    throw Error(path.string(), step + ": " + why, "free space, or write to a folder that you may write to");
-  };
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (file.get() < 0) fail("cannot be created");
-  if (!write_all(file.get(), bytes) || ::fsync(file.get()) != 0 || !file.close()) fail("cannot be written");
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be put in place");
+  NewFile file(path);
+  file.write(bytes);
+  file.put_in_place();
 }
 
 fs::path resource(const std::string& relative) {

@@ -11,8 +11,8 @@ namespace base {
 /// The bytes of a regular file; an error when it is missing, unreadable or larger than max_bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// Writes to a temporary neighbour, syncs it and renames it over `path`: readers see the old file or the new,
-/// never a part.
+/// Writes to a neighbour of a name of its own and puts it in place (NewFile): readers see the old file or the
+/// new, never a part. Nothing is left beside `path` when that fails.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// A file or folder that ships with the project, e.g. "shaders/splat.comp" or "data/scenes/single_dam.toml".

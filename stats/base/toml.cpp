@@ -1,13 +1,14 @@
 #include "stats/base/toml.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
+#include "stats/base/toml_parser.hpp"
+#include "stats/base/toml_text.hpp"
 
 namespace base {
 
@@ -19,6 +20,8 @@ std::string place_of(const std::string& file, const toml::source_region& region)
   if (region.begin) out << ':' << region.begin.line << ':' << region.begin.column;
   return out.str();
 }
+
+constexpr std::size_t longest_problem = 400;  // bytes: it may quote a value of any length
 
 using Asked = std::map<std::string, AskedKey, std::less<>>;
 
@@ -68,8 +71,9 @@ struct TomlTable::State {
   [[noreturn]] void fail(const toml::node* node, std::string_view key, const std::string& problem,
                          const std::string& mend) const {
     const auto& region = node ? node->source() : table->source();
-    const std::string what = key.empty() ? path : name(key);
-    throw Error(place_of(file, region), (what.empty() ? "" : "'" + what + "' ") + problem, mend);
+    const std::string what = shortened(key.empty() ? path : name(key));
+    throw Error(place_of(file, region),
+                (what.empty() ? "" : "'" + what + "' ") + shortened(problem, longest_problem), mend);
   }
 
   const toml::node* find(std::string_view key) const {
@@ -295,6 +299,7 @@ std::map<std::string, AskedKey> TomlTable::asked() const {
 void TomlTable::finish() const { state_->finish(); }
 
 TomlTable parse_toml(std::string_view text, const std::string& name) {
+  check_toml_text(text, name);
   auto state = std::make_shared<TomlTable::State>();
   try {
     state->root = std::make_shared<const toml::table>(toml::parse(text, name));
@@ -308,7 +313,7 @@ TomlTable parse_toml(std::string_view text, const std::string& name) {
 }
 
 TomlTable read_toml(const std::filesystem::path& path) {
-  return parse_toml(read_file(path, 16u << 20), path.string());
+  return parse_toml(read_file(path, most_toml_bytes), path.string());
 }
 
 std::string toml_quoted(std::string_view text) {

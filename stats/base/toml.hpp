@@ -91,7 +91,7 @@ class TomlTable {
 
 /// Parses text; `name` stands for the file in messages.
 TomlTable parse_toml(std::string_view text, const std::string& name);
-/// Reads a file of at most 16 MiB.
+/// Reads a file of at most most_toml_bytes (toml_text.hpp).
 TomlTable read_toml(const std::filesystem::path& path);
 
 /// A TOML basic string, quoted and escaped.

@@ -167,6 +167,16 @@ TEST_F(BakeE2e, InterruptLeavesNothing) {
   EXPECT_TRUE(left_nothing());
 }
 
+TEST_F(BakeE2e, AKilledBakeIsNoBakeAndTheSameCommandMakesOne) {
+  Process process(command({"--frames", "100000"}));
+  while (left_nothing()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  process.send(SIGKILL);
+  EXPECT_EQ(process.wait().signal, SIGKILL);
+  EXPECT_FALSE(std::filesystem::exists(target_));
+  EXPECT_EQ(apps::test::run_program(command({"--frames", "3"})).exit_code, 0);
+  EXPECT_EQ(sim::BakeReader(target_).header().frame_count, 3);
+}
+
 TEST_F(BakeE2e, TruncatedFileIsRefusedByName) {
   ASSERT_EQ(apps::test::run_program(command({"--frames", "3"})).exit_code, 0);
   std::filesystem::resize_file(target_, std::filesystem::file_size(target_) - 1);

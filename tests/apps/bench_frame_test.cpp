@@ -80,4 +80,12 @@ TEST_F(BenchFrameE2e, RefusesBadPictures) {
   EXPECT_FALSE(fs::exists(json()));
 }
 
+TEST_F(BenchFrameE2e, RefusesStepsAndNumbersThatBreakTheWater) {
+  for (const char* step : {"1e-300", "0", "-1", "nan", "1e300", "2"}) {
+    EXPECT_EQ(bench("--no-render --dt " + std::string(step)), 2) << text;
+    EXPECT_NE(text.find("--dt"), std::string::npos) << text;
+  }
+  EXPECT_EQ(bench("--no-render --dt 1e-5"), 0) << text;
+}
+
 }  // namespace

@@ -1,6 +1,7 @@
 /// What every program does alike: help, version, wrong command lines, the choice of a back end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/apps/study_test_support.hpp"
 
@@ -54,6 +55,137 @@ TEST(ProgramsE2e, AMissingCommandShowsTheHelpAndEndsWithTwo) {
     const Ended ended = run_program({path_of(program)});
     EXPECT_EQ(ended.exit_code, 2) << program;
     EXPECT_THAT(ended.err, HasSubstr("Usage: " + program));
+  }
+}
+
+TEST(ProgramsE2e, OutputThatDoesNotArriveIsAnError) {
+  const auto to_full = [](const std::string& line) {
+    return run_program({"/bin/sh", "-c", path_of(line) + " >/dev/full"});
+  };
+  for (const std::string& program : programs) {
+    for (const char* option : {" --help", " --version"}) {
+      const Ended ended = to_full(program + option);
+      EXPECT_EQ(ended.exit_code, 1) << program;
+      EXPECT_THAT(ended.err, AllOf(HasSubstr("standard output: cannot be written"), HasSubstr("mend: ")));
+    }
+  }
+  // More than a buffer: the write fails long before the end.
+  EXPECT_EQ(to_full("vip-study reference").exit_code, 1);
+}
+
+TEST(ProgramsE2e, AReaderThatLeftIsNoSignalAndNoWord) {
+  for (const std::string& program : programs) {
+    const Ended ended = run_program({path_of(program), "--help"}, [] {
+      int ends[2];
+      if (::pipe(ends) != 0) ::_exit(125);
+      ::close(ends[0]);
+      ::dup2(ends[1], STDOUT_FILENO);
+    });
+    EXPECT_EQ(ended.exit_code, 1) << program << " ended by signal " << ended.signal;
+    EXPECT_EQ(ended.err, "") << program;
+  }
+}
+
+TEST(ProgramsE2e, NumbersThatNoTypeHoldsAreErrors) {
+  const std::vector<Arguments> wrong{
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--seed", "99999999999999999999"},
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--max-pages", "9223372036854775808"},
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--trial-seconds", "1e999"},
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--screen-width-mm", "nan"},
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--seed", "0x10"},
+      {"vip-study", "run", "p.toml", "--db", "s.db", "--seed", "1.5"},
+      {"vip-stats", "fit-ptpe", "s.db", "--seed", "99999999999999999999"},
+      {"vip-stats", "fit-ptpe", "s.db", "--seed", "-1"},
+      {"vip-stats", "fit-ptpe", "s.db", "--level", "1e999"},
+      {"vip-stats", "fit-ptpe", "s.db", "--max-width", "1e999"},
+      {"vip-stats", "power", "p.toml", "--seed", "18446744073709551616"},
+      {"vip-stats", "preregister", "p.toml", "--out", "x", "--seed", "99999999999999999999"},
+      {"vip-bench", "frame", "s.toml", "--frames", "99999999999999999999"},
+      {"vip-view", "s.toml", "--levels", "99999999999999999999"}};
+  for (const Arguments& line : wrong) {
+    Arguments arguments = line;
+    arguments[0] = path_of(line[0]);
+    const Ended ended = run_program(arguments);
+    EXPECT_EQ(ended.exit_code, 2) << line[0] << " " << line.back() << ": " << ended.err;
+    EXPECT_THAT(ended.err,
+                AllOf(HasSubstr(line[line.size() - 2]), HasSubstr("\"" + line.back() + "\" is not a")));
+  }
+}
+
+TEST(ProgramsE2e, ZerosBeforeANumberAreNoOctal) {
+  const TemporaryFolder folder;
+  const Ended ended =
+      run_program({path_of("vip-study"), "run", base::resource("protocols/ptpe_pilot.toml"), "--db",
+                   folder / "s.db", "--observer", "constant:4", "--participants", "1", "--seed", "010"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_EQ(count_in(folder / "s.db", "SELECT seed FROM session"), 10);
+}
+
+TEST(ProgramsE2e, ClosedStreamsAreTakenByNoDataFile) {
+  const TemporaryFolder folder;
+  base::write_file_atomically(folder / "short.toml", short_protocol("5"));
+  const auto arguments =
+      run_arguments(folder / "short.toml", folder / "s.db", {"--participants", "1", "--clock", "real"});
+  Process program(arguments, [] {
+    ::close(STDIN_FILENO);
+    ::close(STDERR_FILENO);
+  });
+  ASSERT_TRUE(program.read_line());  // the database is open
+  for (const char* fd : {"0", "2"}) {
+    const auto link = "/proc/" + std::to_string(program.pid()) + "/fd/" + fd;
+    EXPECT_EQ(fs::read_symlink(link), "/dev/null") << fd;
+  }
+}
+
+/// Every program and kind of input. A pipe that nobody writes to would be waited for for ever.
+TEST(ProgramsE2e, InputsThatAreNoFilesAreRefusedAtOnce) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", out = folder / "out";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& input : {pipe, std::string("/dev/zero"), folder.path().string()}) {
+    for (const std::string& line :
+         {"vip-study check " + input, "vip-study bake " + input + " --out " + out,
+          "vip-study bake --verify " + input, "vip-study status --db " + input,
+          "vip-study resume --db " + input,
+          "vip-study run protocols/ptpe_pilot.toml --observer constant:4 --db " + input,
+          "vip-study run protocols/ptpe_pilot.toml --observer constant:4 --db " + out + " --stimulus " +
+              input,
+          "vip-study run protocols/ptpe_pilot.toml --observer constant:4 --db " + out + " --ptpe " + input,
+          "vip-study export --csv " + out + " --db " + input, "vip-study merge " + input + " --into " + out,
+          "vip-study withdraw P01 --yes --db " + input, "vip-stats fit-ptpe " + input,
+          "vip-stats report " + input + " --html " + out, "vip-stats power " + input,
+          "vip-bench frame " + input, "vip-view --headless " + input}) {
+      const Ended ended = run_shell("timeout 20 " + path_of(line));
+      EXPECT_EQ(ended.exit_code, 1) << line << "\n" << ended.out;
+      EXPECT_THAT(ended.out, AllOf(HasSubstr(input), HasSubstr("mend: "))) << line;
+    }
+  }
+}
+
+TEST(ProgramsE2e, ValuesOfAFileAreEchoedShortly) {
+  const TemporaryFolder folder;
+  const std::string protocol = folder / "long.toml";
+  base::write_file_atomically(
+      protocol,
+      replaced(short_protocol("10"), "order = ", "order = \"" + std::string(900'000, 'x') + "\" # "));
+  const Ended ended = run_program({path_of("vip-study"), "check", protocol});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_LT(ended.err.size(), 2000u);
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("xxx ... (900"), HasSubstr("is not a known choice"), HasSubstr("mend: ")));
+}
+
+TEST(ProgramsE2e, ArgumentsAreUtf8OnOneLineAndEchoedShortly) {
+  for (const std::string& program : programs) {
+    for (const char* bad : {"\xFF", "a\nb", "a\x1b[31mb", "Z\xFCrich"}) {
+      const Ended ended = run_program({path_of(program), "--station", bad});
+      EXPECT_EQ(ended.exit_code, 2) << program;
+      EXPECT_THAT(ended.err, HasSubstr("argument 2")) << program;
+      EXPECT_EQ(ended.err.find('\x1b'), std::string::npos);
+    }
+    const Ended ended = run_program({path_of(program), "--" + std::string(100'000, 'x')});
+    EXPECT_EQ(ended.exit_code, 2) << program;
+    EXPECT_LT(ended.err.size(), 2000u) << program;
   }
 }
 

@@ -242,23 +242,74 @@ TEST_F(ConsoleTest, ARunningTrialIsRepeatedOnce) {
   EXPECT_EQ(console_.wish(), study::Wish::GoOn);
 }
 
-TEST_F(ConsoleTest, TheStoreIsLeftAloneWhileATrialRuns) {
+TEST_F(ConsoleTest, WhatIsSaidToBeDoneIsOnTheDiskAlsoWhileATrialRuns) {
   console_.begins(first_trial());
+  lines();
   type("nphone rang\n");
-  console_.wish();
-  EXPECT_EQ(count("note"), 0) << "the journal of frames has the store";
-  console_.done({"P01", first_trial().plan, 1, {}});
+  EXPECT_THAT(lines(), HasSubstr("noted: phone rang"));
   EXPECT_EQ(count("note WHERE words LIKE '%phone rang'"), 1);
+  type("xwrong glasses\n");
+  EXPECT_THAT(lines(), HasSubstr("trial 1 is excluded"));
+  EXPECT_EQ(count("trial WHERE excluded = 'wrong glasses'"), 1);
+  type("m");
+  EXPECT_THAT(lines(), HasSubstr("revealed (logged)"));
+  EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 1);
+  type("rdoor slammed\n");
+  EXPECT_THAT(lines(), HasSubstr("trial 1 is shown again"));
+  EXPECT_EQ(count("event WHERE kind = 'trial set aside'"), 1);
 }
 
-TEST_F(ConsoleTest, WhatIsStillToBeWrittenIsKeptAtTheEnd) {
-  {
-    Console other(protocol_, store_, folder_.path() / "s.db");
-    other.begin(session());
-    other.begins(first_trial());
-    for (const char byte : std::string("nleft early\n")) other.key(byte);
+TEST_F(ConsoleTest, WhatCannotBeKeptIsSaidNotToBe) {
+  const auto path = folder_.path() / "full.db";
+  study::Store(path, study::sqlite::Open::Create).add_run(study::test::run_plan(protocol_, {"P01"}));
+  study::Store full(path, study::sqlite::Open::Write, 1);  // no page more than it has
+  const auto runs = full.open_runs();
+  Console console(protocol_, full, path);
+  console.begin(runs.at(0).sessions.at(0));
+  console.begins(runs.at(0).sessions.at(0).units.at(0));
+  for (int i = 0; i < 40; ++i) {
+    for (const char byte : "n" + std::string(400, 'x') + "\n") console.key(byte);
   }
-  EXPECT_EQ(count("note WHERE words LIKE '%left early'"), 1);
+  std::int64_t noted = 0, refused = 0;
+  for (const std::string& line : console.take_lines()) {
+    noted += line.find("noted: ") != std::string::npos ? 1 : 0;
+    refused += line.find("NOT KEPT: note: xxx") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_EQ(noted + refused, 40);
+  EXPECT_EQ(study::sqlite::Connection(path, study::sqlite::Open::Read).integer("SELECT count(*) FROM note"),
+            noted);
+}
+
+TEST_F(ConsoleTest, ARepeatThatComesTooLateIsShownAtTheEnd) {
+  console_.begins(first_trial());
+  const int attempt = study::test::show(store_, session(), first_trial());
+  type("rdoor slammed\n");
+  const study::KeptAnswer kept{"satisfaction", {study::test::score(4), 1.5}};
+  store_.answer(session().id, first_trial(), attempt, {&kept, 1}, true, 900);
+  EXPECT_EQ(count("unit WHERE trial_id = 1 AND state = 'done'"), 0) << "that showing was set aside";
+  console_.done({"P01", first_trial().plan, 1, {}});
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_THAT(lines(), HasSubstr("trial 1 is shown again at the end of the session"));
+  EXPECT_TRUE(console_.take_reopened());
+}
+
+TEST_F(ConsoleTest, AfterTheSessionKeysDoNothing) {
+  EXPECT_FALSE(console_.take_reopened());
+  type("ntoo late\nm");
+  EXPECT_EQ(count("note"), 0);
+  EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 0);
+}
+
+TEST_F(ConsoleTest, NotesAreWholeLettersOfUtf8) {
+  type("na\xFFz\n");
+  EXPECT_THAT(lines(), HasSubstr("not UTF-8"));
+  EXPECT_EQ(count("note"), 0);
+  std::string umlauts = "x";
+  for (int i = 0; i < 400; ++i) umlauts += "\xC3\xBC";
+  type("n" + umlauts + "\n");
+  EXPECT_THAT(lines(), HasSubstr("noted: x\xC3\xBC"));
+  EXPECT_EQ(count("note WHERE length(words) = 9 + 1 + 249"), 1);
 }
 
 TEST_F(ConsoleTest, ATrialIsExcludedWithItsReason) {

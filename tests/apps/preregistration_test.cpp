@@ -20,9 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::test::TemporaryFolder;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 report::BundleRequest both_tasks() {
@@ -184,6 +186,42 @@ TEST(Preregistration, AFolderThatIsNoBundleIsRefused) {
   EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
   base::write_file_atomically(folder / "MANIFEST.sha256", "");
   EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+}
+
+/// Whatever stands in a bundle's files, the answer is a comparison or an error with a mend.
+TEST(Preregistration, PartsThatAreNotWhatTheyShouldBeAreRefusedInWords) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const std::vector<std::string> hostile{
+      "",
+      "{",
+      "[]",
+      "null",
+      "7",
+      "{\"schema\": 7}",
+      "{\"schema\": \"vip-preregistration/1\"}",
+      "[7]",
+      "[{}]",
+      "[{\"id\": 1, \"task\": \"task1\", \"tests\": []}]",
+      "[{\"id\": \"H1\", \"task\": \"task1\", \"tests\": {}}]",
+      "[{\"id\": \"H1\", \"task\": \"task1\", \"tests\": [7]}]",
+      "[{\"id\": \"H1\", \"task\": \"task1\", \"tests\": [{\"label\": []}]}]",
+      std::string(200'000, '['),
+      "{\"schema\": \"vip-preregistration/1\", \"protocols\": 7, \"frozen_utc\": 1, \"vip_lab\": []}",
+      "{\"schema\": \"vip-preregistration/1\", \"protocols\": [7], \"frozen_utc\": \"\", \"vip_lab\": \"\"}"};
+  for (const char* name : {"about.json", "hypotheses.json"}) {
+    for (const auto& text : hostile) {
+      if (text == "[]" && std::string(name) == "hypotheses.json") continue;  // the pilot's bundle has none
+      const auto before = base::read_file(folder / ("bundle/" + std::string(name)), 1 << 20);
+      base::write_file_atomically(folder / ("bundle/" + std::string(name)), text);
+      EXPECT_THAT(
+          [&] { report::read_bundle(folder / "bundle"); },
+          ThrowsMessage<base::Error>(AllOf(HasSubstr(name), HasSubstr("mend: "), Not(HasSubstr("json.exc")))))
+          << name << " " << text.substr(0, 80);
+      base::write_file_atomically(folder / ("bundle/" + std::string(name)), before);
+    }
+  }
+  EXPECT_NO_THROW(report::read_bundle(folder / "bundle"));
 }
 
 TEST(LineDifference, FindsWhatOneOfTwoTextsHas) {

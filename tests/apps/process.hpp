@@ -50,7 +50,7 @@ class Process {
       ::kill(pid_, SIGKILL);
       ::waitpid(pid_, nullptr, 0);
     }
-    std::fclose(out_);
+    stop_reading();
     std::fclose(err_);
   }
   Process(const Process&) = delete;
@@ -59,6 +59,7 @@ class Process {
   /// The next whole line of stdout; none at its end.
   std::optional<std::string> read_line() {
     std::string line;
+    if (!out_) return {};
     for (int c = std::fgetc(out_); c != EOF; c = std::fgetc(out_)) {
       if (c == '\n') {
         seen_ += line + '\n';
@@ -68,6 +69,12 @@ class Process {
     }
     return {};
   }
+  /// Closes the reading end of its stdout.
+  void stop_reading() {
+    if (out_) std::fclose(out_);
+    out_ = nullptr;
+  }
+  pid_t pid() const { return pid_; }
   void send(int signal) { ::kill(pid_, signal); }
   /// Reads what is left and waits.
   Ended wait() {

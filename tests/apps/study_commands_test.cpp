@@ -70,6 +70,20 @@ TEST_F(StudyCommandsE2e, TheSameParticipantsAreSentToResume) {
   EXPECT_EQ(run({"--participant", "P03"}).exit_code, 0);
 }
 
+TEST_F(StudyCommandsE2e, CodesAndStationsAreWhatFilesAndPeopleCanTell) {
+  ASSERT_EQ(run({"--participant", "P01", "--station", "Labor Z\xC3\xBCrich"}).exit_code, 0);
+  for (const std::string code : {"-1-2", "--yes", "-rf", "_x"})
+    expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant=" + code}),
+                 "participant '" + code + "': is not a participant code");
+  expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "p01"}),
+               "differs from P01 in upper and lower case alone");
+  for (const std::string& station : {std::string(101, 'x'), std::string("lab\xFF"), std::string("lab\n1")}) {
+    const Ended ended = run({"--participant", "P02", "--station", station});
+    EXPECT_EQ(ended.exit_code, 2) << station;
+  }
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM session"), 1);
+}
+
 TEST_F(StudyCommandsE2e, BothTasksRunAndEachParticipantTakesAnotherSlot) {
   for (const std::string task : {"task1", "task2"}) {
     SCOPED_TRACE(task);

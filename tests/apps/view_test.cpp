@@ -105,6 +105,7 @@ TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
       {run + out + " --size 64x", "--size 64x"},
       {run + out + " --size 64x8", "--size 64x8"},
       {run + out + " --size 64x48x3", "--size 64x48x3"},
+      {run + out + " --size 8192x8192", "2.7 GB of memory"},
       {run + (folder / "a_file").string(), "a_file"},
       {run + out + " --ptpe " + (folder / "bad.toml").string(), "bad.toml"},
       {run + out + " --backend gpu", "gpu"},

@@ -7,7 +7,9 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -184,6 +186,24 @@ TEST(VipStatsE2e, KeepsEveryCalibration) {
   EXPECT_NE(refused.out.find("history.jsonl:2"), std::string::npos) << refused.out;
   EXPECT_EQ(study::test::bytes_of(toml), newest);
   EXPECT_EQ(study::test::bytes_of(history), text);
+}
+
+TEST(VipStatsE2e, FitsAtOneTimeKeepEachOthersCalibrations) {
+  const TemporaryFolder folder;
+  write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
+  const auto toml = folder / "fitted.toml";
+  std::vector<std::unique_ptr<apps::test::Process>> fits;
+  for (int i = 0; i < 8; ++i)
+    fits.push_back(std::make_unique<apps::test::Process>(std::vector<std::string>{
+        VIP_BIN_DIR "/vip-stats", "fit-ptpe", (folder / "study.db").string(), "--resamples", "100", "--force",
+        "--level", "4." + std::to_string(i), "--out", toml.string()}));
+  for (auto& fit : fits) EXPECT_EQ(fit->wait().exit_code, 0);
+  std::set<double> levels;
+  const auto lines = read_lines(folder / "fitted.toml.history.jsonl");
+  for (const auto& line : lines) levels.insert(line.at("level").get<double>());
+  EXPECT_EQ(levels.size(), 8u);
+  EXPECT_EQ(lines.size(), 8u) << "no file was found that the record does not hold";
+  EXPECT_EQ(lines.back().at("file"), study::test::bytes_of(toml)) << "the file in force is the record's last";
 }
 
 TEST(VipStatsE2e, SaysWhetherTheIntervalsHoldTheObserversTruth) {

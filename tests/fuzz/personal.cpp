@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     file.read("P01");
     file.keep({{"P07", "age", "Your age", "33"}});
     if (file.read("P07").empty()) std::abort();
-    file.rename({{"P07", "P08"}});
+    file.rename("batch", {{"P07", "P08"}});
     file.forget("P08");
     if (!file.read("P08").empty()) std::abort();
   });

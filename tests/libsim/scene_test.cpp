@@ -5,9 +5,12 @@
 
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "libsim/methods/preset.hpp"
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
+#include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -49,6 +52,65 @@ TEST(Scene, SubstepsFollowTheRule) {
   EXPECT_EQ(sim::substeps_of(scene, 4 * 1024), 2);
   EXPECT_EQ(sim::substeps_of(scene, 32 * 1024), 3);
   EXPECT_EQ(sim::substeps_of(scene, 128 * 1024), 4);
+}
+
+std::string extent_error(const sim::Scene& scene, MethodKind method, std::int64_t n_star) {
+  try {
+    sim::check_extent(scene, method, n_star, 4 * sim::resolution_of(scene, method, n_star).spacing_m);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Extent, EverySceneThatShipsIsComputedAtEverySize) {
+  for (const auto& entry : std::filesystem::directory_iterator(base::resource("data/scenes"))) {
+    const auto scene = sim::read_scene(entry.path());
+    for (std::int64_t n_star = 64; n_star <= 4 << 20; n_star *= 2)
+      for (const auto& traits : sim::all_methods())
+        EXPECT_EQ(extent_error(scene, traits.kind, n_star), "") << entry.path() << " " << n_star;
+  }
+}
+
+TEST(Extent, ATankThatIsAllAirIsRefused) {
+  auto scene = dam();
+  scene.tank_size_m = {1e4, 10, 1e4};
+  const auto error = extent_error(scene, MethodKind::HiRes, 1024);
+  EXPECT_THAT(error, testing::AllOf(testing::HasSubstr("SingleDam"), testing::HasSubstr("tank.size_m"),
+                                    testing::HasSubstr("mend: make the tank smaller")));
+  sim::SimulationOptions options;
+  options.n_star = 1024;
+  EXPECT_THROW(sim::make_simulation(scene, options), base::Error);
+}
+
+TEST(Extent, WaterThinnerThanAParticleIsRefused) {
+  auto scene = dam();
+  scene.tank_size_m = {1e4, 10, 1e4};
+  scene.fill_max_m = {1e4, 0.1, 1e4};
+  const auto error = extent_error(scene, MethodKind::HiRes, 1024);
+  EXPECT_THAT(error, testing::AllOf(testing::HasSubstr("water.max_m"), testing::HasSubstr("0.1 m thin"),
+                                    testing::HasSubstr("--n-star")));
+}
+
+TEST(Extent, MoreSubstepsThanAnybodyWaitsForAreRefused) {
+  auto scene = dam();
+  scene.fill_max_m = {0.1, 0.1, 0.1};
+  scene.tank_size_m = {0.2, 0.2, 0.2};
+  scene.v_ref_m_s = 1000;
+  scene.frame_dt_s = 1;
+  EXPECT_THAT(extent_error(scene, MethodKind::HiRes, 4 << 20),
+              testing::AllOf(testing::HasSubstr("time.v_ref_m_s"), testing::HasSubstr("substeps")));
+}
+
+TEST(Extent, MoreMemoryThanThereIsIsRefusedWithBothNumbers) {
+  EXPECT_NO_THROW(sim::check_memory(MethodKind::HiRes, 128 << 10, 4e9));
+  EXPECT_NO_THROW(sim::check_memory(MethodKind::HiRes, 4 << 20, {}));
+  EXPECT_THAT([] { sim::check_memory(MethodKind::HiRes, 4 << 20, 4e9); },
+              testing::ThrowsMessage<base::Error>(testing::AllOf(
+                  testing::HasSubstr("36.9 GB of memory, 4 GB are free"), testing::HasSubstr("--n-star"))));
+  EXPECT_THROW(sim::check_memory(MethodKind::Ours, 256 << 10, 4e9), base::Error);
+  ASSERT_TRUE(sim::available_memory_bytes());
+  EXPECT_GT(*sim::available_memory_bytes(), 1e6);
 }
 
 TEST(Fill, HoldsExactCountsAndVolumeAtEveryResolution) {

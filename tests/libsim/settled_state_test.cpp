@@ -6,6 +6,8 @@
 
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <limits>
 
 #include "tests/libsim/fluid_helpers.hpp"
 
@@ -99,6 +101,25 @@ TEST_F(SettledState, DamagedFileIsSettledAgain) {
       file.seekp(100);
       file.put('x');
     }
+    const int before = settled_frames_;
+    EXPECT_TRUE(same(first, after_five_frames()));
+    EXPECT_EQ(settled_frames_, before + 10);
+  }
+}
+
+/// The hash of such a file fits: what it holds is no water.
+TEST_F(SettledState, StateThatIsNotFiniteOrOfOtherParticlesIsSettledAgain) {
+  const auto first = after_five_frames();
+  const auto sound = *sim::read_settled(folder_, sim::settled_key(scene_, options_));
+  const auto nan = std::numeric_limits<float>::quiet_NaN();
+  const auto infinite = std::numeric_limits<float>::infinity();
+  for (const auto& spoil : std::vector<std::function<void(fluid_test::ParticleState&)>>{
+           [&](auto& p) { p.x_m = nan; }, [&](auto& p) { p.vz_m_s = infinite; }, [](auto& p) { p.level = 9; },
+           [](auto& p) { p.id = 0; }}) {
+    auto state = sound;
+    spoil(state[7]);
+    const std::string body(reinterpret_cast<const char*>(state.data()), state.size() * sizeof state[0]);
+    base::write_file_atomically(only_file(), base::sha256_hex(body) + body);
     const int before = settled_frames_;
     EXPECT_TRUE(same(first, after_five_frames()));
     EXPECT_EQ(settled_frames_, before + 10);

@@ -230,7 +230,7 @@ TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
   test::write_version_1(path);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 15u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 16u);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // and the copy that upgrades leave
 }
@@ -253,7 +253,10 @@ TEST(Database, EveryReleasedSchemaIsStillOpened) {
     SCOPED_TRACE(entry.path());
     const fs::path copy = folder / entry.path().filename().string();
     fs::copy_file(entry.path(), copy);
-    EXPECT_TRUE(Store(copy, Open::Write).open_runs().empty());
+    const bool finished = entry.path().filename() == "study_v1.db";
+    EXPECT_EQ(Store(copy, Open::Write).open_runs().empty(), finished);
+    EXPECT_FALSE(read_status(copy).sessions.empty());
+    if (!finished) continue;
     const auto rows = read_ratings(copy);
     ASSERT_EQ(rows.size(), 4u);
     for (const RatingRow& row : rows) {

@@ -184,7 +184,7 @@ TEST(ExportPsychDs, NamesAndColumnsAreThoseOfTheStandard) {
 
 TEST(ExportPsychDs, EachSessionHasItsRatingsAndItsPages) {
   const test::TemporaryFolder folder;
-  const auto files = export_psych_ds(make_study(folder), folder / "psych");
+  const auto files = export_psych_ds(make_study(folder), folder / "psych").files;
   ASSERT_EQ(files.size(), 4u);
   EXPECT_EQ(files[0].name, "data/study-pairs_subject-P01_session-pairsv1_data.csv");
   EXPECT_EQ(files[0].rows, 8);  // four pairs, two questions each
@@ -198,8 +198,8 @@ TEST(ExportFormats, ReplaceTheirOwnAndNothingElse) {
   const fs::path database = make_study(folder);
   export_bids(database, folder / "bids");
   export_psych_ds(database, folder / "psych");
-  EXPECT_EQ(export_bids(database, folder / "bids").size(), 6u);
-  EXPECT_EQ(export_psych_ds(database, folder / "psych").size(), 4u);
+  EXPECT_EQ(export_bids(database, folder / "bids").files.size(), 6u);
+  EXPECT_EQ(export_psych_ds(database, folder / "psych").files.size(), 4u);
   EXPECT_THAT([&] { export_bids(database, folder / "psych"); },
               ThrowsMessage<base::Error>(HasSubstr("is not an earlier export")));
   EXPECT_THAT([&] { export_psych_ds(database, folder / "bids"); },

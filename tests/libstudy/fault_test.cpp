@@ -108,10 +108,10 @@ void whole_study(const fs::path& folder, const char* name, const std::vector<std
   }
 }
 
-/// P02 may be gone already.
+/// P02 may be gone already. What cannot be cleaned is an error, as for the command.
 void withdraw_P02(const fs::path& folder, const char* name) {
   if (faults::database_content(folder / name).empty()) return;
-  withdraw(folder / name, "P02");
+  check_nothing_left(folder / name, withdraw(folder / name, "P02").beside.left);
 }
 
 void stations(const fs::path& folder) {
@@ -149,7 +149,8 @@ std::vector<Flow> all_flows() {
       {"merge",
        stations,
        [](const fs::path& folder) {
-         merge({folder / "north.db", folder / "south.db"}, folder / "all.db");
+         const Merge done = merge({folder / "north.db", folder / "south.db"}, folder / "all.db");
+         check_nothing_left(folder / "all.db", done.beside.left);
        },
        [](const fs::path& folder) {
          return whole_content(folder, "all.db") + whole_content(folder, "north.db") +

@@ -335,4 +335,36 @@ TEST(Protocol, AnAssignmentThatCannotBeListedIsRefused) {
   EXPECT_THAT(error_of(large_design(101, 1)), HasSubstr("more than 1000 cells"));
 }
 
+constexpr const char* gaze_box =
+    "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Where I look may be recorded.\"\nanchors = {0 = \"no\", "
+    "1 = \"yes\"}";
+
+constexpr const char* at_gaze_box = "|[[block.question]]\nid = \"gaze_kept\"";
+constexpr const char* as_obeyed = "kind = \"choice\" and anchors = {0 = \"no\", 1 = \"yes\"}";
+
+/// The questions that the program obeys.
+INSTANTIATE_TEST_SUITE_P(
+    Obeyed, MalformedProtocol,
+    testing::Values(
+        Malformed{task1, "id = \"take_part\"", "id = \"data_shared\"\npersonal = true",
+                  "|[[block.question]]\nid = \"data_shared\"", "\"data_shared\" is personal",
+                  "without personal"},
+        Malformed{task1, gaze_box, "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]",
+                  at_gaze_box, "\"gaze_kept\" is not of kind choice", as_obeyed},
+        Malformed{
+            task1, gaze_box,
+            "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Look\"\nanchors = {1 = \"no\", 2 = \"yes\"}",
+            at_gaze_box, "has other answers than 0 and 1", as_obeyed},
+        Malformed{pilot, "id = \"satisfaction\"", "id = \"data_shared\"",
+                  "|[[block.question]]\nid = \"data_shared\"", "stands in a block of kind stimulus",
+                  "in a block of kind consent"}));
+
+/// A database may hold them: resuming and reading it must go on.
+TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
+  const std::string whole = base::read_file(base::resource("protocols/task1.toml"), 1 << 20);
+  const std::string text =
+      replaced(whole, gaze_box, "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]");
+  EXPECT_EQ(study::parse_protocol(text, "p.toml", study::ProtocolUse::Stored).blocks.size(), 4u);
+}
+
 }  // namespace

@@ -92,6 +92,14 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
     if (action == GLFW_PRESS) self->keys_.push_back(key);
   });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+    auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    if (self->mouse_moved_) self->mouse_moved_(self->place_of(x, y));
+  });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int inside) {
+    auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    if (inside == GLFW_FALSE && self->mouse_moved_) self->mouse_moved_({});
+  });
   glfwSetWindowIconifyCallback(window_, [](GLFWwindow* window, int minimised) {
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
     if (minimised == GLFW_TRUE) self->was_minimised_ = true;
@@ -116,15 +124,24 @@ GlfwWindow::Size GlfwWindow::size() const {
   return out;
 }
 
-bool GlfwWindow::mouse(double& x_px, double& y_px) const {
-  double x = 0, y = 0;
-  glfwGetCursorPos(window_, &x, &y);
+GlfwWindow::Place GlfwWindow::place_of(double x, double y) const {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);
-  if (x < 0 || y < 0 || x >= width || y >= height) return false;
-  const double scale = static_cast<double>(size().width) / width;
-  x_px = scale * x;
-  y_px = scale * (height - y);
+  if (x < 0 || y < 0 || x >= width || y >= height) return {};
+  return std::pair{x / width, y / height};
+}
+
+GlfwWindow::Place GlfwWindow::mouse_place() const {
+  double x = 0, y = 0;
+  glfwGetCursorPos(window_, &x, &y);
+  return place_of(x, y);
+}
+
+bool GlfwWindow::mouse(double& x_px, double& y_px) const {
+  const Place place = mouse_place();
+  if (!place) return false;
+  x_px = place->first * size().width;
+  y_px = (1 - place->second) * size().height;
   return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// A GLFW window with a current OpenGL 4.5 context.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +41,12 @@ class GlfwWindow {
     int width = 0, height = 0;
   };
   Size size() const;
+  /// A place as shares of the window's width and height from its upper left corner.
+  using Place = std::optional<std::pair<double, double>>;
+  /// Where the mouse is; none outside.
+  Place mouse_place() const;
+  /// Called whenever it is taken in that the mouse moved, to a place or out of the window (none).
+  void on_mouse(std::function<void(const Place&)> moved) { mouse_moved_ = std::move(moved); }
   /// The mouse in px of the framebuffer from its lower left corner; false when it is outside.
   bool mouse(double& x_px, double& y_px) const;
   /// Keys pressed since the last call, as GLFW numbers them: none is lost when frames are slow. A key held
@@ -53,9 +61,12 @@ class GlfwWindow {
   static bool display_is_gone();
 
  private:
+  Place place_of(double x, double y) const;
+
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
   std::vector<int> keys_;
+  std::function<void(const Place&)> mouse_moved_;
   bool was_minimised_ = false;
 };
 

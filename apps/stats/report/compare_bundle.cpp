@@ -35,10 +35,49 @@ std::map<std::string, std::string> read_manifest(const std::string& text, const 
   return out;
 }
 
+/// JSON deeper than anything a bundle holds would end the program when it is compared or printed.
+constexpr int most_levels = 16;
+
 Json parsed(const std::string& bytes, const fs::path& file) {
-  Json json = Json::parse(bytes, nullptr, false);
+  bool deep = false;
+  const auto not_deep = [&](int depth, Json::parse_event_t, const Json&) {
+    deep = deep || depth > most_levels;
+    return !deep;
+  };
+  Json json = Json::parse(bytes, not_deep, false);
+  if (deep) no_bundle(file, "is nested more than " + std::to_string(most_levels) + " levels deep");
   if (json.is_discarded()) no_bundle(file, "is no JSON");
   return json;
+}
+
+bool has_texts(const Json& object, std::initializer_list<const char*> keys) {
+  return object.is_object() && std::all_of(keys.begin(), keys.end(), [&](const char* key) {
+           return object.contains(key) && object[key].is_string();
+         });
+}
+
+/// What the comparison reads is there and is text where it is taken for text.
+void check_about(const Json& about, const fs::path& file) {
+  if (!has_texts(about, {"schema"}) || about["schema"] != "vip-preregistration/1")
+    no_bundle(file, "is not of schema vip-preregistration/1");
+  const Json protocols = about.value("protocols", Json());
+  const bool listed =
+      protocols.is_array() && std::all_of(protocols.begin(), protocols.end(), [](const Json& one) {
+        return has_texts(one, {"name", "sha256"});
+      });
+  if (!listed || !has_texts(about, {"frozen_utc", "vip_lab"}))
+    no_bundle(file, "does not name its protocols, date and version");
+}
+
+void check_hypotheses(const Json& hypotheses, const fs::path& file) {
+  if (!hypotheses.is_array()) no_bundle(file, "is not a list of hypotheses");
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const Json& one = hypotheses[i];
+    bool whole = has_texts(one, {"id", "task"}) && one.contains("tests") && one["tests"].is_array();
+    if (whole)
+      for (const Json& test : one["tests"]) whole = whole && has_texts(test, {"label"});
+    if (!whole) no_bundle(file, "entry " + std::to_string(i + 1) + " is no hypothesis");
+  }
 }
 
 void quote(Json& differences, const std::string& what, const std::vector<std::string>& lines) {
@@ -153,9 +192,9 @@ Bundle read_bundle(const fs::path& folder) {
   for (const char* needed : {"about.json", "hypotheses.json", "plan.toml"})
     if (!files.contains(needed)) no_bundle(folder, std::string("holds no ") + needed);
   bundle.about = parsed(files["about.json"], folder / "about.json");
-  if (!bundle.about.is_object() || bundle.about.value("schema", "") != "vip-preregistration/1")
-    no_bundle(folder / "about.json", "is not of schema vip-preregistration/1");
+  check_about(bundle.about, folder / "about.json");
   bundle.hypotheses = parsed(files["hypotheses.json"], folder / "hypotheses.json");
+  check_hypotheses(bundle.hypotheses, folder / "hypotheses.json");
   for (const auto& [name, bytes] : files)
     if (name.starts_with("protocol_")) bundle.protocols[base::sha256_hex(bytes)] = bytes;
   bundle.plan = read_plan(folder / "plan.toml");

@@ -1,10 +1,9 @@
-#include <unistd.h>
-
 #include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace apps::report {
 
@@ -69,10 +68,13 @@ Files contents(const BundleRequest& request) {
 /// A folder that vanishes unless it is kept under its final name.
 class Draft {
  public:
-  explicit Draft(const fs::path& out) : out_(out), path_(out.string() + ".tmp" + std::to_string(::getpid())) {
+  explicit Draft(const fs::path& out) : out_(out), path_(base::draft_name(out)) {
     std::error_code failed;
-    fs::create_directories(path_, failed);
-    if (failed) throw base::Error(path_.string(), failed.message(), "choose a folder that can be written");
+    if (out.has_parent_path()) fs::create_directories(out.parent_path(), failed);
+    // A folder or link of that name is somebody else's: no more than what is made here is written to.
+    if (failed || !fs::create_directory(path_, failed))
+      throw base::Error(path_.string(), failed ? failed.message() : "is there already",
+                        "choose a folder that can be written");
   }
   ~Draft() {
     std::error_code ignored;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/common/program.hpp"
+#include "libstudy/store/export_folder.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps {
@@ -16,17 +17,13 @@ const std::vector<std::string> exclusion_columns{"task", "participant", "visit",
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
-std::string csv_quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
+/// The one number that JSON has as a text and a spreadsheet would take for a formula stays as it is.
 std::string scalar(const Json& value) {
   if (value.is_null()) return {};
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
-  return csv_quoted(value.is_string() ? value.get<std::string>() : value.dump());
+  if (!value.is_string()) return value.dump();
+  const auto text = value.get<std::string>();
+  return text == "-Inf" ? text : study::csv_field(text);
 }
 
 bool all_texts(const Json& list) {
@@ -51,7 +48,7 @@ void flatten(const std::string& name, const Json& value, Fields& fields) {
   } else if (!value.empty() && all_texts(value)) {
     std::string joined;
     for (const auto& one : value) joined += (joined.empty() ? "" : " ") + one.get<std::string>();
-    fields.emplace_back(name, csv_quoted(joined));
+    fields.emplace_back(name, study::csv_field(joined));
   }
 }
 
@@ -137,7 +134,7 @@ std::string csv_text(const Json& list, const std::vector<std::string>& if_empty)
   for (const auto& object : list) flatten("", object, lines.emplace_back());
   const auto columns = lines.empty() ? if_empty : columns_of(lines);
   std::string out;
-  for (const auto& column : columns) out += (out.empty() ? "" : ",") + csv_quoted(column);
+  for (const auto& column : columns) out += (out.empty() ? "" : ",") + study::csv_field(column);
   out += "\r\n";
   for (const Fields& line : lines) {
     std::string text;

@@ -12,8 +12,8 @@ namespace apps {
 
 /// One line for each object of a list, RFC 4180. A nested object's fields are named outer_inner, an
 /// interval's ends name_low and name_high; other lists are left out unless of texts, which are joined by
-/// spaces. Null is an empty field; nothing is rounded. Columns are those that any line has, in the order of
-/// first appearance; `if_empty` are those of an empty list.
+/// spaces. Null is an empty field; nothing is rounded; texts are study::formula_guarded(). Columns are those
+/// that any line has, in the order of first appearance; `if_empty` are those of an empty list.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
 /// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Lists that

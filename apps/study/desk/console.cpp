@@ -6,6 +6,7 @@
 
 #include "apps/study/desk/progress.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -16,6 +17,7 @@ using Guard = std::lock_guard<std::mutex>;
 constexpr std::size_t strip_length = 40;
 constexpr double little_disk_mb = 500;
 constexpr std::int64_t strip_ns = 500'000'000;
+constexpr std::size_t most_typed = 500;  // bytes
 
 template <class... Values>
 std::string text(const char* pattern, Values... values) {
@@ -29,6 +31,13 @@ std::string text(const char* pattern, Values... values) {
 
 /// "14:03:05" of an ISO instant.
 std::string clock_time() { return base::utc_now().substr(11, 8); }
+
+/// Without the part of a letter that the limit left at the end.
+std::string whole_letters(std::string words) {
+  for (int i = 0; i < 3 && words.size() + 3 > most_typed && !base::is_plain_line(words); ++i)
+    words.pop_back();
+  return words;
+}
 
 double disk_mb(const std::filesystem::path& database) {
   std::error_code error;
@@ -48,22 +57,14 @@ char strip_sign(double shown_s, double scheduled_s) {
 Console::Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database)
     : protocol_(protocol), store_(store), database_(std::move(database)) {}
 
-Console::~Console() {
-  try {
-    run_jobs();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "console: %s\n", error.what());
-  }
-}
-
 void Console::begin(const study::OpenSession& session) {
-  run_jobs();
   const Guard guard(mutex_);
   session_ = &session;
   unit_.reset();
   last_trial_.reset();
   done_ = 0;
   paused_ = ended_ = repeat_ = false;
+  asking_ = Asking::Nothing;
   say(text("%s: %zu steps of %zu left, %s; disk %.1f GB free", session.plan.participant.c_str(),
            session.units.size(), session.planned, left().c_str(), 1e-3 * disk_mb(database_)));
   say("gaze: " + session.plan.gaze_source +
@@ -74,9 +75,7 @@ void Console::begin(const study::OpenSession& session) {
 }
 
 void Console::begins(const study::OpenUnit& unit) {
-  run_jobs();
   const Guard guard(mutex_);
-  if (std::exchange(repeat_, false)) reopen_last();  // it came too late to cut that trial
   unit_ = unit;
   unit_done_ = false;
   course_ = {};
@@ -108,45 +107,56 @@ void Console::shown(const study::FrameRecord& frame) {
 }
 
 void Console::done(const study::UnitDone& unit) {
-  {
-    const Guard guard(mutex_);
-    ++done_;
-    unit_done_ = true;
-    if (unit_ && unit_->trial) {
-      last_trial_ = unit_;
-      last_trial_->attempts = unit.attempt;
-    }
-    for (const study::TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
+  const Guard guard(mutex_);
+  ++done_;
+  unit_done_ = true;
+  if (unit_ && unit_->trial) {
+    last_trial_ = unit_;
+    last_trial_->attempts = unit.attempt;
   }
-  run_jobs();
+  for (const study::TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
+  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // it came too late to cut the trial
 }
 
 study::Wish Console::wish() {
-  bool safe = false;
-  study::Wish wish = study::Wish::GoOn;
-  {
-    const Guard guard(mutex_);
-    safe = !unit_ || unit_done_ || !unit_->trial;
-    if (ended_)
-      wish = study::Wish::EndSession;
-    else if (repeat_ && unit_ && unit_->trial)
-      wish = study::Wish::RepeatTrial;
-    else if (paused_)
-      wish = study::Wish::Pause;
-    repeat_ = false;
-    if (wish == study::Wish::RepeatTrial) unit_done_ = false;
-  }
-  if (safe) run_jobs();
-  return wish;
+  const Guard guard(mutex_);
+  if (ended_) return study::Wish::EndSession;
+  if (std::exchange(repeat_, false)) return study::Wish::RepeatTrial;
+  return paused_ ? study::Wish::Pause : study::Wish::GoOn;
 }
 
 bool Console::take_reopened() {
+  const std::lock_guard acting(acting_);
   const Guard guard(mutex_);
+  if (!reopened_) session_ = nullptr;
   return std::exchange(reopened_, false);
 }
 
 void Console::key(char byte) {
+  const std::lock_guard acting(acting_);
+  std::optional<Deed> deed;
+  {
+    const Guard guard(mutex_);
+    read(byte);
+    deed = std::exchange(deed_, {});
+  }
+  if (deed) carry_out(*deed);
+}
+
+/// Frames are shown meanwhile: they wait for mutex_, which is not held while the disk works.
+void Console::carry_out(const Deed& deed) {
+  try {
+    deed.store();
+  } catch (const std::exception& error) {
+    const std::string why = error.what();
+    const Guard guard(mutex_);
+    return say("NOT KEPT: " + deed.what + " (" + why.substr(0, why.find('\n')) + ")");
+  }
   const Guard guard(mutex_);
+  deed.then();
+}
+
+void Console::read(char byte) {
   if (asking_ == Asking::Nothing) return command(byte);
   if (byte == '\n' || byte == '\r') return enter();
   if (byte == 27) {  // Esc
@@ -159,7 +169,7 @@ void Console::key(char byte) {
     if (!typed_.empty()) typed_.pop_back();
     return;
   }
-  if (static_cast<unsigned char>(byte) >= 32 && typed_.size() < 500) typed_ += byte;
+  if (static_cast<unsigned char>(byte) >= 32 && typed_.size() < most_typed) typed_ += byte;
 }
 
 void Console::command(char byte) {
@@ -200,77 +210,78 @@ void Console::ask(Asking what, const std::string& prompt) {
 
 void Console::enter() {
   const Asking asked = std::exchange(asking_, Asking::Nothing);
-  const std::string words = std::exchange(typed_, {});
+  const std::string words = whole_letters(std::exchange(typed_, {}));
+  if (!session_) return say("(nothing was done: the session is over)");
   if (words.find_first_not_of(' ') == std::string::npos)
     return say("(nothing was done: no reason was given)");
+  if (!base::is_plain_line(words)) return say("(nothing was done: these words are not UTF-8)");
   if (asked == Asking::Note) return note(words);
   if (asked == Asking::Repeat) return repeat(words);
   if (asked == Asking::Exclude) return exclude(words);
   if (words != "yes") return say("(the session goes on)");
   ended_ = true;
-  say("the session ends: a rest first; let nobody go before they feel well");
+  say("ending the session: a rest first; let nobody go before they feel well");
 }
 
 void Console::note(const std::string& words) {
   const std::int64_t session = session_->id;
   const std::optional<std::int64_t> unit = unit_ ? std::optional(unit_->id) : std::nullopt;
   const std::string timed = clock_time() + " " + words;
-  later([this, session, unit, timed] { store_.note(session, unit, timed); });
-  say("noted: " + words);
+  keep(
+      "note: " + words, [=, this] { store_.note(session, unit, timed); },
+      [=, this] { say("noted: " + words); });
 }
 
+/// Set aside at once, so that it is shown again whatever happens to this program.
 void Console::repeat(const std::string& reason) {
-  reason_ = reason;
-  if (unit_ && unit_->trial && !(unit_done_ && paused_)) {
-    repeat_ = true;
-    note("repeat: " + reason);
-    return say("this trial is shown again");
-  }
-  reopen_last();
+  const std::int64_t session = session_->id;
+  const study::OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;
+  keep(
+      text("repeat of trial %d: ", trial.trial->position + 1) + reason,
+      [=, this] { store_.repeat_trial(session, trial.trial_id, reason); },
+      [=, this] {
+        if (unit_done_ || unit_->trial_id != trial.trial_id) return show_at_the_end(trial);
+        repeat_ = true;
+        say(text("trial %d is shown again, from its start", trial.trial->position + 1));
+      });
 }
 
-void Console::reopen_last() {
-  if (!last_trial_) return;
-  const std::int64_t session = session_->id, trial = last_trial_->trial_id;
-  later([this, session, trial, reason = reason_] { store_.repeat_trial(session, trial, reason); });
+void Console::show_at_the_end(const study::OpenUnit& trial) {
   reopened_ = true;
-  say(text("trial %d is shown again at the end of the session", last_trial_->trial->position + 1));
+  say(text("trial %d is shown again at the end of the session", trial.trial->position + 1));
 }
 
 void Console::exclude(const std::string& reason) {
-  const study::OpenUnit& unit = unit_ && unit_->trial ? *unit_ : *last_trial_;
-  const std::int64_t session = session_->id, trial = unit.trial_id;
-  later([this, session, trial, reason] { store_.exclude_trial(session, trial, reason); });
-  say(text("trial %d is excluded from analyses; its data stay", unit.trial->position + 1));
+  const study::OpenUnit trial = unit_ && unit_->trial ? *unit_ : *last_trial_;
+  const std::int64_t session = session_->id;
+  keep(
+      text("exclusion of trial %d: ", trial.trial->position + 1) + reason,
+      [=, this] { store_.exclude_trial(session, trial.trial_id, reason); },
+      [=, this] {
+        say(text("trial %d is excluded from analyses; its data stay", trial.trial->position + 1));
+      });
 }
 
 void Console::reveal() {
-  revealed_ = !revealed_;
   const std::int64_t session = session_->id;
-  const bool shows = revealed_;
-  later([this, session, shows] {
-    store_.log(session, shows ? "setting revealed" : "setting hidden", "to the experimenter");
-  });
-  if (!revealed_) return say("method and setting are hidden again");
-  say(unit_ && unit_->trial ? "revealed (logged): " + describe_cells(*unit_->trial) : "revealed (logged)");
+  const bool shows = !revealed_;
+  keep(
+      shows ? "that method and setting are shown" : "that method and setting are hidden",
+      [=, this] {
+        store_.log(session, shows ? "setting revealed" : "setting hidden", "to the experimenter");
+      },
+      [=, this] {
+        revealed_ = shows;
+        if (!shows) return say("method and setting are hidden again");
+        say(unit_ && unit_->trial ? "revealed (logged): " + describe_cells(*unit_->trial)
+                                  : "revealed (logged)");
+      });
 }
 
 void Console::say(const std::string& line) { lines_.push_back(clock_time() + "  " + line); }
 
-void Console::later(Job job) { jobs_.push_back(std::move(job)); }
-
-/// On the session's thread. A job is forgotten only when it was done.
-void Console::run_jobs() {
-  for (;;) {
-    Job job;
-    {
-      const Guard guard(mutex_);
-      if (jobs_.empty()) return;
-      job = jobs_.front();
-      jobs_.erase(jobs_.begin());
-    }
-    job();
-  }
+void Console::keep(std::string what, std::function<void()> store, std::function<void()> then) {
+  deed_ = Deed{std::move(what), std::move(store), std::move(then)};
 }
 
 std::vector<std::string> Console::take_lines() {

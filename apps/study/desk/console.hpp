@@ -16,13 +16,12 @@
 namespace apps {
 
 /// Method, frame rate and all that gives them away are hidden until they are revealed, which is logged. Two
-/// threads use it: the session's, which alone touches the store, and the one that reads the keys. What a key
-/// asks of the store is done between two trials, because a running trial keeps its frames there.
+/// threads use it: the session's, and the one that reads the keys. What a key asks to be kept is committed by
+/// the latter at once, also while a trial is shown, and said to be done after that; where it fails, "NOT
+/// KEPT" is said and the session goes on.
 class Console {
  public:
   Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database);
-  /// Keeps what was still to be written; failures are told on stderr.
-  ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
@@ -32,7 +31,8 @@ class Console {
   void shown(const study::FrameRecord& frame);
   void done(const study::UnitDone& unit);
   study::Wish wish();
-  /// Whether trials were opened again that this session is already past; forgets it.
+  /// Whether trials were opened again that this session is already past; forgets it. If not, the session is
+  /// over and keys do nothing until the next begins.
   bool take_reopened();
 
   /// The thread of the keys: what was typed, byte by byte.
@@ -44,20 +44,25 @@ class Console {
 
  private:
   enum class Asking { Nothing, Note, Repeat, Exclude, End };
-  /// A job for the session's thread.
-  using Job = std::function<void()>;
+  /// What a key asks to be kept.
+  struct Deed {
+    std::string what;
+    std::function<void()> store;  ///< commits it
+    std::function<void()> then;   ///< says so
+  };
 
+  void read(char byte);
+  void carry_out(const Deed& deed);
   void command(char byte);
   void ask(Asking what, const std::string& prompt);
   void enter();
   void note(const std::string& words);
   void repeat(const std::string& reason);
-  void reopen_last();
+  void show_at_the_end(const study::OpenUnit& trial);
   void exclude(const std::string& reason);
   void reveal();
   void say(const std::string& line);
-  void later(Job job);
-  void run_jobs();
+  void keep(std::string what, std::function<void()> store, std::function<void()> then);
   std::string describe(const study::OpenUnit& unit) const;
   std::string describe_cells(const study::PlannedTrial& trial) const;
   std::string describe(const study::TimingVerdict& verdict) const;
@@ -67,6 +72,7 @@ class Console {
   study::Store& store_;
   std::filesystem::path database_;
 
+  std::mutex acting_;         ///< while a key has its effect; taken before mutex_
   mutable std::mutex mutex_;  ///< of all that follows
   const study::OpenSession* session_ = nullptr;
   std::optional<study::OpenUnit> unit_;  ///< under way
@@ -75,9 +81,9 @@ class Console {
   std::size_t done_ = 0;                       ///< units of this session, in this run
   bool paused_ = false, ended_ = false, repeat_ = false, revealed_ = false, reopened_ = false;
   Asking asking_ = Asking::Nothing;
-  std::string prompt_, typed_, reason_;
+  std::string prompt_, typed_;
   std::vector<std::string> lines_;
-  std::vector<Job> jobs_;
+  std::optional<Deed> deed_;  ///< to be carried out by the thread that set it
 
   /// How the present stimulus goes.
   struct Course {

@@ -51,7 +51,7 @@ class Viewer {
  public:
   explicit Viewer(const ViewOptions& options)
       : running_(spelled_out(options)),
-        window_({"vip-view", options.width_px, options.height_px, 0,
+        window_({"vip-view", options.size.width, options.size.height, 0,
                  "use --headless --png FOLDER on a machine without a display"}),
         panel_(window_.get(), running_),
         fixed_tau_(sim::parse_tau(options.tau)) {

@@ -1,6 +1,7 @@
 -- Step 3. What people allowed and where they looked; which exports hold whom; what is still to be cleaned beside the file.
 
--- The experimenter's changes to what was answered to the questions gaze_kept and data_shared; the last one counts.
+-- The experimenter's changes to what was answered to the questions gaze_kept and data_shared, and answers given after such a
+-- change; the last one counts.
 CREATE TABLE permission_change (
   permission_change_id INTEGER PRIMARY KEY, -- order of changes
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -10,15 +11,27 @@ CREATE TABLE permission_change (
 ) STRICT;
 CREATE INDEX permission_change_of_session ON permission_change (session_id);
 
+-- What each session was answered. answered: 1 yes, 0 no, empty: not yet. Any other scale than no = 0 and yes = 1, which earlier
+-- versions allowed, cannot be told from a refusal. No row: the protocol does not ask.
+CREATE VIEW permission_answer AS
+  SELECT s.session_id, w.what,
+    (SELECT coalesce(r.score = 1 AND q.kind = 'choice' AND q.scale_min = 0 AND q.scale_max = 1, 0)
+      FROM response r JOIN unit u USING (unit_id) WHERE u.session_id = s.session_id AND r.question_id = q.question_id
+      ORDER BY r.response_id DESC LIMIT 1) AS answered
+  FROM session s JOIN question q USING (protocol_id)
+    JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w ON w.code = q.code;
+
 -- What holds for each session. granted: 1 allowed, 0 refused or asked and not answered yet, empty: the protocol does not ask.
 CREATE VIEW permission AS
   SELECT s.session_id, s.person, w.what, coalesce(
     (SELECT c.granted FROM permission_change c WHERE c.session_id = s.session_id AND c.what = w.what
       ORDER BY c.permission_change_id DESC LIMIT 1),
-    (SELECT coalesce(r.score = 1, 0) FROM response r JOIN unit u USING (unit_id) JOIN question q USING (question_id)
-      WHERE u.session_id = s.session_id AND q.code = w.code ORDER BY r.response_id DESC LIMIT 1),
-    (SELECT 0 FROM question q WHERE q.protocol_id = s.protocol_id AND q.code = w.code)) AS granted
-  FROM session s CROSS JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w;
+    (SELECT coalesce(a.answered, 0) FROM permission_answer a WHERE a.session_id = s.session_id AND a.what = w.what)) AS granted
+  FROM session s CROSS JOIN (SELECT 'gaze' AS what UNION ALL SELECT 'sharing') w;
+
+-- Who may stand in public exports: one refusal in any session counts for the person. granted as above.
+CREATE VIEW sharing AS
+  SELECT person, min(granted) AS granted FROM permission WHERE what = 'sharing' GROUP BY person;
 
 -- Samples of where the participant looked, at the rate at which they came. Only of those who allowed it.
 CREATE TABLE gaze (

@@ -1,0 +1,13 @@
+#pragma once
+/// Water that broke is never taken for a result.
+
+#include <string>
+
+#include "libsim/simulation.hpp"
+
+namespace apps {
+
+/// base::Error naming `place` when a particle was not finite since the run began, or a figure is not now.
+void check_finite(sim::Simulation& fluid, const std::string& place);
+
+}  // namespace apps

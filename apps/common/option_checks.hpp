@@ -1,0 +1,24 @@
+#pragma once
+/// What an option may be: nothing is clamped, cut or written on that a file or a screen cannot hold.
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+
+namespace apps {
+
+/// Accepts finite numbers from low to high (CLI::Range lets NaN through).
+CLI::Validator number_in(double low, double high);
+
+/// Accepts texts of at most so many bytes.
+CLI::Validator text_up_to(std::size_t most_bytes);
+
+/// Throws CLI::ValidationError, which names the first argument that is not a plain line of UTF-8
+/// (base::is_plain_line): arguments come to stand in databases, JSON and messages.
+void check_arguments(int argc, const char* const* argv);
+
+/// Gives each option of `app` and of its commands that is bound to a number a check before all others: digits
+/// of a whole number that 64 bits hold, or a finite number. CLI11 itself takes the nearest number instead,
+/// and reads 010 as eight.
+void check_numbers(CLI::App& app);
+
+}  // namespace apps

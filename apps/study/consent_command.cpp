@@ -1,0 +1,79 @@
+/// vip-study consent: what a participant allows, and changes of it.
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/study/commands.hpp"
+#include "libstudy/store/chores.hpp"
+#include "libstudy/store/permissions.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+struct ConsentCommand {
+  std::string participant, database, gaze, sharing;
+};
+
+std::optional<bool> wish_of(const std::string& word) {
+  if (word.empty()) return {};
+  return word == "yes";
+}
+
+const char* word_of(const std::optional<bool>& granted) {
+  if (!granted) return "not asked";
+  return *granted ? "yes" : "no";
+}
+
+void print_list(const char* title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  std::printf("%s\n", title);
+  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
+}
+
+void print_change(const ConsentCommand& command) {
+  const study::PermissionChange done = study::change_permissions(
+      command.database, command.participant, {wish_of(command.gaze), wish_of(command.sharing)});
+  if (command.gaze == "no")
+    std::printf("%lld samples of gaze deleted\n", static_cast<long long>(done.gaze_deleted));
+  print_list("Backups that hold gaze still; delete them:", done.backups);
+  print_list("Public exports that hold the participant; delete them and their copies, or make them again:",
+             done.exports);
+  print_list("Could not be cleaned:", done.left);
+  study::check_nothing_left(command.database, done.left);
+  if (!done.backups.empty()) {
+    throw base::Error(command.database, "has backups that hold gaze of " + command.participant + " still",
+                      "delete the files listed and do this again");
+  }
+}
+
+void consent(const ConsentCommand& command) {
+  if (!command.gaze.empty() || !command.sharing.empty()) print_change(command);
+  for (const auto& session : study::read_permissions(command.database, command.participant)) {
+    std::printf("%s %s visit %d: gaze kept %s, data shared %s\n", command.participant.c_str(),
+                session.protocol.c_str(), session.visit, word_of(session.gaze), word_of(session.sharing));
+  }
+}
+
+}  // namespace
+
+void add_consent_command(CLI::App& app) {
+  auto command = std::make_shared<ConsentCommand>();
+  CLI::App& sub = *app.add_subcommand("consent", "Show or change what a participant allows");
+  sub.add_option("participant", command->participant, "Code of the participant")->required();
+  sub.add_option("--db", command->database, "Database of the study")->required();
+  sub.add_option("--gaze", command->gaze,
+                 "Whether where they look may be recorded; no deletes what was, also from the raw file")
+      ->check(CLI::IsMember({"yes", "no"}));
+  sub.add_option("--sharing", command->sharing,
+                 "Whether they may stand in public exports (BIDS, Psych-DS), with all their sessions")
+      ->check(CLI::IsMember({"yes", "no"}));
+  sub.footer(
+      "Without --gaze and --sharing it changes nothing. Changes hold for all sessions there are and are "
+      "logged; a consent page that is answered later counts again.");
+  sub.callback([command] { consent(*command); });
+}
+
+}  // namespace apps

@@ -1,0 +1,31 @@
+#include "apps/study/desk/mouse_gaze.hpp"
+
+namespace apps {
+
+namespace {
+bool on_picture(const study::GazePoint& point) {
+  return point.first >= 0 && point.first < 1 && point.second >= 0 && point.second < 1;
+}
+}  // namespace
+
+void MouseGaze::start() {
+  samples_.clear();
+  started_ = true;
+  moved(where_now_());
+}
+
+void MouseGaze::stop() {
+  started_ = false;
+  samples_.clear();
+}
+
+void MouseGaze::moved(const Place& place) {
+  if (!started_) return;
+  study::GazeSample sample;
+  sample.sampled_ns = clock_.now_ns();
+  sample.valid = place && on_picture(*place);
+  if (sample.valid) sample.point = place;
+  samples_.push_back(sample);
+}
+
+}  // namespace apps

@@ -1,0 +1,50 @@
+#pragma once
+/// A file that is written under a name of its own and then takes its place at once.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace base {
+
+/// `path` + ".tmp" + 16 random hexadecimal digits: beside `path`, and not to be guessed by others who may
+/// write there.
+std::filesystem::path draft_name(const std::filesystem::path& path);
+
+/// A new file beside `path`. It is made for this object alone: a file or link that is already there is never
+/// written through. It goes with the object unless it was put in place. Errors are base::Error and name
+/// `path`.
+class NewFile {
+ public:
+  explicit NewFile(const std::filesystem::path& path);
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  void write(std::string_view bytes);
+
+  /// Syncs the file, renames it over `path` and syncs the folder. The rights are those of the file that stood
+  /// there, else what the umask leaves.
+  void put_in_place();
+
+ private:
+  [[noreturn]] void fail(const std::string& step) const;
+
+  std::filesystem::path path_, draft_;
+  int fd_ = -1;
+};
+
+/// Waits for, and holds, the lock of the file at `path`: a file beside it, `path` + ".lock", which stays. For
+/// what is read and replaced by several programs. Errors are base::Error.
+class FileLock {
+ public:
+  explicit FileLock(const std::filesystem::path& path);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace base

@@ -1,0 +1,196 @@
+#include "stats/base/toml_text.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
+
+namespace base {
+
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// Walks over a text once, knowing as much of the grammar as tells keys, values, texts and comments apart.
+/// Where the text breaks the grammar the parser stops, so what the walk makes of the rest does not matter.
+class Walk {
+ public:
+  Walk(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  void check_characters() {
+    for (at_ = 0; at_ < text_.size();) {
+      const std::size_t length = utf8_length(text_.substr(at_));
+      if (length == 0) fail("is not UTF-8", "save the file as UTF-8");
+      const auto c = static_cast<unsigned char>(text_[at_]);
+      const bool line_end = c == '\n' || (c == '\r' && text_.substr(at_, 2) == "\r\n");
+      if ((c < 0x20 && c != '\t' && !line_end) || c == 0x7F)
+        fail("holds a control character", "remove it, or write it within quotes as \\u and four digits");
+      at_ += length;
+    }
+  }
+
+  void check_structure() {
+    for (at_ = 0; at_ < text_.size();) {
+      const char c = text_[at_];
+      if (c == '#')
+        skip_line();
+      else if (c == '"' || c == '\'')
+        skip_text(c);
+      else
+        step(c);
+    }
+  }
+
+ private:
+  /// What is open: a list, a table on one line, or (at the bottom) the document.
+  struct Bracket {
+    char kind;
+    int depth;  // of keys and brackets around what it holds
+  };
+
+  void step(char c) {
+    if (static_cast<unsigned char>(c) >= 0x80)
+      fail("is a character outside ASCII where no quotes stand", "put the word in double quotes");
+    const bool top = open_.empty();
+    if (c == '\n' && top)
+      start_line();
+    else if (c == '=')
+      key_ = false;
+    else if (c == '.' && key_)
+      deepen();
+    else if (c == ',' && !top)
+      start_element();
+    else if (c == '[' && top && key_)
+      open_header();
+    else if (c == ']' && header_)
+      close_header();
+    else if (c == '[' || c == '{')
+      open_bracket(c);
+    else if ((c == ']' || c == '}') && !top)
+      close_bracket();
+    ++at_;
+  }
+
+  void start_line() {
+    depth_ = header_depth_;
+    key_ = true;
+    header_ = false;
+  }
+
+  /// A header starts from the document, not from the header before it.
+  void open_header() {
+    header_ = true;
+    depth_ = 1;
+  }
+
+  void close_header() {
+    header_depth_ = depth_;
+    header_ = false;
+    key_ = false;
+  }
+
+  void start_element() {
+    depth_ = open_.back().depth;
+    key_ = open_.back().kind == '{';
+  }
+
+  void open_bracket(char kind) {
+    deepen();
+    open_.push_back({kind, depth_});
+    key_ = kind == '{';
+  }
+
+  void close_bracket() {
+    open_.pop_back();
+    key_ = false;
+  }
+
+  void deepen() {
+    if (++depth_ > most_toml_levels)
+      fail("is nested more than " + std::to_string(most_toml_levels) + " levels deep",
+           "use fewer dots in keys and brackets within brackets");
+  }
+
+  void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
+
+  /// toml++ 3.3 looks at what stands close behind a number as if it were a part of it.
+  void check_text_begins() const {
+    constexpr std::string_view separators = " \t\n=[{,.";
+    if (at_ > 0 && separators.find(text_[at_ - 1]) == std::string_view::npos)
+      fail("is a quote right behind a key or value", "put a comma or the end of the line between them");
+  }
+
+  void skip_text(char quote) {
+    check_text_begins();
+    const std::string three(3, quote);
+    if (text_.substr(at_, 3) != three) return skip_one_line_text(quote);
+    at_ += 3;
+    while (at_ < text_.size() && text_.substr(at_, 3) != three) skip_in_text(quote, true);
+    at_ = std::min(at_ + 3, text_.size());
+    // Up to two quotes may stand before the closing three.
+    for (int i = 0; i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
+  }
+
+  void skip_one_line_text(char quote) {
+    ++at_;
+    while (at_ < text_.size() && text_[at_] != quote && text_[at_] != '\n') skip_in_text(quote, false);
+    if (at_ < text_.size() && text_[at_] == quote) ++at_;
+  }
+
+  void skip_in_text(char quote, bool lines) {
+    if (quote == '"' && text_[at_] == '\\') return skip_escape(lines);
+    ++at_;
+  }
+
+  void skip_escape(bool lines) {
+    const std::string_view rest = text_.substr(at_);
+    if (rest.starts_with("\\u0000") || rest.starts_with("\\U00000000"))
+      fail("is a NUL within a text", "remove this escape");
+    ++at_;
+    if (!lines) {
+      if (at_ < text_.size() && text_[at_] != '\n') ++at_;
+      return;
+    }
+    const std::size_t next = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size());
+    const bool line_ending = next > at_;
+    at_ = next;
+    if (at_ < text_.size() && static_cast<unsigned char>(text_[at_]) >= 0x80)
+      fail("is a character outside ASCII right after a backslash at a line's end",
+           "write it as \\u and four digits, or join the lines");
+    if (!line_ending && at_ < text_.size()) ++at_;
+  }
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& mend) const {
+    const auto before = text_.substr(0, at_);
+    const auto line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const auto column =
+        1 + std::count_if(before.begin() + static_cast<std::ptrdiff_t>(line_start), before.end(),
+                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    throw Error(name_ + ":" + std::to_string(line) + ":" + std::to_string(column), problem, mend);
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t at_ = 0;
+  std::vector<Bracket> open_;
+  int depth_ = 0, header_depth_ = 0;
+  bool key_ = true, header_ = false;
+};
+
+}  // namespace
+
+void check_toml_text(std::string_view text, const std::string& name) {
+  if (text.size() > most_toml_bytes)
+    throw Error(name,
+                "holds " + std::to_string(text.size()) + " bytes, at most " +
+                    std::to_string(most_toml_bytes) + " are read",
+                "name the right file, or shorten its texts");
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  Walk walk(text, name);
+  walk.check_characters();
+  walk.check_structure();
+}
+
+}  // namespace base

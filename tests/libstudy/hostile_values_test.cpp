@@ -1,0 +1,105 @@
+/// Whatever stands behind a key of a protocol: it is taken, and the plan and its frames can be made, or an
+/// error says where it stands and what to do.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libstudy/design/plan.hpp"
+#include "libstudy/pacing/exact_rates.hpp"
+#include "libstudy/pacing/schedule.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "libstudy/protocol/reference.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/common/hostile_values.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// The protocols that ship and those of the fuzz corpus that are sound.
+std::vector<test::SoundText> sound_protocols() {
+  std::vector<test::SoundText> out;
+  for (const char* folder : {"../protocols", "fuzz/corpus/protocol"}) {
+    std::vector<fs::path> files;
+    for (const auto& file : fs::directory_iterator(fs::path(VIP_TEST_DIR) / folder))
+      files.push_back(file.path());
+    std::sort(files.begin(), files.end());
+    for (const auto& file : files) {
+      test::SoundText text{file.filename().string(), base::read_file(file, 1 << 20)};
+      // The one key that no file needs.
+      const std::string stimulus = "kind = \"stimulus\"\n";
+      if (const auto at = text.bytes.find(stimulus); at != std::string::npos)
+        text.bytes.insert(at + stimulus.size(), "on_interruption = \"invalidate\"\n");
+      try {
+        study::parse_protocol(text.bytes, text.name);
+        out.push_back(text);
+      } catch (const base::Error&) {
+      }
+    }
+  }
+  return out;
+}
+
+/// What follows from a protocol that was taken.
+void use(const study::Protocol& protocol) {
+  study::next_slot(protocol, {});
+  study::make_plan(protocol, "P01", 7, 0);
+  const auto& cells = protocol.design.cells;
+  for (const auto* cell : {&cells.front(), &cells.back()}) {
+    if (cell->setting.mean > 0 && study::frame_count(cell->setting) < 5000) {
+      study::compile_schedule(cell->setting, study::for_display(protocol.pacing, 90), 1);
+    }
+  }
+}
+
+TEST(HostileValues, OfAnyKeyOfAProtocolAreTakenOrRefusedWithPlaceAndMend) {
+  const auto names = test::try_hostile_values(
+      sound_protocols(),
+      [](const std::string& text) { return study::parse_protocol(text, test::hostile_name); }, use);
+  // No key of the reference is left out: tables and lists of tables are reached through what they hold.
+  for (const auto& key : study::protocol_reference()) {
+    if (key.type.find("table") == std::string::npos && key.key != "SCORE") {
+      EXPECT_TRUE(names.contains(key.key)) << key.table << " " << key.key;
+    }
+  }
+}
+
+TEST(HostileValues, ASpreadTooSmallToBeToldFromNoneIsRefused) {
+  const auto text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
+  auto changed = text;
+  const std::string list = "sd_fps = [0, 5";
+  changed.replace(text.find(list), list.size(), "sd_fps = [0, 1e-308");
+  EXPECT_THAT([&] { study::parse_protocol(changed, "p.toml"); },
+              testing::ThrowsMessage<base::Error>(testing::AllOf(
+                  HasSubstr("sd_fps[1]"), HasSubstr("too small"), HasSubstr("at least 0.001"))));
+  study::PacingRules rules;
+  for (const double sd : {1e-308, 1e-12, 1e-6}) {
+    for (const auto cap : {std::optional<double>(), std::optional<double>(90)}) {
+      rules.fps_max = cap;
+      try {
+        study::compile_schedule({50, sd, 10}, rules, 1);
+      } catch (const base::Error& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("setting (50"), HasSubstr("mend: ")));
+      }
+    }
+  }
+}
+
+TEST(HostileValues, TheSmallestSpreadCanBeMade) {
+  for (const double mean : {10.0, 50.0, 200.0}) {
+    for (const auto cap : {std::optional<double>(), std::optional<double>(240)}) {
+      study::PacingRules rules;
+      rules.fps_max = cap;
+      EXPECT_NO_THROW(study::compile_schedule({mean, study::least_sd_fps, 10}, rules, 1)) << mean;
+    }
+  }
+}
+
+}  // namespace

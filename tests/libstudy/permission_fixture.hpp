@@ -1,0 +1,118 @@
+#pragma once
+/// A study that asks its participants for permission, for tests.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/store/database.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace study::test {
+
+/// A pilot of two settings with a consent page; asks gaze_kept, data_shared, both or neither.
+inline Protocol asking_protocol(bool gaze = true, bool sharing = true) {
+  std::string text = R"(
+format = 2
+name = "asking)" + std::string(gaze ? "" : "_no_gaze") +
+                     (sharing ? "" : "_no_sharing") + R"("
+version = "1.0"
+language = "en"
+participants = 4
+
+[design]
+scene = ["data/scenes/single_dam.toml"]
+method = ["HiRes"]
+n_star = ["16k"]
+timing = "settings"
+mean_fps = [20, 50]
+sd_fps = [0]
+duration_s = 0.5
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+fps_max = "none"
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.02
+start_frame = 0
+at_end = "hold"
+
+[[block]]
+kind = "consent"
+id = "consent"
+text = "Read this."
+
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I take part."
+anchors = {0 = "no", 1 = "yes"}
+accept = [1, 1]
+)";
+  const auto box = [](const std::string& id) {
+    return "\n[[block.question]]\nid = \"" + id +
+           "\"\nkind = \"choice\"\ntext = \"May we?\"\nanchors = {0 = \"no\", 1 = \"yes\"}\n";
+  };
+  if (gaze) text += box(gaze_question);
+  if (sharing) text += box(sharing_question);
+  text += R"(
+[[block]]
+kind = "stimulus"
+id = "trials"
+steps = ["stimulus", "ask rating"]
+
+[[block.question]]
+id = "rating"
+kind = "scale"
+text = "How was it?"
+scale = [1, 7]
+)";
+  return parse_protocol(text, "asking.toml");
+}
+
+/// What somebody says on the consent page; none: the page is not answered.
+struct Says {
+  std::string participant;
+  std::optional<int> gaze, sharing;
+};
+
+/// Answers the consent page of a session with what its protocol asks.
+inline void answer_consent(Store& store, const OpenSession& session, const Says& says) {
+  std::vector<KeptAnswer> kept{{"take_part", {score(1), 1}}};
+  if (says.gaze) kept.push_back({gaze_question, {score(*says.gaze), 1}});
+  if (says.sharing) kept.push_back({sharing_question, {score(*says.sharing), 1}});
+  if (kept.size() > 1) store.answer(session.id, session.units.at(0), 0, kept, true, 900);
+}
+
+/// Adds sessions of these people, answers their consent pages and shows them their first trial.
+inline void add_people(Store& store, const Protocol& protocol, const std::vector<Says>& people,
+                       int visit = 1) {
+  RunPlan run = run_plan(protocol, {});
+  for (const Says& says : people) {
+    run.sessions.push_back(session_plan(protocol, says.participant));
+    run.sessions.back().visit = visit;
+  }
+  const std::int64_t id = store.add_run(run);
+  for (const OpenRun& open : store.open_runs()) {
+    for (std::size_t i = 0; open.id == id && i < people.size(); ++i) {
+      answer_consent(store, open.sessions.at(i), people[i]);
+      answer_one(store, open.sessions.at(i), open.sessions.at(i).units.at(1), "rating", score(5));
+    }
+  }
+}
+
+/// One column of a database as text, one line a row; "~" is empty.
+inline std::vector<std::string> column(const std::filesystem::path& path, const std::string& sql) {
+  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+  std::vector<std::string> out;
+  for (sqlite::Statement row(*database, sql); row.step();) out.push_back(row.is_null(0) ? "~" : row.text(0));
+  return out;
+}
+
+}  // namespace study::test

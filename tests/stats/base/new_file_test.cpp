@@ -1,0 +1,99 @@
+/// Files that take their place at once, and nothing else's.
+
+#include "stats/base/new_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace base {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+unsigned rights(const fs::path& path) { return static_cast<unsigned>(fs::status(path).permissions()); }
+
+TEST(NewFile, ALinkWithTheNameOfAnEarlierDraftIsNotWrittenThrough) {
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "precious", "mine");
+  const auto guessed = (folder / "out").string() + ".tmp" + std::to_string(::getpid());
+  fs::create_symlink("precious", guessed);
+  write_file_atomically(folder / "out", "new");
+  EXPECT_EQ(read_file(folder / "precious", 100), "mine");
+  EXPECT_EQ(read_file(folder / "out", 100), "new");
+  EXPECT_TRUE(fs::is_symlink(guessed));
+}
+
+TEST(NewFile, DraftsHaveNamesThatCannotBeGuessed) {
+  std::set<fs::path> names;
+  for (int i = 0; i < 100; ++i) names.insert(draft_name("out"));
+  EXPECT_EQ(names.size(), 100u);
+  EXPECT_EQ(names.begin()->string().size(), std::string("out.tmp").size() + 16);
+}
+
+TEST(NewFile, KeepsTheRightsOfTheFileItReplacesAndElseFollowsTheUmask) {
+  const test::TemporaryFolder folder;
+  const mode_t before = ::umask(027);
+  write_file_atomically(folder / "a", "1");
+  EXPECT_EQ(rights(folder / "a"), 0640u);
+  fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
+  ::umask(0);
+  write_file_atomically(folder / "a", "2");
+  EXPECT_EQ(rights(folder / "a"), 0600u);
+  EXPECT_EQ(read_file(folder / "a", 10), "2");
+  ::umask(before);
+}
+
+TEST(NewFile, LeavesNothingBehindWhenItIsNotPutInPlace) {
+  const test::TemporaryFolder folder;
+  {
+    NewFile file(folder / "a");
+    file.write("half");
+    EXPECT_EQ(entries(folder.path()), 1u);
+  }
+  EXPECT_EQ(entries(folder.path()), 0u);
+  fs::create_directory(folder / "a");
+  std::ofstream(folder / "a/b") << "c";
+  EXPECT_THROW(write_file_atomically(folder / "a", "text"),
+               Error);  // a rename over a folder that holds a file
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(NewFile, ADiskThatFillsLeavesTheOldFileAndNoOther) {
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "a", "old");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(write_file_atomically(folder / "a", std::string(10000, 'x')), Error);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(read_file(folder / "a", 10), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(FileLock, DoesNotFollowALink) {
+  const test::TemporaryFolder folder;
+  fs::create_symlink("elsewhere", folder / "a.lock");
+  EXPECT_THROW(FileLock(folder / "a"), Error);
+  EXPECT_FALSE(fs::exists(folder / "elsewhere"));
+}
+
+}  // namespace
+}  // namespace base
