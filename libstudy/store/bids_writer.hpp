@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// A table of texts, the first line its header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// A field of a TSV file, which knows no quotes; "n/a" when there is nothing.
+/// A field of a TSV file, which knows no quotes; "n/a" when there is nothing. Texts are formula_guarded().
 std::string field(std::string text);
 std::string field(const sqlite::Statement& row, int column);
 /// Seconds as text.

@@ -133,6 +133,13 @@ void check(Connection& made) {
                     "report this with the damaged file");
 }
 
+/// The file alone is put in place, and closing it says nothing of a log that could not be copied back.
+void leave_no_log(Connection& made) {
+  if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
+  throw base::Error(made.path().string(), "its log cannot be copied back into it",
+                    "free space, and do this again");
+}
+
 /// A link fails where something stands already.
 void put_in_place(const fs::path& made, const fs::path& into) {
   if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0) return;
@@ -164,6 +171,7 @@ Salvage salvage(const fs::path& database, const fs::path& into) {
                             " is what a database can be made of when it is gone");
     }
     check(*target);
+    leave_no_log(*target);
   }
   put_in_place(made, into);
   const auto finished = open_database(into, Open::Write, read_schema_steps());

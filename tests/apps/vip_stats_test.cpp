@@ -193,16 +193,16 @@ TEST(VipStatsE2e, FitsAtOneTimeKeepEachOthersCalibrations) {
   write_database(folder / "study.db", simulated("ptpe:a=24,b=0.02"));
   const auto toml = folder / "fitted.toml";
   std::vector<std::unique_ptr<apps::test::Process>> fits;
-  for (int i = 0; i < 8; ++i)
+  for (int i = 0; i < 16; ++i)
     fits.push_back(std::make_unique<apps::test::Process>(std::vector<std::string>{
         VIP_BIN_DIR "/vip-stats", "fit-ptpe", (folder / "study.db").string(), "--resamples", "100", "--force",
-        "--level", "4." + std::to_string(i), "--out", toml.string()}));
+        "--level", "4." + std::to_string(10 + i), "--out", toml.string()}));
   for (auto& fit : fits) EXPECT_EQ(fit->wait().exit_code, 0);
   std::set<double> levels;
   const auto lines = read_lines(folder / "fitted.toml.history.jsonl");
   for (const auto& line : lines) levels.insert(line.at("level").get<double>());
-  EXPECT_EQ(levels.size(), 8u);
-  EXPECT_EQ(lines.size(), 8u) << "no file was found that the record does not hold";
+  EXPECT_EQ(levels.size(), 16u);
+  EXPECT_EQ(lines.size(), 16u) << "no file was found that the record does not hold";
   EXPECT_EQ(lines.back().at("file"), study::test::bytes_of(toml)) << "the file in force is the record's last";
 }
 

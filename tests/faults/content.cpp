@@ -95,6 +95,12 @@ Lines database_content(const fs::path& path) {
   return all;
 }
 
+Lines permission_content(const fs::path& database) {
+  return select(database,
+                "SELECT 'permission', participant, visit, what, granted FROM permission JOIN session USING "
+                "(session_id) ORDER BY 1, 2, 3, 4");
+}
+
 Lines personal_content(const fs::path& database) {
   const fs::path path = study::PersonalFile::beside(database);
   if (select(path, "SELECT 1 FROM sqlite_schema WHERE name = 'personal'").empty()) return {};

@@ -16,6 +16,8 @@ using Lines = std::vector<std::string>;
 Lines session_content(const fs::path& database);
 /// Every row of every table but the log of events and the register of exports, without times of day.
 Lines database_content(const fs::path& database);
+/// What each participant allows.
+Lines permission_content(const fs::path& database);
 /// The personal file beside a database; nothing where there is none.
 Lines personal_content(const fs::path& database);
 /// Names and bytes of all files of a folder; files that name a time of day or a path without those lines.

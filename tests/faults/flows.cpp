@@ -72,7 +72,6 @@ void prepare_withdrawal(const fs::path& folder) {
 Lines withdrawal_content(const fs::path& folder) {
   Lines all = database_content(folder / "s.db") + personal_content(folder / "s.db");
   std::string where;
-  fs::remove_all(folder / "csv");  // deleted or named: the store's own tests tell which
   if (stands_in(folder, secret, where)) all.push_back("the note on P02 stands in " + where);
   return all;
 }
@@ -97,6 +96,14 @@ Arguments merge_arguments(const fs::path& folder) {
   return vip_study({"merge", folder / "north.db", folder / "south.db", "--into", folder / "all.db"});
 }
 
+Arguments consent_arguments(const fs::path& folder) {
+  return vip_study({"consent", "P02", "--db", folder / "s.db", "--gaze", "no", "--sharing", "no"});
+}
+
+Lines consent_content(const fs::path& folder) {
+  return session_content(folder / "s.db") + permission_content(folder / "s.db");
+}
+
 Lines export_content(const fs::path& folder) {
   return folder_content(folder / "csv") + folder_content(folder / "bids") + folder_content(folder / "psych");
 }
@@ -115,6 +122,31 @@ Arguments bake_arguments(const fs::path& folder) {
 Arguments bake_or_verify(const fs::path& folder) {
   if (!fs::exists(folder / "dam.bake")) return bake_arguments(folder);
   return vip_study({"bake", "--verify", folder / "dam.bake"});
+}
+
+/// A database cut in half; its journal is whole.
+void prepare_salvage(const fs::path& folder) {
+  run_whole(folder, "s.db", {"P01", "P02"});
+  fs::resize_file(folder / "s.db", fs::file_size(folder / "s.db") / 2);
+}
+
+Arguments salvage_arguments(const fs::path& folder) {
+  return vip_study({"salvage", "--db", folder / "s.db", "--into", folder / "new.db"});
+}
+
+/// What stands under the new name is whole.
+Arguments salvage_or_look(const fs::path& folder) {
+  if (!fs::exists(folder / "new.db")) return salvage_arguments(folder);
+  return vip_study({"status", "--db", folder / "new.db"});
+}
+
+Lines salvage_content(const fs::path& folder) {
+  Lines all{base::sha256_hex(base::read_file(folder / "s.db", 1u << 30))};
+  // What stood on the pages that were cut off is in the journal, but for the frames.
+  for (const std::string& line : session_content(folder / "new.db")) {
+    if (!line.starts_with("shown|")) all.push_back(line);
+  }
+  return all;
 }
 
 std::function<void(const fs::path&)> fixture(const std::string& name) {
@@ -165,6 +197,7 @@ const std::vector<Flow>& all_flows() {
     return session_content(folder / "s.db") + personal_content(folder / "s.db");
   };
   const auto run = [](const fs::path& folder) { return run_arguments(folder, "s.db", {"P01", "P02"}); };
+  const auto two_people = [](const fs::path& folder) { run_whole(folder, "s.db", {"P01", "P02"}); };
   const auto go_on = [=](const fs::path& folder) {
     return is_planned(folder / "s.db") ? resume_arguments(folder, "s.db") : run(folder);
   };
@@ -182,15 +215,8 @@ const std::vector<Flow>& all_flows() {
        merge_content,
        {"north.db", "south.db", "all.db"},
        ""},
-      {"export",
-       [](const fs::path& folder) {
-         run_whole(folder, "s.db", {"P01", "P02"});
-       },
-       export_arguments,
-       export_arguments,
-       export_content,
-       {"s.db"},
-       ""},
+      {"consent", two_people, consent_arguments, consent_arguments, consent_content, {"s.db"}, ""},
+      {"export", two_people, export_arguments, export_arguments, export_content, {"s.db"}, ""},
       {"bake",
        [](const fs::path&) {},
        bake_arguments,
@@ -200,6 +226,7 @@ const std::vector<Flow>& all_flows() {
        },
        {},
        ""},
+      {"salvage", prepare_salvage, salvage_arguments, salvage_or_look, salvage_content, {}, ""},
       {"upgrade from schema 1",
        fixture("study_v1.db"),
        of("s.db", resume_arguments),

@@ -13,6 +13,7 @@
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/merge.hpp"
+#include "libstudy/store/salvage.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -167,6 +168,17 @@ std::vector<Flow> all_flows() {
          return faults::folder_content(folder / "csv") + faults::folder_content(folder / "bids");
        },
        {"s.db"}},
+      {"salvage",
+       [](const fs::path& folder) {
+         play(folder);
+         fs::resize_file(folder / "s.db", fs::file_size(folder / "s.db") / 2);
+       },
+       [](const fs::path& folder) {
+         if (!fs::exists(folder / "new.db")) salvage(folder / "s.db", folder / "new.db");
+         read_status(folder / "new.db");
+       },
+       [](const fs::path& folder) { return faults::answer_rows(folder / "new.db"); },
+       {}},
       {"upgrade from schema 1",
        fixture("study_v1.db"),
        [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
@@ -319,10 +331,13 @@ void try_every(long step, const std::set<std::string>& names) {
 TEST(Faults, SomeCallsOfSessions) { try_every(61, {"session", "resume"}); }
 TEST(Faults, SomeCallsOfExports) { try_every(31, {"export"}); }
 
+TEST(Faults, SomeCallsOfSalvages) { try_every(19, {"salvage"}); }
+
 TEST(FaultsSlow, EveryCallOfSessions) { try_every(1, {"session", "resume"}); }
 TEST(FaultsSlow, EveryCallOfExports) { try_every(1, {"export"}); }
 TEST(FaultsSlow, EveryCallOfWithdrawals) { try_every(1, {"withdrawal"}); }
 TEST(FaultsSlow, EveryCallOfMerges) { try_every(1, {"merge"}); }
+TEST(FaultsSlow, EveryCallOfSalvages) { try_every(1, {"salvage"}); }
 TEST(FaultsSlow, EveryCallOfUpgrades) { try_every(1, {"upgrade from schema 1", "upgrade from schema 2"}); }
 
 /// The model itself: what was not synced is gone after a power cut, what was synced is there.

@@ -1,0 +1,45 @@
+/// Any bytes as the journal of answers: alone, it is salvaged from or refused; beside a whole database,
+/// opening that for writing settles the two or refuses. Both leave the answers of the database as they were.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/store.hpp"
+#include "stats/base/file.hpp"
+#include "tests/common/temporary_folder.hpp"
+#include "tests/fuzz/attempt.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& bytes) {
+  if (std::FILE* out = std::fopen(path.c_str(), "wb")) {
+    std::fwrite(bytes.data(), 1, bytes.size(), out);
+    std::fclose(out);
+  }
+}
+
+std::int64_t answers_in(const fs::path& database) {
+  return study::sqlite::Connection(database, study::sqlite::Open::Read)
+      .integer("SELECT count(*) FROM response");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const test::TemporaryFolder folder(test::memory_folder());
+  static const std::string whole =
+      base::read_file(base::resource("tests/libstudy/fixtures/study_v2.db"), 1 << 24);
+  for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
+  const fs::path database = folder / "s.db";
+  write(study::journal_beside(database), {reinterpret_cast<const char*>(data), size});
+  fuzz::attempt([&] { study::salvage(database, folder / "new.db"); });
+  write(database, whole);
+  const std::int64_t before = answers_in(database);
+  fuzz::attempt([&] { study::Store(database, study::sqlite::Open::Write).open_runs(); });
+  if (answers_in(database) < before) std::abort();
+  return 0;
+}
