@@ -149,7 +149,6 @@ void AnswerJournal::write() {
         journal::each_row_of_protocol(database_, *journal::find_table(part), protocol, add);
     }
   }
-  changed_.clear();
   if (text.empty()) return;
   file_.append(text + ready_line(number_ + 1), head_for(database_), answers);
   ++number_;
@@ -157,6 +156,7 @@ void AnswerJournal::write() {
 }
 
 void AnswerJournal::kept() {
+  changed_.clear();  // what is never kept stands in the next batch again, for the last one alone is redone
   if (!waiting_) return;
   waiting_ = false;
   blank_ = false;

@@ -23,6 +23,16 @@ sqlite3_file* main_file(sqlite3* database) {
   return file && file->pMethods && file->pMethods->iVersion >= 2 ? file : nullptr;
 }
 
+bool keeps_a_log(sqlite3* database) {
+  std::string mode;
+  const auto take = [](void* out, int, char** values, char**) {
+    *static_cast<std::string*>(out) = values[0];
+    return 0;
+  };
+  sqlite3_exec(database, "PRAGMA journal_mode", take, &mode, nullptr);
+  return mode == "wal";
+}
+
 /// The shared memory that the connection has mapped already.
 const volatile char* shared_memory(sqlite3* database) {
   sqlite3_file* file = main_file(database);
@@ -73,7 +83,9 @@ std::string FileWatch::trouble() {
   const auto file = id_of(path_);
   if (!file) return "was deleted or moved away while it was in use";
   if (file != file_id_) return "was replaced by another file while it was in use";
-  if (id_of(log_) != log_id_) return "lost its log " + log_.string() + " while it was in use";
+  // Gone on purpose where the connection no longer keeps one.
+  if (id_of(log_) != log_id_)
+    return keeps_a_log(database_) ? "lost its log " + log_.string() + " while it was in use" : "";
   if (!written_by_somebody()) return {};
   // Whoever copies the log holds this lock; then it is judged at the next look.
   const auto lock = [this](int how) {

@@ -98,7 +98,6 @@ class Connection {
   friend class Transaction;
   void protect();
   static int wait(void* connection, int tries);
-  void open(int flags);
   [[noreturn]] void fail(int code, const std::string& message, int system_error) const;
   void begin();
   void commit();
@@ -107,7 +106,6 @@ class Connection {
 
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
-  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
   Waiting waiting_;
   std::int64_t wait_began_ns_ = 0, told_ns_ = 0;
   bool limited_ = false;
@@ -116,7 +114,8 @@ class Connection {
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;  ///< nothing more is written
+  std::optional<Lost> lost_;   ///< nothing more is written
+  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
 /// A prepared statement: bind all, step, reset. Indices count from 0.

@@ -102,6 +102,8 @@ void Store::make(const std::function<void(Store&)>& change) {
   try {
     change(*this);
   } catch (const sqlite::LockedOut&) {
+    const std::lock_guard guard(copying_);
+    given_up_ = true;
     if (!copy_) copy_.reset(new Store(*this));
     change(*copy_);
     throw;
@@ -114,7 +116,7 @@ void Store::keep_file() {
 }
 
 void Store::commit(Transaction& transaction) {
-  if (copy_) {
+  if (given_up_) {
     throw sqlite::LockedOut(path_.string(), "was locked by another program; nothing more is written now",
                             "run vip-study resume --db " + path_.string());
   }

@@ -2,10 +2,12 @@
 /// A study's database as the session writes it: the whole plan first, one commit for each answer.
 /// All failures are base::Error and name the file; what was committed before stays.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -210,7 +212,9 @@ class Store {
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;
-  std::unique_ptr<Store> copy_;  ///< once it is there, nothing more goes into the file
+  std::mutex copying_;                  ///< of copy_: the console writes notes from a thread of its own
+  std::unique_ptr<Store> copy_;         ///< see make()
+  std::atomic<bool> given_up_ = false;  ///< there is one: nothing more goes into the file
   std::vector<std::string> left_;
 };
 

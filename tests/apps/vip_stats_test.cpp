@@ -17,6 +17,7 @@
 #include "apps/stats/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/store/ratings.hpp"
+#include "libstudy/store/sqlite.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
@@ -271,11 +272,12 @@ std::size_t files_in(const std::filesystem::path& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-/// A folder with a finished study that nobody may write to.
+/// A folder with a finished study that everybody may read and nobody write.
 class LockedStudy {
  public:
   LockedStudy() {
     write_database(folder_ / "study.db", simulated("ptpe:a=24,b=0.02"));
+    std::filesystem::permissions(folder_ / "study.db", static_cast<std::filesystem::perms>(0444));
     std::filesystem::permissions(folder_.path(), read_only);
   }
   ~LockedStudy() { std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all); }
@@ -294,12 +296,15 @@ class LockedStudy {
 };
 
 TEST(VipStatsE2e, LeavesNothingHalfWrittenAtAFileSizeLimit) {
-  const LockedStudy study;
-  const TemporaryFolder out;
-  std::filesystem::permissions(out.path(), std::filesystem::perms::all);
+  const TemporaryFolder folder, out;
+  const auto database = folder / "study.db";
+  write_database(database, simulated("ptpe:a=24,b=0.02"));
+  // SQLite's own files beside it are there already, so that none of them meets the limit.
+  study::sqlite::Connection other(database, study::sqlite::Open::Write);
+  other.integer("SELECT count(*) FROM session");
   const auto json = (out / "fit.json").string();
-  const auto outcome = vip_stats("fit-ptpe " + study.database() + " --resamples 100 --json " + json,
-                                 "ulimit -f 1; ", LockedStudy::unprivileged());
+  const auto outcome =
+      vip_stats("fit-ptpe " + database.string() + " --resamples 100 --json " + json, "ulimit -f 1; ");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
   EXPECT_NE(outcome.out.find(json + ": cannot be written"), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(out.path()), 0u);
