@@ -329,10 +329,10 @@ void try_every(long step, const std::set<std::string>& names) {
   }
 }
 
-TEST(Faults, SomeCallsOfSessions) { try_every(61, {"session", "resume"}); }
+TEST(Faults, SomeCallsOfSessions) { try_every(97, {"session", "resume"}); }
 TEST(Faults, SomeCallsOfExports) { try_every(31, {"export"}); }
 
-TEST(Faults, SomeCallsOfSalvages) { try_every(19, {"salvage"}); }
+TEST(Faults, SomeCallsOfSalvages) { try_every(41, {"salvage"}); }
 
 TEST(Faults, SomeCallsOfWithdrawals) { try_every(67, {"withdrawal"}); }
 TEST(Faults, SomeCallsOfMerges) { try_every(67, {"merge"}); }
