@@ -91,15 +91,20 @@ void recognise_header(Connection& database, Open how, std::size_t newest) {
   recognise(database.path(), found, how, newest);
 }
 
+/// Whole under its name or not there: a kill leaves a draft, which the next upgrade removes.
 void back_up(Connection& database, std::int64_t version) {
-  const std::string copy =
-      database.path().string() + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
-  if (!create_private(copy)) throw base::Error(copy, "is there already", "try again in a second");
+  const std::string path = database.path().string(), draft = path + ".bak.tmp",
+                    copy = path + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
+  std::error_code failed;
+  fs::remove(draft, failed);
+  if (!create_private(draft)) throw base::Error(draft, "is in the way", "move it away and try again");
   try {
-    sqlite::Statement(database, "VACUUM INTO ?").bind(0, copy).run();
+    sqlite::Statement(database, "VACUUM INTO ?").bind(0, draft).run();
+    fs::rename(draft, copy, failed);
+    if (failed)
+      throw base::Error(copy, "cannot be put in place: " + failed.message(), "check the disk and try again");
   } catch (...) {
-    std::error_code ignored;
-    fs::remove(copy, ignored);
+    fs::remove(draft, failed);
     throw;
   }
 }

@@ -83,7 +83,9 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, con
   left_ = clean_up(*database_).left;
   statements_ = std::make_unique<Statements>(*database_);
   journal_ = std::make_unique<AnswerJournal>(*database_);
-  if (!lock_->made()) keep_file();
+  // A new database may have a plan: the journal's, whose commit was under way when an earlier one was given
+  // up.
+  if (!lock_->made() || database_->integer("SELECT EXISTS (SELECT 1 FROM run)") == 1) keep_file();
 }
 
 // Members go in the reverse of their order: the lock is given back after SQLite has closed the file.

@@ -12,6 +12,7 @@
 #include "libstudy/session/interruptions.hpp"
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/journal_file.hpp"
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/salvage.hpp"
 #include "libstudy/store/status.hpp"
@@ -328,10 +329,14 @@ void try_every(long step, const std::set<std::string>& names) {
   }
 }
 
-TEST(Faults, SomeCallsOfSessions) { try_every(61, {"session", "resume"}); }
+TEST(Faults, SomeCallsOfSessions) { try_every(97, {"session", "resume"}); }
 TEST(Faults, SomeCallsOfExports) { try_every(31, {"export"}); }
 
-TEST(Faults, SomeCallsOfSalvages) { try_every(19, {"salvage"}); }
+TEST(Faults, SomeCallsOfSalvages) { try_every(41, {"salvage"}); }
+
+TEST(Faults, SomeCallsOfWithdrawals) { try_every(67, {"withdrawal"}); }
+TEST(Faults, SomeCallsOfMerges) { try_every(67, {"merge"}); }
+TEST(Faults, SomeCallsOfUpgrades) { try_every(13, {"upgrade from schema 1", "upgrade from schema 2"}); }
 
 TEST(FaultsSlow, EveryCallOfSessions) { try_every(1, {"session", "resume"}); }
 TEST(FaultsSlow, EveryCallOfExports) { try_every(1, {"export"}); }
@@ -339,6 +344,20 @@ TEST(FaultsSlow, EveryCallOfWithdrawals) { try_every(1, {"withdrawal"}); }
 TEST(FaultsSlow, EveryCallOfMerges) { try_every(1, {"merge"}); }
 TEST(FaultsSlow, EveryCallOfSalvages) { try_every(1, {"salvage"}); }
 TEST(FaultsSlow, EveryCallOfUpgrades) { try_every(1, {"upgrade from schema 1", "upgrade from schema 2"}); }
+
+/// A disk that filled in the first commit of a new database leaves the plan in the journal alone. The next
+/// run takes it over and is then refused, since the plan stands: it must not go with that run's new file.
+TEST(Faults, PlanOfTheJournalOutlivesARefusedRun) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "s.db";
+  const RunPlan plan = test::run_plan(test::pairs(), {"P01"});
+  { Store(path, sqlite::Open::Create).add_run(plan); }
+  fs::remove(path);
+  const std::string journal = test::bytes_of(journal_beside(path));
+  base::write_file_atomically(journal_beside(path), journal.substr(0, journal.rfind("{\"kept\"")));
+  EXPECT_THROW(Store(path, sqlite::Open::Create).add_run(plan), base::Error);
+  EXPECT_EQ(Store(path, sqlite::Open::Write).open_runs().size(), 1u);
+}
 
 /// The model itself: what was not synced is gone after a power cut, what was synced is there.
 TEST(FaultVfs, PowerCutLosesWhatWasNotSynced) {
