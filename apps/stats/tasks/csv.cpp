@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/common/program.hpp"
 #include "libstudy/store/export_folder.hpp"
 #include "stats/base/file.hpp"
 
@@ -167,7 +166,6 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
       lists.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
     lists.emplace_back("task2_triads", task.at("triads").at("participants"));
   }
-  make_folder(folder);
   write(folder / "exclusions.csv", csv_text(results.at("exclusions"), exclusion_columns));
   for (const auto& [name, list] : lists) {
     if (!list.empty()) write(folder / (name + ".csv"), csv_text(list));
