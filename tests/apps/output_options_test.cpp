@@ -24,6 +24,7 @@ class OutputOptionsE2e : public ::testing::Test {
  protected:
   OutputOptionsE2e() {
     base::write_file_atomically(folder_ / "file", "mine");
+    fs::create_symlink("/dev/full", folder_ / "full");
     for (const char* protocol : {"protocols/ptpe_pilot.toml", "protocols/task2.toml"}) {
       const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", "random",
                                    "--participants", "2"})
@@ -65,13 +66,14 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-stats preregister protocols/task2.toml --out "};
   }
 
-  void expect_refused(const std::string& line, const std::string& target) {
+  /// place: what is to be named.
+  void expect_refused(const std::string& line, const std::string& target, const std::string& place) {
     const auto before = names_in(folder_.path());
     const Ended ended = run_shell("timeout 60 " VIP_BIN_DIR "/" + line + target);
     EXPECT_EQ(ended.exit_code, 1) << line << target << "\n" << ended.out;
-    EXPECT_THAT(ended.out, AllOf(HasSubstr("error: "), HasSubstr(target), HasSubstr("\n  mend: "))) << line;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("error: "), HasSubstr(place), HasSubstr("\n  mend: "))) << line;
     EXPECT_EQ(names_in(folder_.path()), before) << line;
-    EXPECT_TRUE(fs::is_character_file("/dev/full")) << line;
+    EXPECT_TRUE(fs::is_character_file(folder_ / "full")) << line;
     EXPECT_EQ(count_in(database_, "SELECT count(*) FROM export"), 0) << line;
   }
 
@@ -80,14 +82,15 @@ class OutputOptionsE2e : public ::testing::Test {
 };
 
 TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
-  // As root nothing else keeps a program from putting a file in the place of the device.
-  ASSERT_TRUE(fs::is_character_file("/dev/full"));
-  const std::string below_a_file = folder_ / "file" / "out";
-  for (const std::string& target : {std::string("/dev/full"), below_a_file})
-    for (const std::string& line : file_options()) expect_refused(line, target);
-  expect_refused("vip-study merge " + database_ + " --into ", folder_ / "none" / "all.db");
-  for (const std::string& target : {std::string("/dev/full"), below_a_file})
-    for (const std::string& line : folder_options()) expect_refused(line, target);
+  const std::string full = folder_ / "full", file = folder_ / "file", below = file + "/out";
+  for (const std::string& line : file_options()) {
+    expect_refused(line, full, "/full");
+    expect_refused(line, below, below);
+  }
+  for (const std::string& line : folder_options()) {
+    expect_refused(line, full, "/full");
+    expect_refused(line, below, file);  // a folder is made with those above it
+  }
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ void expect_said(const std::function<void()>& thrower, const std::string& patter
 TEST(ProgramDeathTest, ErrorsOfOtherLibrariesHavePlaceAndMendToo) {
   expect_said([] { throw std::out_of_range("vector::at"); },
               "vip-some: error: vip-some thing: unexpected: vector::at\n  mend: .*report");
-  expect_said([] { std::filesystem::file_size("/none/such"); },
+  expect_said([] { std::filesystem::create_directory("/none/such"); },
               "error: /none/such: unexpected: No such file or directory\n  mend: ");
   expect_said([] { throw std::bad_alloc(); }, "error: vip-some thing: out of memory\n  mend: ");
   expect_said([] { throw base::Error("here", "is wrong", "mend it"); },
