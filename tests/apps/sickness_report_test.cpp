@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/sickness_json.hpp"
-#include "tests/apps/made_task_study.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 namespace apps {
 namespace {
@@ -119,6 +122,24 @@ TEST(SicknessJson, ProtocolsAreNeverPooled) {
   sessions[2].protocol_sha256 = std::string(64, '2');
   EXPECT_THAT(sickness_json(sessions, quick_plan()), SizeIs(2));
   EXPECT_THAT(sickness_json({}, quick_plan()), SizeIs(0));
+}
+
+TEST(SicknessTables, HoldEveryNumber) {
+  const Json json{{"timing", Json::array()},
+                  {"hypotheses", Json::array()},
+                  {"sensitivity", Json::array()},
+                  {"exclusions", Json::array()},
+                  {"sickness", sickness_json(three(), quick_plan())}};
+  std::map<std::string, std::string> files;
+  const test::TemporaryFolder folder;
+  write_csv_folder(json, folder / "tables", [&](const std::filesystem::path& path, const std::string& bytes) {
+    files[path.filename().string()] = bytes;
+  });
+  EXPECT_THAT(files["sickness_ssq.csv"], HasSubstr("change_bca_low,change_bca_high"));
+  EXPECT_THAT(files["sickness_ssq.csv"], HasSubstr("\r\ntask1_lab,total,Total,3.74,235.62,3,"));
+  EXPECT_THAT(files["sickness_fms_blocks.csv"], HasSubstr("\r\ntask1_lab,ratings,3,"));
+  EXPECT_THAT(files["sickness_fms_times.csv"], HasSubstr("\r\ntask1_lab,3,4"));
+  EXPECT_THAT(files["sickness_participants.csv"], HasSubstr("\r\ntask1_lab,P03,"));
 }
 
 std::string html_of(const std::vector<SicknessSession>& sessions) {

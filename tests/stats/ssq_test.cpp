@@ -90,9 +90,9 @@ TEST(SicknessChange, ComparesThoseWithBothAndDescribesAll) {
 }
 
 TEST(SicknessChange, EqualChangesTieWhateverTheirLevel) {
-  // 9.54 (3 - 2) and 9.54 (1 - 0) differ as doubles.
-  ASSERT_NE(9.54 * 3 - 9.54 * 2, 9.54 * 1);
-  const std::vector<ExactMean> before{{2}, {0}, {0}}, after{{3}, {1}, {3}};
+  // As doubles the changes of the first two differ.
+  ASSERT_NE(9.54 * 7 - 9.54 * 1, 9.54 * 6 - 9.54 * 0);
+  const std::vector<ExactMean> before{{1}, {0}, {0}}, after{{7}, {6}, {9}};
   const auto change = compare_sickness(before, after, 9.54, quick_plan());
   EXPECT_TRUE(change.ranks->has_ties);
 }

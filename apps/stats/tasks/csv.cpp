@@ -33,7 +33,7 @@ bool all_texts(const Json& list) {
 /// An interval may have open ends, which are texts.
 bool is_interval(const std::string& name, const Json& list) {
   return list.size() == 2 &&
-         (name.ends_with("ci") || name == "bca" || name == "clopper_pearson" || name == "wilson");
+         (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" || name == "wilson");
 }
 
 void flatten(const std::string& name, const Json& value, Fields& fields) {
