@@ -188,7 +188,7 @@ TEST_F(Counting, EveryExportSaysOfEachAnswerWhetherItCounts) {
                          {" 1", 25}, {"excluded 0", 6}, {"practice 0", 6}, {"set aside 0", 12}}));
   std::vector<fs::path> tables{folder_ / "csv/ratings.csv"};
   for (const auto& entry : fs::directory_iterator(folder_ / "psych/data")) {
-    if (entry.path().string().find("pages") == std::string::npos) tables.push_back(entry.path());
+    if (entry.path().string().find("_description-") == std::string::npos) tables.push_back(entry.path());
   }
   ASSERT_EQ(tables.size(), 2u);
   const std::map<std::string, std::string> of_trial{{"0", "practice"},     {"1", ""}, {"2", "not answered"},
