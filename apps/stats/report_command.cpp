@@ -17,6 +17,7 @@
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "apps/stats/tasks/sickness_json.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
@@ -78,6 +79,8 @@ Json document(const ReportCommand& command) {
         results.json[task_name(missing.task)] = {{"refused", missing.reason}};
   }
   if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
+  Json sickness = sickness_json(study::read_sickness(command.database), request.plan.plan);
+  if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
   if (bundle)
     results.json["preregistration"] =
         report::compare_with_bundle(*bundle, study::read_status(command.database).protocols, results.json);

@@ -5,6 +5,7 @@
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
+#include "libstudy/store/store_statements.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -15,19 +16,6 @@ using sqlite::Statement;
 using sqlite::Transaction;
 
 namespace {
-
-/// A time relative to another; nothing when it is not known.
-std::optional<std::int64_t> after(std::int64_t time_ns, std::int64_t origin_ns) {
-  if (time_ns < 0) return {};
-  return time_ns - origin_ns;
-}
-
-std::optional<std::string> particles_text(const std::vector<std::int64_t>& particles) {
-  if (particles.empty()) return {};
-  std::string text;
-  for (const auto count : particles) text += (text.empty() ? "" : " ") + std::to_string(count);
-  return text;
-}
 
 const char* state_name(EarlyEnd how) {
   if (how == EarlyEnd::NotEligible) return "not eligible";
@@ -40,31 +28,6 @@ std::optional<std::string> words_of(const Answer& answer) {
 }
 
 }  // namespace
-
-struct Store::Statements {
-  explicit Statements(sqlite::Connection& database)
-      : frame(database, "INSERT INTO frame VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)"),
-        event(database,
-              "INSERT INTO event (session_id, presentation_id, utc, clock_ns, kind, detail) VALUES "
-              "(?,?,?,?,?,?)"),
-        begin(database,
-              "INSERT INTO presentation (trial_id, attempt, interval, cell, state, started_utc, start_ns) "
-              "VALUES (?,?,?,?,'running',?,?)"),
-        end(database,
-            "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
-            "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "
-            "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
-        // No answer to what is personal, done, of another session or answered since it was last set aside.
-        response(database,
-                 "INSERT INTO response (unit_id, attempt, question_id, score, words, response_time_s, "
-                 "answered_utc) SELECT u.unit_id, ?3, q.question_id, ?5, ?6, ?7, ?8 "
-                 "FROM unit u JOIN session s USING (session_id) JOIN question q USING (protocol_id) "
-                 "LEFT JOIN trial t USING (trial_id) WHERE s.session_id = ?1 AND u.unit_id = ?2 "
-                 "AND q.code = ?4 AND q.personal = 0 AND u.state = 'planned' AND NOT EXISTS "
-                 "(SELECT 1 FROM response r WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
-                 "AND r.attempt > coalesce(t.set_aside, -1)) RETURNING response_id") {}
-  Statement frame, event, begin, end, response;
-};
 
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
     : path_(real_file(path)), lock_(std::in_place, path_, how) {
@@ -131,29 +94,6 @@ std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial,
                "attempt " + std::to_string(attempt) + ", interval " + std::to_string(interval), start_ns);
   commit(transaction);
   return id;
-}
-
-void Store::insert_frames(std::int64_t presentation, std::int64_t start_ns,
-                          std::span<const FrameRecord> frames) {
-  Statement& insert = statements_->frame;
-  for (const FrameRecord& frame : frames) {
-    const std::int64_t due = frame.scheduled_ns;
-    insert.bind(0, presentation).bind(1, frame.index).bind(2, frame.content_step);
-    insert.bind(3, frame.facts.simulation_time_s).bind(4, due - start_ns);
-    insert.bind(5, after(frame.times.submitted_ns, due)).bind(6, after(frame.times.gpu_done_ns, due));
-    insert.bind(7, after(frame.times.predicted_display_ns, due))
-        .bind(8, after(frame.times.actual_display_ns, due));
-    insert.bind(9, frame.late ? 1 : 0).bind(10, particles_text(frame.facts.particles_by_level));
-    insert.bind(11, frame.facts.active_fraction).bind(12, frame.facts.tolerance);
-    insert.run();
-  }
-}
-
-void Store::add_frames(std::int64_t presentation, std::int64_t start_ns,
-                       std::span<const FrameRecord> frames) {
-  Transaction transaction(*database_);
-  insert_frames(presentation, start_ns, frames);
-  commit(transaction);
 }
 
 void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,

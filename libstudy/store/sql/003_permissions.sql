@@ -49,7 +49,7 @@ CREATE TABLE gaze (
 -- Files and folders outside the database that hold data of people, written down before the first byte of them is.
 CREATE TABLE export (
   export_id INTEGER PRIMARY KEY, -- row number
-  kind TEXT NOT NULL, -- csv, bids, psych-ds, the command that wrote it, or folder: made for such files, holds nobody itself
+  kind TEXT NOT NULL, -- csv, bids, psych-ds, or the command that wrote it
   path TEXT NOT NULL, -- where: absolute, without links
   host TEXT NOT NULL, -- name of the computer; empty: not known
   sha256 TEXT NOT NULL, -- of a file's bytes, of the names in a folder; empty: not known, or never finished
