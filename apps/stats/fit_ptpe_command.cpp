@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/calibration_history.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/estimates_json.hpp"
@@ -203,16 +204,19 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
   fit->add_option("--out", command->out,
                   "File for the solver (TOML), written on success only; every one is kept in "
-                  "FILE.history.jsonl");
+                  "FILE.history.jsonl")
+      ->check(output_file());
   fit->add_option("--max-width", command->max_width,
                   "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   fit->add_flag("--force", command->force, "Write the solver's file although the curve is wider");
   fit->add_option("--json", command->json,
-                  "File for every number of the fit, written whenever the database can be read");
+                  "File for every number of the fit, written whenever the database can be read")
+      ->check(output_file());
   fit->add_option("--svg", command->svg,
-                  "File for the heat map with contours and curve, written on success only");
+                  "File for the heat map with contours and curve, written on success only")
+      ->check(output_file());
   fit->add_option(
       "--truth", command->truth,
       "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/pilot_data.hpp"
 #include "apps/stats/pilot_fit.hpp"
@@ -97,7 +98,10 @@ void write_report(const ReportCommand& command) {
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
     files.write("vip-stats report", path, bytes);
   };
-  if (!command.csv.empty()) write_csv_folder(json, command.csv, write);
+  if (!command.csv.empty()) {
+    files.make_folder(command.csv);
+    write_csv_folder(json, command.csv, write);
+  }
   if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
   write(command.html, page);
   std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
@@ -116,8 +120,9 @@ void add_report_command(CLI::App& app) {
   auto* sub = app.add_subcommand("report", "One page with every table, figure, test and decision of a study");
   auto* positional = sub->add_option("database", command->database, "The study's database");
   sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
-  sub->add_option("--html", command->html, "File for the page")->required();
-  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)");
+  sub->add_option("--html", command->html, "File for the page")->required()->check(output_file());
+  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
+      ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
   auto* plan =
       sub->add_option("--plan", command->plan,
@@ -127,8 +132,10 @@ void add_report_command(CLI::App& app) {
       ->excludes(plan);
   sub->footer(
       "All of it is the lab's own: it is made of everybody's data, also of those who refused to share it.\n"
-      "The files hold values of single participants, so they are registered in the database, which must be\n"
-      "writable for that: when one of them withdraws, the files are deleted, to be made again.");
+      "The files hold values of single participants, so only their owner may read them (0600), and they are\n"
+      "registered in the database, which must be writable for that: when one of them withdraws, the files "
+      "are\n"
+      "deleted, to be made again.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     write_report(*command);
