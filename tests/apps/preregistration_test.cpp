@@ -143,8 +143,9 @@ TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
     EXPECT_EQ(after.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
     EXPECT_EQ(after.at("times")[0].at("frozen_before"), false);
     EXPECT_EQ(after.at("times")[1].at("frozen_before"), true);
-    EXPECT_THAT(after.at("differences"),
-                Contains("The bundle was not frozen before the first answer of Task 1, given " + first + "."));
+    EXPECT_THAT(
+        after.at("differences"),
+        Contains("The bundle was not frozen before the first answer of Task 1, given " + first + "."));
     EXPECT_THAT(after.at("summary").dump(), HasSubstr("differs"));
   }
 }

@@ -183,7 +183,9 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
 Json time_json(const std::string& frozen, const Json& used) {
   const std::string title = used.at("title");
   if (!used.at("first_answer_utc").is_string())
-    return {{"task", used.at("task")}, {"frozen_before", nullptr}, {"text", "No time of an answer of " + title + " is recorded."}};
+    return {{"task", used.at("task")},
+            {"frozen_before", nullptr},
+            {"text", "No time of an answer of " + title + " is recorded."}};
   const std::string first = used.at("first_answer_utc");
   const bool before = frozen < first;
   return {{"task", used.at("task")},
@@ -230,9 +232,11 @@ Json compare_with_bundle(const Bundle& bundle, const std::vector<study::Protocol
     const bool protocol_holds =
         row != protocols.end() && same_protocol(bundle, *row, task == "pilot", differences);
     const bool hypotheses_hold = same_hypotheses(bundle, task, results, differences);
-    times.push_back(time_json(frozen, used));
-    const bool late = times.back().at("frozen_before") == false;
-    if (late && protocol_holds) differences.push_back(times.back().at("text"));
+    const Json time = time_json(frozen, used);
+    const bool late = time.at("frozen_before") == false;
+    const bool covered = protocol_holds || task != "pilot";
+    if (covered) times.push_back(time);
+    if (covered && late) differences.push_back(time.at("text"));
     tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty() && !late;
   }
   const bool holds = differences.empty();
