@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes every file format (tests/fuzz) with clang's libFuzzer under the address and undefined-behaviour sanitizers, and
 # prints a table. What it finds lies in build/fuzz/findings/<format>/; then the exit status is 1. 77: there is no clang.
-# Usage: scripts/fuzz.sh [--binaries DIR] [SECONDS [JOBS [FORMAT ...]]]   default 60 s for each, one job for each processor
+# Usage: scripts/fuzz.sh [--binaries DIR] [SECONDS [JOBS [FORMAT ...]]]   default 60 s for each, one job for each processor;
+# where there are more jobs than formats, as many jobs for each format as fit share what they find
 #   --binaries DIR   runs the programs in DIR, built elsewhere (build/fuzz/tests/fuzz), instead of building them
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,29 +23,35 @@ formats=("$@")
   [ -f "$program" ] && [ -x "$program" ] && formats+=("${program##*/fuzz_}")
 done
 
-fuzz() {  # fuzz FORMAT: new inputs are kept from one run to the next, what fails apart from them
-  local corpus=$out/$1/corpus found=$out/$1/found
-  mkdir -p "$corpus" "$found"
-  "$binaries/fuzz_$1" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 \
-    -artifact_prefix="$found/" "$corpus" "tests/fuzz/corpus/$1" >"$out/$1/log" 2>&1 || true
+fuzz() {  # fuzz FORMAT/JOB: new inputs are kept from one run to the next, what fails apart from them
+  local format=${1%/*} here=$out/${1%/*}
+  mkdir -p "$here/corpus" "$here/found"
+  "$binaries/fuzz_$format" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 \
+    -artifact_prefix="$here/found/" "$here/corpus" "tests/fuzz/corpus/$format" >"$here/log.${1#*/}" 2>&1 || true
 }
 export -f fuzz
 export out binaries seconds UBSAN_OPTIONS=print_stacktrace=1 OMP_NUM_THREADS=1
 # What the tests read of the project is found without the folder they were built in.
 export VIP_SHARE_DIR=$PWD
-printf '%s\n' "${formats[@]}" | xargs -P "$jobs" -I{} bash -c 'fuzz {}'
+each=$((jobs > ${#formats[@]} ? jobs / ${#formats[@]} : 1))
+for format in "${formats[@]}"; do
+  rm -f "$out/$format"/log*
+  for ((job = 1; job <= each; ++job)); do echo "$format/$job"; done
+done | xargs -P "$jobs" -I{} bash -c 'fuzz {}'
 
 failed=0
 printf '%-12s %12s %8s %10s %9s\n' format executions seconds coverage findings
 for format in "${formats[@]}"; do
-  log=$out/$format/log
-  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
-  took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "$log")
-  cover=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -n 1)
+  logs=("$out/$format"/log.*)
+  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "${logs[@]}" | awk '{ n += $1 } END { print n }')
+  took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "${logs[@]}" | awk '{ s += $1 } END { print s }')
+  ended=$(grep -l '^Done [0-9]* runs' "${logs[@]}" | wc -l)
+  cover=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "${logs[@]}" | sort -n | tail -n 1)
   found=$(find "$out/$format/found" -type f | wc -l)
   # A run that did not end by itself has failed, whether or not it left an input.
-  [ "$found" -eq 0 ] && [ -n "$took" ] || failed=1
-  printf '%-12s %12s %8s %10s %9s\n' "$format" "${runs:-?}" "${took:-cut}" "${cover:-?}" "$found"
+  [ "$found" -eq 0 ] && [ "$ended" -eq "$each" ] || failed=1
+  [ "$ended" -eq "$each" ] || took=cut
+  printf '%-12s %12s %8s %10s %9s\n' "$format" "${runs:-?}" "$took" "${cover:-?}" "$found"
 done
 [ $failed -eq 0 ] || echo "findings and logs: $out"
 exit $failed

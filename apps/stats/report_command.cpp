@@ -14,6 +14,7 @@
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "apps/stats/tasks/sickness_json.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/task_answers.hpp"
@@ -57,6 +58,12 @@ Json document(const ReportCommand& command) {
                                      [&](const auto& one) { return kind_of(one) == missing.task; });
     if (planned) results.json[task_name(missing.task)] = json_refused(missing.reason);
   }
+<<<<<<< HEAD
+=======
+  if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
+  Json sickness = sickness_json(study::read_sickness(command.database), request.plan.plan);
+  if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
+>>>>>>> main
   if (bundle)
     results.json["preregistration"] =
         report::compare_with_bundle(*bundle, study::read_status(command.database).protocols, results.json);

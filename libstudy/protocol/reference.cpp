@@ -44,8 +44,10 @@ const std::vector<TableText>& table_texts() {
        "| black | a black screen |\n"
        "| repeat | trials shown again, with the very same intervals: test-retest |\n"
        "| catch | pages after trials drawn at random, with an answer that attention gives |\n"
-       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3 |\n"
-       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20 |\n"
+       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports and "
+       "report hold its scores |\n"
+       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report hold "
+       "mean and peak |\n"
        "| debrief | the last text |"},
       {"block.question", "[[block.question]]",
        "What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its "

@@ -1,10 +1,8 @@
 #include "libstudy/store/export_bids.hpp"
 
-#include <algorithm>
 #include <map>
-#include <sstream>
 
-#include "libstudy/store/bids_writer.hpp"
+#include "libstudy/store/bids_questions.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "stats/base/file.hpp"
@@ -12,8 +10,10 @@
 namespace study {
 
 namespace fs = std::filesystem;
+using bids::answer_of;
 using bids::described;
 using bids::field;
+using bids::Item;
 using bids::Json;
 using bids::Table;
 using bids::Writer;
@@ -24,37 +24,6 @@ using sqlite::Statement;
 namespace {
 
 constexpr const char* description_file = "dataset_description.json";
-
-/// A question as a column.
-struct Item {
-  std::int64_t id = 0;
-  std::string code, wording, anchors;
-};
-
-/// With the words that stand at its scores.
-Json question_column(const Item& item) {
-  Json json = described(item.wording);
-  std::istringstream lines(item.anchors);
-  for (std::string line; std::getline(lines, line);) {
-    const auto at = line.find(" = ");
-    if (at != std::string::npos) json["Levels"][line.substr(0, at)] = line.substr(at + 3);
-  }
-  return json;
-}
-
-/// Questions with scores that are asked at trials, or on pages of a block.
-std::vector<Item> items(Connection& database, std::int64_t session, const std::string& of) {
-  Statement row(database,
-                "SELECT DISTINCT q.question_id, q.code, q.wording, q.anchors FROM question q "
-                "JOIN ask k USING (question_id) JOIN session s ON s.protocol_id = q.protocol_id "
-                "JOIN unit u ON u.session_id = s.session_id AND u.block = k.block "
-                "WHERE s.session_id = ? AND q.personal = 0 AND q.kind <> 'text' AND " +
-                    of + " ORDER BY q.question_id");
-  row.bind(0, session);
-  std::vector<Item> found;
-  while (row.step()) found.push_back({row.integer(0), row.text(1), row.text(2), row.text(3)});
-  return found;
-}
 
 constexpr const char* events_sql =
     "SELECT p.start_ns, p.end_ns, u.kind, t.position, p.attempt, p.interval, p.state, c.scene, c.method, "
@@ -92,16 +61,6 @@ Json event_columns() {
       {"excluded", described("1: excluded by the experimenter")}};
 }
 
-/// Score and response time of a question at a showing.
-std::pair<std::string, std::string> answer_of(Connection& database, std::int64_t unit, std::int64_t question,
-                                              std::int64_t attempt) {
-  Statement row(
-      database,
-      "SELECT score, response_time_s FROM response WHERE unit_id = ? AND question_id = ? AND attempt = ?");
-  if (!row.bind(0, unit).bind(1, question).bind(2, attempt).step()) return {"n/a", "n/a"};
-  return {field(row, 0), field(row, 1)};
-}
-
 Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
                  const Json& columns) {
   Table rows(1);
@@ -129,10 +88,10 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
 }
 
 void write_events(Connection& database, const LabelledSession& session, Writer& writer) {
-  const auto asked = items(database, session.id, "u.trial_id IS NOT NULL");
+  const auto asked = bids::items(database, session.id, "u.trial_id IS NOT NULL");
   Json columns = event_columns();
   for (const Item& item : asked) {
-    columns[item.code] = question_column(item);
+    columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }
   const std::string stem = bids::stem_of(session) + "_events";
@@ -194,62 +153,6 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
                                 {"state", described("open, done, or how it ended early")}});
 }
 
-/// All pages of one questionnaire: a table whose columns grow with what was asked.
-class Questionnaire {
- public:
-  void add_page(std::vector<std::string> key, const std::vector<Item>& asked,
-                const std::vector<std::string>& answers) {
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      meaning_[asked[i].code] = question_column(asked[i]);
-      const auto column = std::find(header_.begin(), header_.end(), asked[i].code);
-      const auto place = static_cast<std::size_t>(column - header_.begin());
-      if (column == header_.end()) header_.push_back(asked[i].code);
-      key.resize(std::max(key.size(), place + 1), "n/a");
-      key[place] = answers[i];
-    }
-    rows_.push_back(std::move(key));
-  }
-
-  void write(const std::string& name, Writer& writer) const {
-    Table table{header_};
-    for (auto row : rows_) {
-      row.resize(header_.size(), "n/a");
-      table.push_back(std::move(row));
-    }
-    writer.table("phenotype/" + name + ".tsv", table);
-    writer.json("phenotype/" + name + ".json", meaning_);
-  }
-
- private:
-  std::vector<std::string> header_{"participant_id", "session_id", "block"};
-  Table rows_;
-  Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")},
-                {"session_id", described("session")},
-                {"block", described("page of the protocol")}};
-};
-
-/// The scales by their kind, other pages by their block.
-void write_phenotypes(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
-  Labels labels;
-  std::map<std::string, Questionnaire> tools;
-  for (const LabelledSession& session : sessions) {
-    Statement unit(database,
-                   "SELECT unit_id, block, kind FROM unit WHERE session_id = ? AND trial_id IS NULL "
-                   "AND state = 'done' AND kind NOT IN ('practice', 'stimulus', 'repeat') ORDER BY position");
-    for (unit.bind(0, session.id); unit.step();) {
-      const std::string block = unit.text(1), kind = unit.text(2);
-      const auto asked = items(database, session.id, "u.unit_id = " + unit.text(0));
-      if (asked.empty()) continue;
-      std::vector<std::string> answers;
-      for (const Item& item : asked)
-        answers.push_back(answer_of(database, unit.integer(0), item.id, 0).first);
-      tools[labels.of(kind == "ssq" || kind == "fms" ? kind : block)].add_page(
-          {"sub-" + session.subject, "ses-" + session.session, field(block)}, asked, answers);
-    }
-  }
-  for (const auto& [name, tool] : tools) tool.write(name, writer);
-}
-
 bool is_export(const fs::path& folder) {
   const fs::path description = folder / description_file;
   std::error_code ignored;
@@ -283,7 +186,7 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
     write_events(*database, session, writer);
     if (gaze) bids::write_gaze(*database, session, writer);
   }
-  write_phenotypes(*database, sessions, writer);
+  bids::write_phenotypes(*database, sessions, writer);
   database->execute("COMMIT");
   draft.put_in_place();
   return {std::move(writer.files), people};

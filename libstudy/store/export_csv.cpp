@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/sickness_table.hpp"
 
 namespace study {
 
@@ -67,6 +68,9 @@ constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
 bool is_our_name(const std::string& name) {
   if (name == ratings_file || name == dictionary_file) return true;
   if (name.starts_with("protocol_") && name.ends_with(".toml")) return true;
+  for (const SicknessTable& table : sickness_tables({})) {
+    if (name == table.name + ".csv") return true;
+  }
   for (const Table& table : tables) {
     if (name == table.file) return true;
   }
@@ -124,6 +128,10 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
     }
   }
   for (const RatingColumn& column : rating_columns()) write(ratings_file, meaning_of(database, column));
+  for (const SicknessTable& table : sickness_tables({})) {
+    for (const SicknessColumn& column : table.columns)
+      write((table.name + ".csv").c_str(), {"", column.name, column.type, column.meaning});
+  }
   file.finish();
   return rows;
 }
@@ -180,6 +188,8 @@ std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folde
     files.push_back({table.file, write_csv(*database, select_sql(*database, table), draft, table.file)});
   }
   files.push_back({ratings_file, write_csv(*database, rating_table_sql(), draft, ratings_file)});
+  for (const SicknessTable& table : sickness_tables(read_sickness(*database)))
+    files.push_back({table.name + ".csv", write_sickness(table, draft, table.name + ".csv")});
   files.push_back({dictionary_file, write_dictionary(*database, draft, choice)});
   write_protocols(*database, draft);
   database->execute("COMMIT");

@@ -18,8 +18,9 @@ struct CsvChoice {
 };
 
 /// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from
-/// them, dictionary.csv with what each column means, and the text of each protocol as protocol_<hash>.toml.
-/// This is the lab's own copy: it holds everybody; sessions.csv says who may stand in public exports.
+/// them, the scores of sickness_tables(), dictionary.csv with what each column means, and the text of each
+/// protocol as protocol_<hash>.toml. This is the lab's own copy: it holds everybody; sessions.csv says who
+/// may stand in public exports.
 ///
 /// Folder and files are the owner's alone.
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a

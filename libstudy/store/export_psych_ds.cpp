@@ -7,6 +7,7 @@
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
 
 namespace study {
@@ -66,10 +67,24 @@ Json variables(Connection& database) {
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
+  for (const SicknessTable& table : sickness_tables({})) {
+    for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
+  }
   Json list = Json::array();
   for (const auto& [name, meaning] : meanings)
     list.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", meaning}});
   return list;
+}
+
+/// The tables of one session that have rows.
+void write_scores(const SicknessSession& session, const std::string& stem, const ExportDraft& draft,
+                  std::vector<ExportedFile>& files) {
+  for (const SicknessTable& table : sickness_tables({&session, 1})) {
+    std::string label = table.name;
+    std::erase(label, '_');
+    const std::string name = stem + "_description-" + label + "_data.csv";
+    if (!table.rows.empty()) files.push_back({name, write_sickness(table, draft, name)});
+  }
 }
 
 void write_description(Connection& database, const ExportDraft& draft) {
@@ -95,6 +110,7 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
+  const auto sickness = read_sickness(*database);
   ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
@@ -105,6 +121,9 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
     const std::string condition = "session.session_id = " + std::to_string(session.id);
     files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
+    for (const SicknessSession& scored : sickness) {
+      if (scored.id == session.id) write_scores(scored, stem, draft, files);
+    }
   }
   write_description(*database, draft);
   database->execute("COMMIT");

@@ -52,11 +52,12 @@ class Walk {
   void step(char c) {
     if (static_cast<unsigned char>(c) >= 0x80)
       fail("is a character outside ASCII where no quotes stand", "put the word in double quotes");
+    check_value_is_alone(c);
     const bool top = open_.empty();
     if (c == '\n' && top)
       start_line();
     else if (c == '=')
-      key_ = false;
+      await_value();
     else if (c == '.' && key_)
       deepen();
     else if (c == ',' && !top)
@@ -69,7 +70,16 @@ class Walk {
       open_bracket(c);
     else if ((c == ']' || c == '}') && !top)
       close_bracket();
+    else if (!is_space(c) && !key_)
+      value_ = true;
     ++at_;
+  }
+
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+  void await_value() {
+    key_ = false;
+    value_ = false;
   }
 
   void start_line() {
@@ -87,23 +97,31 @@ class Walk {
   void close_header() {
     header_depth_ = depth_;
     header_ = false;
-    key_ = false;
+    end_value();
   }
 
   void start_element() {
     depth_ = open_.back().depth;
     key_ = open_.back().kind == '{';
+    value_ = false;
   }
 
   void open_bracket(char kind) {
     deepen();
     open_.push_back({kind, depth_});
     key_ = kind == '{';
+    value_ = false;
   }
 
   void close_bracket() {
     open_.pop_back();
+    end_value();
+  }
+
+  /// Whatever comes before the next comma, bracket or line belongs to no value.
+  void end_value() {
     key_ = false;
+    value_ = true;
   }
 
   void deepen() {
@@ -114,15 +132,22 @@ class Walk {
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// toml++ 3.3 looks at what stands close behind a number as if it were a part of it.
-  void check_text_begins() const {
-    constexpr std::string_view separators = " \t\n=[{,.";
-    if (at_ > 0 && separators.find(text_[at_ - 1]) == std::string_view::npos)
-      fail("is a quote right behind a key or value", "put a comma or the end of the line between them");
+  /// toml++ 3.3 looks at what stands close behind a number or date as if it were a part of it.
+  void check_value_is_alone(char c) const {
+    if (!key_ && (c == '=' || (value_ && std::string_view("\"'[{").find(c) != std::string_view::npos)))
+      fail(std::string("is a ") + c + " behind a value", "put a comma or the end of the line between them");
+  }
+
+  void check_key_begins() const {
+    constexpr std::string_view separators = " \t\n[{,.";
+    if (key_ && at_ > 0 && separators.find(text_[at_ - 1]) == std::string_view::npos)
+      fail("is a quote behind a key", "put a dot or an equals sign between them");
   }
 
   void skip_text(char quote) {
-    check_text_begins();
+    check_value_is_alone(quote);
+    check_key_begins();
+    value_ = !key_;
     const std::string three(3, quote);
     if (text_.substr(at_, 3) != three) return skip_one_line_text(quote);
     at_ += 3;
@@ -177,6 +202,7 @@ class Walk {
   std::vector<Bracket> open_;
   int depth_ = 0, header_depth_ = 0;
   bool key_ = true, header_ = false;
+  bool value_ = false;  // in a value's place: it has begun
 };
 
 }  // namespace

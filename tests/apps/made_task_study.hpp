@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/store/sickness.hpp"
 #include "libstudy/store/task_answers.hpp"
 
 namespace made_study {
@@ -111,6 +112,34 @@ inline study::TaskProtocol task2(int participants, const std::string& gaze = "tr
       }
     }
     out.sessions.push_back(visit);
+  }
+  return out;
+}
+
+/// Pages of the SSQ before and after, and eleven answers on the FMS that rise.
+inline std::vector<study::SicknessSession> sickness(int participants, unsigned seed = 3) {
+  std::mt19937_64 generator(seed);
+  std::exponential_distribution<double> skewed(1.5);
+  std::vector<study::SicknessSession> out;
+  for (int person = 0; person < participants; ++person) {
+    study::SicknessSession one;
+    one.protocol_name = "task1_lab";
+    one.protocol_sha256 = std::string(64, '1');
+    one.participant = code(person);
+    for (const bool before : {true, false}) {
+      study::SsqPage& page = one.ssq.emplace_back();
+      page.before = before;
+      page.block = before ? "ssq_before" : "ssq_after";
+      for (auto& answer : page.answers) answer = rounded((before ? 0.5 : 1) * skewed(generator), 0, 3);
+    }
+    for (int asked = 0; asked <= 10; ++asked)
+      one.fms.push_back({asked,
+                         asked == 0 ? "sickness" : "ratings",
+                         {},
+                         "",
+                         1.5 * asked,
+                         rounded(0.6 * asked * skewed(generator), 0, 20)});
+    out.push_back(one);
   }
   return out;
 }

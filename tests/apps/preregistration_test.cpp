@@ -216,6 +216,16 @@ TEST(Preregistration, ATouchedFileTakesTheNameAway) {
   EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", false}}));
 }
 
+TEST(Preregistration, ANameThatNoFileCanHaveIsAFileThatWasRemoved) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const fs::path path = folder / "bundle/MANIFEST.sha256";
+  const std::string name(300, 'n');
+  base::write_file_atomically(path,
+                              base::read_file(path, 1 << 20) + std::string(64, 'a') + "  " + name + "\n");
+  EXPECT_EQ(report::read_bundle(folder / "bundle").altered, std::vector<std::string>{name});
+}
+
 TEST(Preregistration, AProtocolThatIsNotInItIsExploratory) {
   const TemporaryFolder folder;
   auto request = both_tasks();

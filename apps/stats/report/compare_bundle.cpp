@@ -204,7 +204,9 @@ Bundle read_bundle(const fs::path& folder) {
   bundle.sha256 = base::sha256_hex(manifest);
   std::map<std::string, std::string> files;
   for (const auto& [name, hash] : read_manifest(manifest, folder)) {
-    if (fs::is_regular_file(folder / name)) files[name] = base::read_file(folder / name, largest_file);
+    std::error_code no_such_name;
+    if (fs::is_regular_file(folder / name, no_such_name))
+      files[name] = base::read_file(folder / name, largest_file);
     if (!files.contains(name) || base::sha256_hex(files[name]) != hash) bundle.altered.push_back(name);
   }
   for (const char* needed : {"about.json", "hypotheses.json", "plan.toml"})

@@ -21,6 +21,9 @@ svg::Picture timing_chart(const Field& timing, const std::string& task);
 /// What became of those who began, as CONSORT draws it. `flow`: flow.task1 or flow.task2.
 svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task);
 
+/// FMS at each asking: quartiles, median, mean and largest. `fms`: an entry of sickness, its "fms".
+svg::Picture fms_chart(const Field& fms, const std::string& id);
+
 /// The pilot's heat map (paper Fig. 6). `pilot`: what fit-ptpe writes; its estimates are there.
 svg::Picture pilot_map(const Field& pilot);
 

@@ -32,6 +32,7 @@ std::string timing_section(const Field& root);
 std::string pilot_section(const Field& root);
 std::string task1_section(const Field& root);
 std::string task2_section(const Field& root);
+std::string sickness_section(const Field& root);
 std::string hypotheses_section(const Field& root);
 std::string sensitivity_section(const Field& root);
 std::string preregistration_section(const Field& root);

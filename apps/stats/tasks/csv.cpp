@@ -33,7 +33,7 @@ bool all_texts(const Json& list) {
 /// An interval may have open ends, which are texts.
 bool is_interval(const std::string& name, const Json& list) {
   return list.size() == 2 &&
-         (name.ends_with("ci") || name == "bca" || name == "clopper_pearson" || name == "wilson");
+         (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" || name == "wilson");
 }
 
 void flatten(const std::string& name, const Json& value, Fields& fields) {
@@ -127,6 +127,20 @@ Json sensitivity_lines(const Json& variants) {
   return list;
 }
 
+/// One line for each entry of a list that lies at `pointer` in the parts of "sickness".
+Json sickness_lines(const Json& parts, const Json::json_pointer& pointer) {
+  Json list = Json::array();
+  for (const auto& part : parts) {
+    if (!part.contains(pointer)) continue;
+    for (const auto& entry : part.at(pointer)) {
+      Json line{{"protocol", part.at("protocol").at("name")}};
+      line.update(entry);
+      list.push_back(std::move(line));
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty) {
@@ -166,6 +180,14 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
     if (task.at("bradley_terry").contains("abilities"))
       lists.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
     lists.emplace_back("task2_triads", task.at("triads").at("participants"));
+  }
+  if (results.contains("sickness")) {
+    const Json& parts = results.at("sickness");
+    for (const auto& [name, place] : {std::pair{"ssq", "/ssq/scores"},
+                                      {"fms_blocks", "/fms/blocks"},
+                                      {"fms_times", "/fms/times"},
+                                      {"participants", "/scores"}})
+      lists.emplace_back(std::string("sickness_") + name, sickness_lines(parts, Json::json_pointer(place)));
   }
   make_folder(folder);
   write(folder / "exclusions.csv", csv_text(results.at("exclusions"), exclusion_columns));

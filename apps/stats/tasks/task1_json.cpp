@@ -72,17 +72,10 @@ Json welch_json(const stats::Result<stats::IndependentTTest>& test) {
 
 Json wilcoxon_json(const stats::MethodComparison& comparison) {
   return json_result(comparison.wilcoxon, [&](const stats::SignedRank& one) {
-    return Json{{"w", one.w_plus},
-                {"p", one.p_default},
-                {"p_holm", json_number(comparison.wilcoxon_p_holm)},
-                {"p_bh", json_number(comparison.wilcoxon_p_bh)},
-                {"method", one.default_is_exact ? "exact" : "normal, with ties and continuity corrected"},
-                {"p_exact", json_number(one.p_exact)},
-                {"location", one.hodges_lehmann},
-                {"ci", json_interval(one.hodges_lehmann_ci)},
-                {"rank_biserial", one.rank_biserial},
-                {"n_used", one.n_nonzero},
-                {"n_zero", one.n - one.n_nonzero}};
+    Json json = signed_rank_json(one);
+    json["p_holm"] = json_number(comparison.wilcoxon_p_holm);
+    json["p_bh"] = json_number(comparison.wilcoxon_p_bh);
+    return json;
   });
 }
 
@@ -244,6 +237,18 @@ Json ordinal_json(const TaskData& data, const OrdinalModel& model) {
 }
 
 }  // namespace
+
+Json signed_rank_json(const stats::SignedRank& test) {
+  return {{"w", test.w_plus},
+          {"p", test.p_default},
+          {"method", test.default_is_exact ? "exact" : "normal, with ties and continuity corrected"},
+          {"p_exact", json_number(test.p_exact)},
+          {"location", test.hodges_lehmann},
+          {"ci", json_interval(test.hodges_lehmann_ci)},
+          {"rank_biserial", test.rank_biserial},
+          {"n_used", test.n_nonzero},
+          {"n_zero", test.n - test.n_nonzero}};
+}
 
 Json task1_json(const TaskData& data, const Task1Results& results, const stats::AnalysisPlan& plan) {
   Json json{{"participants", data.participants.size()},

@@ -1,0 +1,100 @@
+#include "apps/stats/report/figures.hpp"
+#include "apps/stats/report/html.hpp"
+#include "apps/stats/report/sections.hpp"
+
+namespace apps::report {
+
+namespace {
+
+std::string quartiles(const Field& summary) {
+  if (!summary["q1"].is_number()) return fixed(summary["q1"], 1);
+  return fixed(summary["q1"], 1) + " to " + fixed(summary["q3"], 1);
+}
+
+/// n, median, quartiles, mean and largest, as cells.
+std::vector<std::string> described(const Field& summary) {
+  return {count(summary["n"]), fixed(summary["median"], 1), quartiles(summary), fixed(summary["mean"], 2),
+          fixed(summary["max"], 1)};
+}
+
+const std::vector<std::string> described_columns{"<i>n</i>", "Median", "Quartiles", "<i>M</i>", "Largest"};
+
+std::vector<std::string> joined(std::vector<std::string> head, const std::vector<std::string>& more) {
+  head.insert(head.end(), more.begin(), more.end());
+  return head;
+}
+
+std::vector<std::string> changed(const Field& change) {
+  const Field ranks = change["wilcoxon"];
+  return {count(change["n"]),
+          fixed(change["mean"], 2),
+          interval(change["bca"], 2),
+          fixed(ranks["location"], 2),
+          fixed(ranks["w"], 1),
+          p_bare(ranks["p"]),
+          fixed(ranks["rank_biserial"], 2)};
+}
+
+const std::vector<std::string> changed_columns{"<i>n</i>",        "<i>M</i> of changes", "BCa interval",
+                                               "Hodges-Lehmann",  "Wilcoxon's <i>W</i>", "<i>p</i>",
+                                               "Rank correlation"};
+
+std::string ssq(const Field& ssq) {
+  if (!ssq.there()) return "";
+  Table levels("SSQ scores before and after", joined({"Score"}, described_columns));
+  Table changes("Changes of the SSQ scores, after less before", joined({"Score"}, changed_columns));
+  for (const auto& [key, name] : {std::pair{"before", "Before"}, {"after", "After"}}) {
+    levels.group(name);
+    for (const Field& score : ssq["scores"].entries())
+      levels.row(joined({words(score["label"])}, described(score[key])));
+  }
+  for (const Field& score : ssq["scores"].entries())
+    changes.row(joined({words(score["label"])}, changed(score["change"])));
+  std::string note =
+      "Simulator Sickness Questionnaire with the weights of Kennedy et al. (1993): before is the last page "
+      "ahead of the first trial, after the last page behind it. ";
+  if (ssq["incomplete"].number() > 0)
+    note += "A missing item empties its scale and the total: " + count(ssq["incomplete"]) + " of " +
+            count(ssq["pages"]) + " pages lack some. ";
+  note += "Changes are of the participants with both; signed-rank tests are two-sided and not corrected.";
+  return levels.html() + changes.html() + "<p class=\"note\">" + note + "</p>\n";
+}
+
+std::string fms(const Field& fms, const std::string& id) {
+  if (!fms.there()) return "";
+  Table courses("FMS: mean and peak of each participant", joined({"Part"}, described_columns));
+  const auto part = [&](const std::string& title, const Field& course) {
+    courses.group(title);
+    courses.row(joined({"Mean"}, described(course["mean"])));
+    courses.row(joined({"Peak"}, described(course["peak"])));
+  };
+  part("Whole session", fms);
+  for (const Field& block : fms["blocks"].entries()) part("Block " + words(block["block"]), block);
+  Table times("FMS over the session", joined({"Asked", "Minutes (median)"}, described_columns));
+  for (const Field& time : fms["times"].entries())
+    times.row(joined({count(time["asked"]), fixed(time["minutes"], 1)}, described(time)));
+  Table change("Change of the FMS from the first answer to the last", joined({"Score"}, changed_columns));
+  change.row(joined({"FMS"}, changed(fms["change"])));
+  return figure(fms_chart(fms, id),
+                "Fast Motion Sickness scale at each asking. Band: quartiles; line: median; X: mean; circle: "
+                "largest. Sessions that ended early are missing from later askings.") +
+         courses.html() + times.html() + change.html();
+}
+
+}  // namespace
+
+std::string sickness_section(const Field& root) {
+  std::string body;
+  int part = 0;
+  for (const Field& one : root["sickness"].entries()) {
+    std::string who = badge(false) + " " + count(one["participants"]) + " participants";
+    if (one["test_data"].yes()) who += ", test data";
+    if (one["simulated"].number() > 0) who += ", all answered by a model";
+    who += ". Sessions that ended early and those left out elsewhere count here.";
+    body += subsection(words(one["protocol"]["name"]),
+                       paragraph(who) + ssq(one["ssq"]) + fms(one["fms"], "fms-" + std::to_string(part++)));
+  }
+  return body.empty() ? "" : section("sickness", "Sickness before, during and after", body);
+}
+
+}  // namespace apps::report
