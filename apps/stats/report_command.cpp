@@ -58,12 +58,8 @@ Json document(const ReportCommand& command) {
                                      [&](const auto& one) { return kind_of(one) == missing.task; });
     if (planned) results.json[task_name(missing.task)] = json_refused(missing.reason);
   }
-<<<<<<< HEAD
-=======
-  if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
   Json sickness = sickness_json(study::read_sickness(command.database), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
->>>>>>> main
   if (bundle)
     results.json["preregistration"] =
         report::compare_with_bundle(*bundle, study::read_status(command.database).protocols, results.json);

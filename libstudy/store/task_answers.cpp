@@ -6,6 +6,7 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
+#include "libstudy/store/stored_protocol.hpp"
 
 namespace study {
 
@@ -208,13 +209,9 @@ TaskStudy read_tasks(const std::filesystem::path& path) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   TaskStudy study;
   study.withdrawn = static_cast<int>(database->integer("SELECT count(*) FROM tombstone"));
-  Statement row(
-      *database,
-      "SELECT p.protocol_id, p.name, p.text, p.trial_seconds FROM protocol p ORDER BY p.protocol_id");
+  Statement row(*database, "SELECT protocol_id FROM protocol ORDER BY protocol_id");
   while (row.step()) {
-    Protocol protocol =
-        parse_protocol(row.text(2), path.string() + ", protocol " + row.text(1), ProtocolUse::Stored);
-    if (!row.is_null(3)) override_trial_seconds(protocol, row.real(3));
+    const Protocol protocol = stored_protocol(*database, row.integer(0), path.string());
     TaskProtocol out = describe(protocol);
     out.sessions = Reader(*database, row.integer(0), protocol).sessions();
     study.protocols.push_back(std::move(out));

@@ -32,20 +32,13 @@ const OrderedJson& made() {
   static const OrderedJson json = [] {
     PlanInForce plan;
     plan.plan.resamples = 200;
-<<<<<<< HEAD
     const auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
-    return make_results({{pilot, made_study::task1(26), made_study::task2(26)}, 1},
-                        {"folder/study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
-        .json;
-=======
-    auto out = make_results({{made_study::task1(26), made_study::task2(26)}, 1},
-                            {"folder/study.db", {TaskKind::Task1, TaskKind::Task2}, "", plan})
-                   .json;
-    const auto rows = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
+    auto out =
+        make_results({{pilot, made_study::task1(26), made_study::task2(26)}, 1},
+                     {"folder/study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+            .json;
     out["sickness"] = sickness_json(made_study::sickness(26), plan.plan);
-    out["pilot"] = fit_json(fit_pilot(*select_pilot(rows, {}), 4, {500, 3, 0.95}));
     return out;
->>>>>>> main
   }();
   return json;
 }

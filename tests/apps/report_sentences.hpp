@@ -56,7 +56,10 @@ inline std::vector<Case> head_and_methods() {
       {"Simulated participants: # (#).", in_each("/study/protocols", "simulated", 0)},
       {"All answers of # come from a model: they say nothing about people.",
        in_each("/study/protocols", "simulated", 0)},
-      {"The protocol of # was # version # (SHA-256 #), planned for # participants.", no_protocols},
+      {"The protocol of # was # version # (SHA-256 #), planned for # participants.",
+       in_each("/study/protocols", "participants_planned", nullptr)},
+      {"The protocol of # was # version # (SHA-256 #).", no_protocols,
+       in_each("/study/protocols", "participants_planned", nullptr)},
       {"Sessions of # with analysed answers by source of gaze: *#; by display: *#.",
        in_each("/study/protocols", "gaze", Json::object())},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
@@ -258,6 +261,36 @@ inline std::vector<Case> task2() {
   };
 }
 
+inline std::vector<Case> sickness() {
+  const std::string ssq = "/sickness/0/ssq";
+  const Change none = set("/sickness", Json::array()), no_ssq = set(ssq, nullptr),
+               no_fms = set("/sickness/0/fms", nullptr);
+  return {
+      {"Exploratory # participants.", none},
+      {"Exploratory # participants, test data.", set("/sickness/0/test_data", false),
+       set("/sickness/0/test_data", true)},
+      {"Exploratory # participants, all answered by a model.", set("/sickness/0/simulated", 0),
+       set("/sickness/0/simulated", 3)},
+      {"Sessions that ended early and those left out elsewhere count here.", none},
+      {"Simulator Sickness Questionnaire with the weights of Kennedy et al.", no_ssq},
+      {"(1993): before is the last page ahead of the first trial, after the last page behind it.", no_ssq},
+      {"A missing item empties its scale and the total: # of # pages lack some.", set(ssq + "/incomplete", 0),
+       set(ssq + "/incomplete", 2)},
+      {"Changes are of the participants with both; signed-rank tests are two-sided and not corrected.",
+       no_ssq},
+      {"# SSQ scores before and after", no_ssq},
+      {"# Changes of the SSQ scores, after less before", no_ssq},
+      {"# Fast Motion Sickness scale at each asking.", no_fms},
+      {"Band: quartiles; line: median; X: mean; circle: largest.", no_fms},
+      {"Sessions that ended early are missing from later askings.", no_fms},
+      {"Quartiles, median, mean and largest score of all sessions at each asking.", no_fms},
+      {"The table below holds the numbers.", no_fms},
+      {"# FMS: mean and peak of each participant", no_fms},
+      {"# FMS over the session", no_fms},
+      {"# Change of the FMS from the first answer to the last", no_fms},
+  };
+}
+
 inline std::vector<Case> hypotheses() {
   const Change none = set("/hypotheses", Json::array());
   const Change untestable = all(
@@ -331,8 +364,8 @@ inline std::vector<Case> bundle_and_provenance() {
 inline const std::vector<Case>& cases() {
   static const std::vector<Case> list = [] {
     std::vector<Case> out;
-    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), hypotheses(),
-                      bundle_and_provenance()})
+    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), sickness(),
+                      hypotheses(), bundle_and_provenance()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();

@@ -231,8 +231,15 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   const auto study = read_tasks(folder / "old.db");
   ASSERT_THAT(study.protocols, SizeIs(1));
   EXPECT_TRUE(study.protocols[0].pilot());
-  EXPECT_THAT(study.protocols[0].questions, SizeIs(1));
-  EXPECT_THAT(study.protocols[0].sessions.at(0).trials, SizeIs(21));
+  EXPECT_EQ(study.protocols[0].name, "pilot");
+  ASSERT_THAT(study.protocols[0].questions, SizeIs(1));
+  EXPECT_EQ(study.protocols[0].questions[0].id, "satisfaction");
+  const auto& trials = study.protocols[0].sessions.at(0).trials;
+  ASSERT_THAT(trials, SizeIs(2));
+  EXPECT_EQ(trials[0].first.nominal.mean, 20);
+  EXPECT_EQ(trials[0].first.nominal.sd, 5);
+  EXPECT_EQ(trials[0].answers.at(0).score, 5);
+  EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
 }
 
 }  // namespace

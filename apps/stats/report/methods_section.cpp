@@ -11,7 +11,10 @@ std::string protocols_text(const Field& study) {
     const std::string title = words(protocol["title"]);
     out += "The protocol of " + title + " was " + words(protocol["name"]) + " version " +
            words(protocol["version"]) + " (SHA-256 <span class=\"hash\">" + words(protocol["sha256"]) +
-           "</span>), planned for " + count(protocol["participants_planned"]) + " participants. ";
+           "</span>)" +
+           (protocol["participants_planned"].is_number()
+                ? ", planned for " + count(protocol["participants_planned"]) + " participants. "
+                : ". ");
     if (!protocol["gaze"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by source of gaze: " + counts(protocol["gaze"]) +

@@ -15,19 +15,20 @@ std::string counted(std::size_t n, const std::string& thing) {
 }
 
 Json protocol_json(const TaskData& data) {
-  return {{"task", task_name(data.task)},
-          {"title", task_title(data.task)},
-          {"name", data.protocol.name},
-          {"version", data.protocol.version},
-          {"sha256", data.protocol.sha256},
-          {"participants_planned", data.protocol.participants},
-          {"first_answer_utc", data.first_answer_utc.empty() ? Json() : Json(data.first_answer_utc)},
-          {"test_data", data.test_data},
-          {"simulated", data.simulated.size()},
-          {"observers", data.observers},
-          {"gaze", data.gaze},
-          {"stations", data.stations},
-          {"displays", data.displays}};
+  return {
+      {"task", task_name(data.task)},
+      {"title", task_title(data.task)},
+      {"name", data.protocol.name},
+      {"version", data.protocol.version},
+      {"sha256", data.protocol.sha256},
+      {"participants_planned", data.protocol.participants > 0 ? Json(data.protocol.participants) : Json()},
+      {"first_answer_utc", data.first_answer_utc.empty() ? Json() : Json(data.first_answer_utc)},
+      {"test_data", data.test_data},
+      {"simulated", data.simulated.size()},
+      {"observers", data.observers},
+      {"gaze", data.gaze},
+      {"stations", data.stations},
+      {"displays", data.displays}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
