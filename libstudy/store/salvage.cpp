@@ -154,6 +154,7 @@ void check(Connection& made) {
 
 /// The file alone is put in place, and closing it says nothing of a log that could not be copied back.
 void leave_no_log(Connection& made) {
+  made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
   throw base::Error(made.path().string(), "its log cannot be copied back into it",
                     "free space, and do this again");
