@@ -185,17 +185,17 @@ std::string timing_section(const Field& root) {
       "Each showing was recorded frame by frame and judged against the protocol's tolerance. Grades of "
       "evidence: A photodiode, B display feedback, C compositor, D submission by the program.");
   for (const auto& [key, name] : tasks) {
-    Table table(
-        std::string("Timing certificate, ") + name,
-        {"Scene", "n*", "Method", "Showings", "Pass", "Degraded", "Fail", "Not judged", "Grades",
-         "Nominal mean", "SD (frames/s)", "Realised mean", "SD (frames/s)", "Longest (ms)", "Late frames"});
+    Table table(std::string("Timing certificate, ") + name,
+                {"Scene", "n*", "Method", "Showings", "Pass", "Degraded", "Fail", "Not judged", "Grades",
+                 "Nominal mean", "SD (frames/s)", "Realised mean", "SD (frames/s)", "Longest (ms)",
+                 "Late frames", "Solved (%)", "Tau (frames/s)"});
     for (const Field& c : timing.entries()) {
       if (c["task"].words() != key) continue;
       table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), count(c["showings"]),
                  count(c["pass"]), count(c["degraded"]), count(c["fail"]), count(c["unjudged"]),
                  counts(c["grades"]), fixed(c["nominal_mean_fps"], 2), fixed(c["nominal_sd_fps"], 2),
                  fixed(c["realised_mean_fps"], 2), fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1),
-                 count(c["late_frames"])});
+                 count(c["late_frames"]), percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
     }
     if (table.empty()) continue;
     body +=
