@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace apps {
 
@@ -14,13 +13,6 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
-}
-
-study::FrameFacts to_facts(const sim::BakeFacts& facts) {
-  study::FrameFacts out;
-  out.simulation_time_s = facts.time_s;
-  out.particles_by_level = facts.particles_by_level;
-  return out;
 }
 
 /// The largest rectangle of the picture's shape in the middle of a framebuffer.
@@ -45,20 +37,28 @@ void draw_particles(std::unique_ptr<sim::FluidRenderer>& renderer, const sim::Sc
 
 }  // namespace
 
-Levels count_levels(const std::vector<sim::RenderParticle>& particles) {
-  std::map<float, std::int64_t> counts;
-  float last = -1;
-  std::int64_t* count = nullptr;
-  for (const sim::RenderParticle& particle : particles) {
-    if (particle.radius_m != last || !count) count = &counts[last = particle.radius_m];
-    ++*count;
+study::FrameFacts to_facts(double simulation_time_s, const sim::FrameAccount& account) {
+  study::FrameFacts out;
+  out.simulation_time_s = simulation_time_s;
+  out.particles_by_level = account.particles_by_level;
+  if (const auto& went_by = account.temporal) {
+    const auto particles = static_cast<double>(std::max<std::int64_t>(1, account.particles()));
+    study::FrameTolerance& to = out.tolerance.emplace();
+    to.tau_fps = went_by->tau;
+    to.beta = went_by->beta;
+    to.active_fraction = static_cast<double>(went_by->active) / particles;
+    if (went_by->rate) {
+      to.mu_fps = went_by->rate->mean;
+      to.delta_fps = went_by->rate->sd;
+    }
   }
-  Levels levels;
-  for (const auto& [radius, number] : counts) {
-    levels.radius_m.push_back(radius);
-    levels.count.push_back(number);
+  if (const auto& met = account.guards) {
+    const auto count = [](std::uint64_t times) { return static_cast<std::int64_t>(times); };
+    out.guards = {count(met->speed_limited),       count(met->coincident_pairs), count(met->not_finite),
+                  count(met->neighbours_dropped),  count(met->wall_projected),   count(met->nozzle_waited),
+                  count(met->saliency_not_finite), count(met->gaze_lost)};
   }
-  return levels;
+  return out;
 }
 
 BakedPictures::BakedPictures(std::unique_ptr<sim::BakeReader> bake) : bake_(std::move(bake)), ring_(*bake_) {}
@@ -83,7 +83,7 @@ void BakedPictures::start(std::int64_t start_step) {
 study::FrameFacts BakedPictures::prepare(std::int64_t step) {
   picture_ = nullptr;
   picture_ = &ring_.take(step);
-  return to_facts(picture_->facts);
+  return to_facts(picture_->facts.time_s, picture_->facts.account);
 }
 
 void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
@@ -116,7 +116,7 @@ std::string BakedParticles::description() const { return describe(*bake_, "parti
 
 study::FrameFacts BakedParticles::prepare(std::int64_t step) {
   bake_->read_frame(step, frame_);
-  return to_facts(frame_.facts);
+  return to_facts(frame_.facts.time_s, frame_.facts.account);
 }
 
 void BakedParticles::draw(unsigned framebuffer, int width_px, int height_px) {
@@ -147,8 +147,7 @@ study::FrameFacts LiveFluid::prepare(std::int64_t step) {
   if (!simulation_ || step < step_) start(step);
   tell_frame_time();
   for (; step_ < step; ++step_) advance();
-  simulation_->read_particles(copy_);
-  return facts();
+  return to_facts(static_cast<double>(step_) * frame_dt_s_, simulation_->account());
 }
 
 void LiveFluid::tell_frame_time() {
@@ -171,13 +170,6 @@ void LiveFluid::look() {
   sim::Gaze gaze;
   if (point) gaze = gaze_through(*view_, point->first, point->second);
   picture_->look(*simulation_, *view_, gaze);
-}
-
-study::FrameFacts LiveFluid::facts() const {
-  study::FrameFacts out;
-  out.simulation_time_s = static_cast<double>(step_) * frame_dt_s_;
-  out.particles_by_level = count_levels(copy_).count;
-  return out;
 }
 
 void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {

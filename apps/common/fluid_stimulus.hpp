@@ -94,7 +94,6 @@ class LiveFluid final : public study::Stimulus {
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
 
  private:
-  study::FrameFacts facts() const;
   void advance();
   void look();
   void tell_frame_time();
@@ -108,7 +107,6 @@ class LiveFluid final : public study::Stimulus {
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
   std::optional<std::chrono::steady_clock::time_point> prepared_;
-  std::vector<sim::RenderParticle> copy_;
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture
 };
@@ -121,8 +119,8 @@ struct StimulusChoice {
   std::string n_star = "32k";
   std::string backend = "auto";
   double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
-  /// Of temporal acceleration, live fluid only: tau in frames/s, none = as measured.
-  std::optional<double> fixed_tau;
+  /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
+  std::optional<sim::FrameRate> fixed_rate;
   stats::PtpeModel model;
   LiveViewing viewing;  ///< live fluid only
 };
@@ -137,11 +135,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice);
 /// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
 bool shows_pictures(const StimulusChoice& choice);
 
-/// How many particles there are of each radius, finest first.
-struct Levels {
-  std::vector<float> radius_m;
-  std::vector<std::int64_t> count;
-};
-Levels count_levels(const std::vector<sim::RenderParticle>& particles);
+/// A frame's facts as its record keeps them, from the solver's account of it.
+study::FrameFacts to_facts(double simulation_time_s, const sim::FrameAccount& account);
 
 }  // namespace apps

@@ -31,10 +31,11 @@ class CellStimuli final : public study::StimulusSource {
   StimulusChoice choice_;
   bool live_ = false;
   std::string description_, departure_;
-  /// What the present stimulus was made for; tau counts for methods with temporal acceleration alone.
+  /// What the present stimulus was made for; the frame rate counts for methods with temporal acceleration
+  /// alone.
   struct Made {
     study::StimulusSpec what;
-    std::optional<double> tau;
+    std::optional<sim::FrameRate> rate;
     bool operator==(const Made&) const = default;
   };
   std::optional<Made> made_;

@@ -26,7 +26,9 @@ constexpr const char* trials_sql =
     "WHERE t.session_id = ? ORDER BY t.position";
 
 constexpr const char* showing_sql =
-    "SELECT verdict, grade, reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames "
+    "SELECT verdict, grade, reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames, "
+    "(SELECT active_fraction FROM solving v WHERE v.presentation_id = presentation.presentation_id), "
+    "(SELECT tau_fps FROM solving v WHERE v.presentation_id = presentation.presentation_id) "
     "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
 
 constexpr const char* answers_sql =
@@ -113,6 +115,8 @@ class Reader {
                     showing_.real(6)};
     out.longest_ms = showing_.real(7);
     out.late = showing_.integer(8);
+    if (!showing_.is_null(9)) out.active_fraction = showing_.real(9);
+    if (!showing_.is_null(10)) out.tau_fps = showing_.real(10);
     return out;
   }
 

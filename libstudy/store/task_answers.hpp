@@ -25,6 +25,8 @@ struct TaskShowing {
   stats::FpsMoments realised;
   double longest_ms = 0;
   std::int64_t late = 0;  ///< frames
+  /// What the solver went by, means over the frames; empty: not measured, or a method without tau.
+  std::optional<double> active_fraction, tau_fps;
 };
 
 /// A question about a trial and its answer so far; choices count from the scale's lowest score.

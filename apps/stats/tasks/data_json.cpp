@@ -52,6 +52,17 @@ std::vector<std::string> notes_of(const TaskData& data) {
   return notes;
 }
 
+/// Of what may not have been measured.
+struct Mean {
+  int count = 0;
+  double sum = 0;
+  void add(const std::optional<double>& value) {
+    count += value ? 1 : 0;
+    sum += value.value_or(0);
+  }
+  Json json() const { return count > 0 ? Json(sum / count) : Json(); }
+};
+
 /// One line of the certificates.
 struct TimedCell {
   int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
@@ -59,6 +70,7 @@ struct TimedCell {
   study::FpsSetting nominal;
   double mean = 0, sd = 0, longest_ms = 0;
   std::int64_t late = 0;
+  Mean active_fraction, tau_fps;  ///< over the showings that measured them
 
   void add(const study::TaskShowing& shown) {
     ++showings;
@@ -75,6 +87,8 @@ struct TimedCell {
     sd += shown.realised.sd;
     longest_ms = std::max(longest_ms, shown.longest_ms);
     late += shown.late;
+    active_fraction.add(shown.active_fraction);
+    tau_fps.add(shown.tau_fps);
   }
 };
 
@@ -91,7 +105,9 @@ Json timed_json(const TimedCell& cell) {
           {"realised_mean_fps", cell.mean / cell.showings},
           {"realised_sd_fps", cell.sd / cell.showings},
           {"longest_ms", cell.longest_ms},
-          {"late_frames", cell.late}};
+          {"late_frames", cell.late},
+          {"active_fraction", cell.active_fraction.json()},
+          {"tau_fps", cell.tau_fps.json()}};
 }
 
 int place(const std::vector<std::string>& list, const std::string& item) {
