@@ -43,15 +43,13 @@ failed=0
 printf '%-12s %12s %8s %10s %9s\n' format executions seconds coverage findings
 for format in "${formats[@]}"; do
   logs=("$out/$format"/log.*)
-  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "${logs[@]}" | awk '{ n += $1 } END { print n }')
-  took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "${logs[@]}" | awk '{ s += $1 } END { print s }')
-  ended=$(grep -l '^Done [0-9]* runs' "${logs[@]}" | wc -l)
-  cover=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "${logs[@]}" | sort -n | tail -n 1)
+  read -r ended runs took <<<"$(grep -ha '^Done [0-9]* runs' "${logs[@]}" | awk '{ n += $2; s += $5 } END { print NR, n + 0, s + 0 }')"
+  cover=$(grep -hoa ' cov: [0-9]*' "${logs[@]}" | awk '$2 > most { most = $2 } END { print most }')
   found=$(find "$out/$format/found" -type f | wc -l)
   # A run that did not end by itself has failed, whether or not it left an input.
   [ "$found" -eq 0 ] && [ "$ended" -eq "$each" ] || failed=1
   [ "$ended" -eq "$each" ] || took=cut
-  printf '%-12s %12s %8s %10s %9s\n' "$format" "${runs:-?}" "$took" "${cover:-?}" "$found"
+  printf '%-12s %12s %8s %10s %9s\n' "$format" "$runs" "$took" "${cover:-?}" "$found"
 done
 [ $failed -eq 0 ] || echo "findings and logs: $out"
 exit $failed

@@ -61,13 +61,13 @@ to_practice() {
 # The mouse lies where "yes" comes to stand: it is not lit. A key hit by mistake is taken back; then the refusal is meant.
 begin P01
 welcome shown
-xdotool mousemove $((width * 30 / 100)) $((height * 565 / 1000))
+xdotool mousemove $((width * 30 / 100)) $((height * 513 / 1000))
 until_begins consent
 shoot P01_consent
-expect "P01: a mouse that lies on yes does not light it" "70 71 75" "$(pixel $((width * 30 / 100)) $((height * 565 / 1000)))"
+expect "P01: a mouse that lies on yes does not light it" "70 71 75" "$(pixel $((width * 30 / 100)) $((height * 513 / 1000)))"
 xdotool mousemove_relative 3 0
 sleep 0.3
-expect "P01: one that is moved there does" "90 92 97" "$(pixel $((width * 30 / 100)) $((height * 565 / 1000)))"
+expect "P01: one that is moved there does" "90 92 97" "$(pixel $((width * 30 / 100)) $((height * 513 / 1000)))"
 key 0 Return
 page refusal_question
 key 1 Return
@@ -89,7 +89,9 @@ ended 4 "not eligible"
 
 begin P03
 to_practice
-until_begins practice; sleep 1
+until_begins practice
+until [ "$(ask "select count(*) from presentation where state = 'running'")" = 1 ]; do sleep 0.1; done
+sleep 0.7
 key Escape
 page stop_question
 key 2 Return
@@ -107,7 +109,7 @@ expect "P03: answers to the SSQ" "1 of 16" "$(ask "select sum(score is not null)
 key 2 Return
 page deleted
 key Return
-ended 3 ""
+ended 3 ""  # deleted
 expect "P03 is deleted" "1 tombstone, 0 sessions" "$(ask "select (select count(*) from tombstone where participant = 'P03') || ' tombstone, ' ||
   (select count(*) from session where participant = 'P03') || ' sessions'")"
 expect "P03 in the personal file" 0 "$(sqlite3 "$db.personal" "select count(*) from personal where participant = 'P03'")"
@@ -117,7 +119,7 @@ to_practice
 until_begins practice
 printf p >&3
 sleep 4
-for k in 5 Return 1 Return; do key "$k"; done
+for k in 5 Return 1 Return Return; do key "$k"; done
 page paused
 printf p >&3
 until_begins rest

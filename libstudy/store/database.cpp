@@ -176,9 +176,9 @@ SchemaSteps read_schema_steps() {
   return steps;
 }
 
-std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
+std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const SchemaSteps& steps) {
   auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
-  upgrade(*database, read_schema_steps(), 0);
+  upgrade(*database, steps, 0);
   return database;
 }
 

@@ -33,10 +33,11 @@ bool keeps_a_log(sqlite3* database) {
   return mode == "wal";
 }
 
-/// The shared memory that the connection has mapped already.
+/// The shared memory that the connection has mapped already. Without a log SQLite would open it for this call
+/// and never close it.
 const volatile char* shared_memory(sqlite3* database) {
   sqlite3_file* file = main_file(database);
-  if (!file) return nullptr;
+  if (!file || !keeps_a_log(database)) return nullptr;
   volatile void* region = nullptr;
   const int code = file->pMethods->xShmMap(file, 0, shared_region_bytes, 0, &region);
   return code == SQLITE_OK ? static_cast<const volatile char*>(region) : nullptr;

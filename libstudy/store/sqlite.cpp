@@ -210,6 +210,8 @@ std::int64_t Connection::last_row_id() const { return sqlite3_last_insert_rowid(
 
 bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
 
+void Connection::unwatch() { watch_.reset(); }
+
 void Connection::watch() {
   integer("SELECT count(*) FROM sqlite_schema");  // the log is made by the first look into the file
   watch_ = std::make_unique<FileWatch>(path_, handle_);

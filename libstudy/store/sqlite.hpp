@@ -76,6 +76,8 @@ class Connection {
   /// What stands in this connection is then saved as "<file>.rescued-<UTC time>.db", the log is taken away
   /// from beside the path, and that commit and all later ones are a base::Error.
   void watch();
+  /// Ends it. Before the log is given up: a log that could be given up by half cannot be watched.
+  void unwatch();
 
   /// Runs statements that give no rows.
   void execute(const std::string& sql);

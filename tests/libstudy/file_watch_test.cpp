@@ -148,5 +148,15 @@ TEST_F(Replaced, ItsOwnLogMayBeCopiedBackAsOftenAsItLikes) {
   EXPECT_EQ(Connection(path_, Open::Read).integer("SELECT count(*) FROM frame"), 180000);
 }
 
+/// SQLite never gives back the shared memory of a connection that keeps no log.
+TEST(FileWatch, OpensNoSharedMemoryWhereThereIsNoLog) {
+  const test::TemporaryFolder folder;
+  Connection database(folder / "s.db", Open::Create);
+  database.execute("PRAGMA journal_mode = DELETE; CREATE TABLE t (a)");
+  database.watch();
+  database.execute("INSERT INTO t VALUES (1)");
+  EXPECT_FALSE(fs::exists(folder / "s.db-shm"));
+}
+
 }  // namespace
 }  // namespace study
