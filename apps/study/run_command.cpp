@@ -118,6 +118,24 @@ bool asks_gaze(const study::Protocol& protocol) {
                      [](const auto& entry) { return entry.second->id == study::gaze_question; });
 }
 
+Played play(const RunCommand& command, const study::Protocol& protocol, const study::SessionPlan& common,
+            const std::vector<std::string>& codes, SessionSetup& setup) {
+  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
+                     tell_of_locks(command.play.database));
+  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
+  const std::int64_t run_id =
+      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
+  Played played;
+  for (const study::OpenRun& open : store.open_runs()) {
+    if (open.id != run_id) continue;
+    played.end = play_run(store, open, protocol, setup, command.play);
+    print_certificate(command.play.database, open, protocol);
+  }
+  played.withdraw = store.wished_withdrawals();
+  study::check_nothing_left(command.play.database, store.left_to_clean());
+  return played;
+}
+
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   choose_defaults(command.run);
@@ -141,17 +159,7 @@ void run(RunCommand& command) {
   }
 
   const StopSignals signals;
-  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
-                     tell_of_locks(command.play.database));
-  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
-  const std::int64_t run_id =
-      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
-  for (const study::OpenRun& open : store.open_runs()) {
-    if (open.id != run_id) continue;
-    play_run(store, open, protocol, setup, command.play);
-    print_certificate(command.play.database, open, protocol);
-  }
-  study::check_nothing_left(command.play.database, store.left_to_clean());
+  end_command(command.play.database, play(command, protocol, common, codes, setup));
 }
 
 }  // namespace
@@ -213,6 +221,7 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
       ->capture_default_str();
   sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
+  sub.footer(exit_status_help);
   sub.callback([command] { run(*command); });
 }
 

@@ -82,7 +82,8 @@ struct OpenRun {
 
 /// How a session came to its end before its last unit.
 enum class EarlyEnd {
-  NotEligible,  ///< no consent, or ruled out by screening
+  Refused,      ///< no consent
+  NotEligible,  ///< ruled out by screening
   Stopped,      ///< by a stop rule or on the participant's wish; the data stay
   DroppedOut    ///< did not come back; the slot is free again
 };
@@ -104,7 +105,8 @@ class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
   /// is removed again when nothing comes to stand in it. What a withdrawal or a merge left to be done is done
-  /// first (chores.hpp). waiting: for locks of other programs, five seconds without it.
+  /// first (chores.hpp), and the withdrawals that were wished (withdraw.hpp). waiting: for locks of other
+  /// programs, five seconds without it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();
@@ -124,7 +126,7 @@ class Store {
   std::vector<OpenRun> open_runs();
 
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
-  /// not eligible or dropped out, and test data beside real ones.
+  /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id.
@@ -133,6 +135,11 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  /// Who wished, at the end of a session, that all be deleted: to be done once this Store is closed.
+  std::vector<std::string> wished_withdrawals();
+  /// Whether anything was shown in this session, and whether anything was answered to it.
+  bool has_shown(std::int64_t session);
+  bool has_answers(std::int64_t session);
   /// Whether the participant allows that gaze is recorded in this session, as it stands now.
   bool allows_gaze(std::int64_t session);
   /// Commits samples of a presentation, after those that it has. base::Error, with nothing kept, unless the

@@ -61,7 +61,7 @@ struct TaskSession {
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::string state;        ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
   std::string gaze_source;  ///< "tracked", "mouse", "fixed" or "none"
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position

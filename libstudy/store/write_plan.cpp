@@ -171,13 +171,15 @@ std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
 void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   check_participant_code(plan.participant);
   Statement present(*database_,
-                    "SELECT 1 FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
+                    "SELECT state FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
   if (present.bind(0, protocol_id).bind(1, plan.participant).bind(2, plan.visit).step()) {
+    const bool open = present.text(0) == "open";
     throw base::Error(
         path_.string(),
         "participant " + plan.participant + " has visit " + std::to_string(plan.visit) +
-            " of this protocol already",
-        "continue with vip-study resume --db " + path_.string() + ", or give other codes or another --visit");
+            " of this protocol already" + (open ? "" : ", and it is over (" + present.text(0) + ")"),
+        (open ? "continue with vip-study resume --db " + path_.string() + ", or give" : std::string("give")) +
+            " other codes or another --visit");
   }
   Statement alike(*database_,
                   "SELECT participant FROM (SELECT participant FROM session UNION SELECT participant FROM "

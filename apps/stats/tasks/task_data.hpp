@@ -17,7 +17,7 @@ namespace apps {
 /// What became of the sessions of one protocol, and of their trials.
 struct TaskFlow {
   std::map<std::string, int>
-      by_state;  ///< sessions: "open", "done", "not eligible", "stopped", "dropped out"
+      by_state;  ///< sessions: "open", "done", "refused", "not eligible", "stopped", "dropped out"
   int started = 0;
   int withdrawn = 0;           ///< participants, from whatever protocol of the database
   int test_left_out = 0;       ///< sessions of test data beside real ones
