@@ -11,9 +11,9 @@
 #include <filesystem>
 
 #include "apps/common/streams.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/text.hpp"
 
 namespace apps {
 

@@ -18,8 +18,8 @@
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/status.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/text.hpp"
 
 namespace apps {
 

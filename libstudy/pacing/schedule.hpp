@@ -63,7 +63,7 @@ struct RefreshVerdict {
   int longest_hold = 0;     ///< periods
   /// Periods each frame is held, in the order of `seed`; empty when unreachable.
   std::vector<int> holds;
-  std::string reason;  ///< which moments are missed, by how much, and what forces it; empty: exact
+  std::string reason;  ///< why it is not exact
 };
 
 /// exact: some N = round(mean * duration) hold counts whose sum is exactly R N / mean periods (R T where mean

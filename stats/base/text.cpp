@@ -1,7 +1,5 @@
 #include "stats/base/text.hpp"
 
-#include <cstdio>
-
 namespace base {
 
 namespace {
@@ -62,17 +60,6 @@ std::string shortened(std::string_view value, std::size_t most_bytes) {
   while (tail < value.size() && continues(value[tail])) ++tail;
   return plain(value.substr(0, head)) + " ... (" + std::to_string(value.size()) + " bytes) ... " +
          plain(value.substr(tail));
-}
-
-std::string duration_words(double seconds) {
-  char text[40];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 7200)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  return text;
 }
 
 }  // namespace base

@@ -19,8 +19,4 @@ bool is_plain_line(std::string_view text);
 /// than `most_bytes`, its middle gives way to the number of its bytes.
 std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 
-/// A length of time for people: "40 s" below 90 s, "12 min" below two hours, else "3.5 h". Seconds, 0 or
-/// more.
-std::string duration_words(double seconds);
-
 }  // namespace base

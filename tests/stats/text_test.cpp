@@ -38,12 +38,5 @@ TEST(Text, LongValuesAreShownByTheirEndsInWholeCharacters) {
   }
 }
 
-TEST(Text, LengthsOfTimeAreInTheUnitThatPeopleUse) {
-  EXPECT_EQ(duration_words(40), "40 s");
-  EXPECT_EQ(duration_words(90), "2 min");
-  EXPECT_EQ(duration_words(73 * 60), "73 min");
-  EXPECT_EQ(duration_words(3.5 * 3600), "3.5 h");
-}
-
 }  // namespace
 }  // namespace base

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/study/desk/progress.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 
