@@ -74,7 +74,7 @@ void print_session(const CheckReport& report) {
 void print_settings(const CheckReport& report, const RefreshCheck& check) {
   std::printf("\non %g Hz, %s mean, timing = %s\n%-16s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
               mean_name(report.protocol), timing_name(report.protocol.design), "setting", "frames", "status",
-              "mean", "sd", "longest ms", "why not exact");
+              "mean", "sd", "longest ms", "what misses, and why");
   for (std::size_t i = 0; i < report.settings.size(); ++i) {
     const auto& verdict = check.verdicts[i];
     std::printf("%-16s %6lld  %-11s", study::setting_name(report.settings[i].setting).c_str(),

@@ -20,6 +20,7 @@
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/status.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -148,6 +149,15 @@ void check_station(study::Store& store, const study::OpenSession& session, const
   store.log(session.id, "preflight", lines, setup.clock->now_ns());
 }
 
+/// On stderr, before the first step: how long what is left takes in real time.
+void tell_length(const study::OpenRun& run, const study::Protocol& protocol, bool person) {
+  double seconds = 0;
+  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person);
+  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", protocol.name.c_str(),
+               run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
+               base::duration_words(seconds).c_str());
+}
+
 /// The session as it stands in the store now; none when nothing is left of it.
 std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t id) {
   for (study::OpenRun& run : store.open_runs()) {
@@ -186,7 +196,10 @@ const char* const exit_status_help =
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                 SessionSetup& setup, const PlayOptions& options) {
   std::optional<study::RealTimeScheduling> real_time;
-  if (!setup.virtual_clock) real_time.emplace();
+  if (!setup.virtual_clock) {
+    real_time.emplace();
+    tell_length(run, protocol, !setup.participant->simulated());
+  }
   std::optional<study::PersonalFile> personal;
   if (asks_personal(protocol)) personal.emplace(options.database);
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,

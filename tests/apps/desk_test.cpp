@@ -372,6 +372,8 @@ TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   for (const auto& unit : session().units) sum += expected_s(protocol_, unit);
   EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units), sum);
   EXPECT_GT(sum, 21 * 18);
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, false), 3 + 10) << "an observer answers at once";
+  EXPECT_LT(expected_s(protocol_, session().units, false), sum);
   // 21 settings of 10 s with a mean of 26.67 frames/s.
   EXPECT_GT(expected_bytes(protocol_, session().units), 64u * 21 * 200);
 }
