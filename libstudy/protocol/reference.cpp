@@ -44,9 +44,11 @@ const std::vector<TableText>& table_texts() {
        "| black | a black screen |\n"
        "| repeat | trials shown again, with the very same intervals: test-retest |\n"
        "| catch | pages after trials drawn at random, with an answer that attention gives |\n"
-       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports and "
+       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports "
+       "and "
        "report hold its scores |\n"
-       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report hold "
+       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report "
+       "hold "
        "mean and peak |\n"
        "| debrief | the last text |"},
       {"block.question", "[[block.question]]",
@@ -90,6 +92,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "also play settings that the display meets only approximately"},
       {"", "needs_gaze", "true or false", "", "false",
        "without tracked gaze some hypotheses are labelled not testable"},
+      {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",
+       "scene: the camera keeps the scene's angle. true: it has the angle that the picture fills of the "
+       "eye's "
+       "view, refused where that cuts what must stay visible"},
       {"", "design", "table", "", "", "what is shown"},
       {"", "pacing", "table", "", "", "how frames are timed"},
       {"", "content", "table", "", "", "how the process elapses"},
