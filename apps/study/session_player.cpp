@@ -14,7 +14,6 @@
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
-#include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
@@ -39,13 +38,6 @@ std::size_t units_left(const study::OpenRun& run) {
 bool asks_personal(const study::Protocol& protocol) {
   const auto all = study::all_questions(protocol);
   return std::any_of(all.begin(), all.end(), [](const auto& entry) { return entry.second->personal; });
-}
-
-std::optional<stats::PtpeModel> ptpe_of(const study::OpenSession& session,
-                                        const std::filesystem::path& database) {
-  if (!session.plan.ptpe) return {};
-  const std::string place = database.string() + ": PTPE file of " + session.plan.participant;
-  return sim::parse_ptpe_file(*session.plan.ptpe, place).model;
 }
 
 }  // namespace
@@ -181,7 +173,6 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
-      parts.ptpe = ptpe_of(session, options.database);
       study::run_session(protocol, session, parts, steering.hooks(session));
       while (steering.take_reopened()) {
         const auto again = read_again(store, session.id);

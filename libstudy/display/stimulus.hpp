@@ -2,17 +2,33 @@
 /// What a trial shows and where it is shown. libstudy knows fluids and GL only through these two interfaces.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace study {
 
-/// What a frame of the stimulus consisted of; kept in every frame record.
+/// How often the rules of a fluid stepped in while it computed one frame; the schema says what each counts.
+struct FrameGuards {
+  std::int64_t speed_limited = 0, coincident_pairs = 0, not_finite = 0, neighbours_dropped = 0;
+  std::int64_t wall_projected = 0, nozzle_waited = 0, saliency_not_finite = 0, gaze_lost = 0;
+};
+
+/// What a fluid that leaves particles out went by in one frame.
+struct FrameTolerance {
+  std::optional<double> tau_fps;            ///< empty: no frame's time was known yet
+  double beta = 1;                          ///< lowest probability of being solved, [0, 1]
+  double active_fraction = 1;               ///< share of particles that were solved, [0, 1]
+  std::optional<double> mu_fps, delta_fps;  ///< mean and standard deviation behind tau; empty: tau was given
+};
+
+/// What a frame of the stimulus consisted of, as its producer had it; kept in every frame record. What nobody
+/// measured is empty.
 struct FrameFacts {
   double simulation_time_s = 0;
-  std::vector<std::int64_t> particles_by_level;
-  double active_fraction = 1;
-  double tolerance = 0;  ///< tau in frames/s when a PTPE model is in force; 0 without one
+  std::vector<std::int64_t> particles_by_level;  ///< finest first
+  std::optional<FrameTolerance> tolerance;
+  std::optional<FrameGuards> guards;
 };
 
 /// A process that elapses in content steps. Not thread-safe.

@@ -16,7 +16,6 @@
 #include "libstudy/session/participant.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/store.hpp"
-#include "stats/ptpe/ptpe.hpp"
 
 namespace study {
 
@@ -36,8 +35,6 @@ struct SessionParts {
   Store& store;
   PersonalFile* personal = nullptr;  ///< needed where the protocol asks something personal
   bool virtual_clock = false;
-  /// The PTPE model in force: each frame's record then holds tau (RunningTolerance).
-  std::optional<stats::PtpeModel> ptpe = {};
   /// Recorded while a stimulus is shown to who allows it. Without: nothing is measured.
   GazeSource* gaze = nullptr;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libstudy/pacing/running_tolerance.hpp"
 #include "libstudy/session/frame_journal.hpp"
 
 namespace study {
@@ -54,26 +53,6 @@ class RecordedGaze {
 
  private:
   GazeSource* source_;
-};
-
-/// What a solver goes by: the moments of the schedule where they are replayed, else those of the last frames.
-class FrameTolerance {
- public:
-  FrameTolerance(const std::optional<stats::PtpeModel>& model, TimingSource timing, const FpsSetting& setting)
-      : replayed_(timing == TimingSource::Table2) {
-    if (!model) return;
-    constant_ = stats::ptpe_tolerance(*model, setting.mean, setting.sd);
-    running_.emplace(*model);
-  }
-  double of(const FrameRecord& frame) {
-    if (!running_) return frame.facts.tolerance;
-    return replayed_ ? constant_ : running_->next(frame.times.submitted_ns);
-  }
-
- private:
-  bool replayed_;
-  double constant_ = 0;
-  std::optional<RunningTolerance> running_;
 };
 
 }  // namespace
@@ -189,9 +168,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   const SessionParts& parts = run_.parts;
   RecordedGaze gaze(run_);
   FrameJournal journal(parts.store, presentation, start_ns, gaze.origin(), !parts.virtual_clock);
-  FrameTolerance tolerance(parts.ptpe, run_.protocol.design.timing, cell.setting);
-  const auto each = [&](FrameRecord frame) {
-    frame.facts.tolerance = tolerance.of(frame);
+  const auto each = [&](const FrameRecord& frame) {
     journal.add(frame, gaze.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);
     heed(run_, true);

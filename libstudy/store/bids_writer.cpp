@@ -55,9 +55,16 @@ std::string field(const sqlite::Statement& row, int column) {
 
 std::string seconds(std::int64_t ns) { return number_text(static_cast<double>(ns) / ns_per_s); }
 
-Json described(const std::string& meaning) { return {{"Description", meaning}}; }
+namespace {
+std::string with_n_a(std::string meaning) {
+  if (const auto at = meaning.find("empty:"); at != std::string::npos) meaning.replace(at, 5, "n/a");
+  return meaning;
+}
+}  // namespace
+
+Json described(const std::string& meaning) { return {{"Description", with_n_a(meaning)}}; }
 Json described(const std::string& meaning, const std::string& unit) {
-  return {{"Description", meaning}, {"Units", unit}};
+  return {{"Description", with_n_a(meaning)}, {"Units", unit}};
 }
 
 std::string stem_of(const LabelledSession& session) {

@@ -22,6 +22,7 @@ std::string field(const sqlite::Statement& row, int column);
 /// Seconds as text.
 std::string seconds(std::int64_t ns);
 
+/// What a column means; where the schema says "empty", BIDS writes n/a.
 Json described(const std::string& meaning);
 Json described(const std::string& meaning, const std::string& unit);
 

@@ -20,7 +20,7 @@ using sqlite::Open;
 namespace {
 
 constexpr std::array step_files{"001_initial.sql", "002_blocks.sql", "003_permissions.sql",
-                                "004_framing.sql"};
+                                "004_counting.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 
 // The head of a SQLite file (sqlite.org/fileformat.html, section 1.3).
@@ -176,9 +176,9 @@ SchemaSteps read_schema_steps() {
   return steps;
 }
 
-std::unique_ptr<Connection> make_temporary_database(const fs::path& shown) {
+std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const SchemaSteps& steps) {
   auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
-  upgrade(*database, read_schema_steps(), 0);
+  upgrade(*database, steps, 0);
   return database;
 }
 

@@ -35,6 +35,7 @@ std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& p
                                                   const sqlite::Waiting& waiting = {});
 
 /// Empty, of the newest schema, without a file; messages name `shown`.
-std::unique_ptr<sqlite::Connection> make_temporary_database(const std::filesystem::path& shown);
+std::unique_ptr<sqlite::Connection> make_temporary_database(const std::filesystem::path& shown,
+                                                            const SchemaSteps& steps = read_schema_steps());
 
 }  // namespace study

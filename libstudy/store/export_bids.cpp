@@ -5,6 +5,7 @@
 #include "libstudy/store/bids_questions.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/rating_table.hpp"
 #include "stats/base/file.hpp"
 
 namespace study {
@@ -28,9 +29,12 @@ constexpr const char* description_file = "dataset_description.json";
 constexpr const char* events_sql =
     "SELECT p.start_ns, p.end_ns, u.kind, t.position, p.attempt, p.interval, p.state, c.scene, c.method, "
     "c.n_star, c.mean_fps, c.sd_fps, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.longest_ms, "
-    "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, u.unit_id, t.second_cell IS NOT NULL "
+    "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, w.counts, w.why_not, "
+    "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
+    "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), u.unit_id, "
+    "t.second_cell IS NOT NULL "
     "FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
-    "JOIN session s ON s.session_id = t.session_id "
+    "JOIN showing w USING (presentation_id) JOIN session s ON s.session_id = t.session_id "
     "JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
     "WHERE s.session_id = ? ORDER BY p.presentation_id";
 
@@ -58,7 +62,11 @@ Json event_columns() {
       {"late_frames", described("frames beyond the protocol's bound")},
       {"verdict", described("timing: pass, degraded or fail; n/a: no schedule to judge by")},
       {"grade", described("evidence: A photodiode, B display, C compositor, D submit")},
-      {"excluded", described("1: excluded by the experimenter")}};
+      {"excluded", described("1: excluded by the experimenter")},
+      {"counts", described(showing_counts_meaning)},
+      {"why_not", described(showing_why_not_meaning)},
+      {"active_fraction", described(showing_active_meaning)},
+      {"tau_fps", described(showing_tau_meaning, "frames/s")}};
 }
 
 Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
@@ -74,10 +82,10 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
     const std::int64_t onset_ns = time.onset_of(row.integer(0), end_ns);
     std::vector<std::string> line{bids::seconds(onset_ns),
                                   end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
-    for (int i = 2; i <= 20; ++i) line.push_back(field(row, i));
-    const bool judged = row.integer(5) == row.integer(22);
+    for (int i = 2; i <= 24; ++i) line.push_back(field(row, i));
+    const bool judged = row.integer(5) == row.integer(26);
     for (const Item& item : asked) {
-      auto [score, seconds] = judged ? answer_of(database, row.integer(21), item.id, row.integer(4))
+      auto [score, seconds] = judged ? answer_of(database, row.integer(25), item.id, row.integer(4))
                                      : std::pair<std::string, std::string>{"n/a", "n/a"};
       line.push_back(score);
       line.push_back(seconds);

@@ -47,20 +47,36 @@ constexpr std::array tables{
     Table{"event", "events.csv", "event_id"},
 };
 
-/// What holds for a session, of the schema's views.
-struct PermissionColumn {
-  const char *name, *expression, *meaning;
+/// A column of an exported table that the schema's views tell of its rows.
+struct AddedColumn {
+  const char *table, *name, *type, *expression, *meaning;
 };
-constexpr std::array permission_columns{
-    PermissionColumn{"sharing_allowed", "(SELECT granted FROM sharing h WHERE h.person = session.person)",
-                     "1: the participant may stand in public exports (BIDS, Psych-DS); 0: refused in some "
-                     "session, or asked "
-                     "and not answered; empty: never asked"},
-    PermissionColumn{
-        "gaze_allowed",
+constexpr std::array added_columns{
+    AddedColumn{"session", "sharing_allowed", "INTEGER",
+                "(SELECT granted FROM sharing h WHERE h.person = session.person)",
+                "1: the participant may stand in public exports (BIDS, Psych-DS); 0: refused in some "
+                "session, or asked and not answered; empty: never asked"},
+    AddedColumn{
+        "session", "gaze_allowed", "INTEGER",
         "(SELECT granted FROM permission p WHERE p.session_id = session.session_id AND p.what = 'gaze')",
-        "1: gaze may be recorded in this session; 0: refused, or asked and not answered; empty: not asked"}};
-bool has_permissions(const Table& table) { return std::strcmp(table.name, "session") == 0; }
+        "1: gaze may be recorded in this session; 0: refused, or asked and not answered; empty: not asked"},
+    AddedColumn{"presentation", "counts", "INTEGER",
+                "(SELECT counts FROM showing w WHERE w.presentation_id = presentation.presentation_id)",
+                showing_counts_meaning},
+    AddedColumn{"presentation", "why_not", "TEXT",
+                "(SELECT why_not FROM showing w WHERE w.presentation_id = presentation.presentation_id)",
+                showing_why_not_meaning},
+    AddedColumn{"response", "counts", "INTEGER",
+                "(SELECT counts FROM answer a WHERE a.response_id = response.response_id)",
+                "1: the answer counts, 0: why_not says why"},
+    AddedColumn{
+        "response", "why_not", "TEXT",
+        "(SELECT why_not FROM answer a WHERE a.response_id = response.response_id)",
+        "set aside (with the showing that it judged), answered again, excluded (by the experimenter), "
+        "not answered or practice; empty: the answer counts"}};
+bool is_of(const AddedColumn& column, const Table& table) {
+  return std::strcmp(table.name, column.table) == 0;
+}
 
 constexpr const char* ratings_file = "ratings.csv";
 constexpr const char* dictionary_file = "dictionary.csv";
@@ -101,8 +117,8 @@ std::string select_sql(Connection& database, const Table& table) {
   std::string list;
   for (const ColumnMeaning& column : columns_of(database, table))
     list += (list.empty() ? "" : ", ") + column.column;
-  for (const PermissionColumn& column : permission_columns) {
-    if (has_permissions(table)) list += std::string(", ") + column.expression + " AS " + column.name;
+  for (const AddedColumn& column : added_columns) {
+    if (is_of(column, table)) list += std::string(", ") + column.expression + " AS " + column.name;
   }
   return "SELECT " + list + " FROM " + table.name + " ORDER BY " + table.order;
 }
@@ -124,8 +140,8 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
   for (const Table& table : tables) {
     if (!is_written(table, choice)) continue;
     for (const ColumnMeaning& column : columns_of(database, table)) write(table.file, column);
-    for (const PermissionColumn& column : permission_columns) {
-      if (has_permissions(table)) write(table.file, {table.name, column.name, "INTEGER", column.meaning});
+    for (const AddedColumn& column : added_columns) {
+      if (is_of(column, table)) write(table.file, {table.name, column.name, column.type, column.meaning});
     }
   }
   for (const RatingColumn& column : rating_columns()) write(ratings_file, meaning_of(database, column));
@@ -151,7 +167,7 @@ ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
   for (const ColumnMeaning& found : columns_of(database, {column.table, "", ""})) {
     if (found.column != column.column) continue;
     const std::string meaning = column.meaning ? column.meaning : found.meaning;
-    return {column.table, column.name, column.expression ? "INTEGER" : found.type,
+    return {column.table, column.name, column.expression ? column.type : found.type,
             rating_subject(column) + meaning};
   }
   return {column.table, column.name, "", ""};

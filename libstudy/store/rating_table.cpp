@@ -36,7 +36,14 @@ constexpr std::array columns{
     RatingColumn{"question", "question", "question", "code"},
     RatingColumn{"score", "response", "response", "score"},
     RatingColumn{"response_time_s", "response", "response", "response_time_s"},
-    RatingColumn{"attempt", "response", "response", "attempt"},
+    RatingColumn{
+        "attempt", "response", "response", "attempt", "judgement.attempt",
+        "showing of the trial that was judged; without an answer the last one played and not set aside"},
+    RatingColumn{"counts", "response", "response", "score", "judgement.counts",
+                 "1: the answer counts, 0: why_not says why"},
+    RatingColumn{"why_not", "trial", "trial", "excluded", "judgement.why_not",
+                 "not answered, excluded (by the experimenter) or practice; empty: the answer counts",
+                 "TEXT"},
     RatingColumn{"excluded", "trial", "trial", "excluded", "trial.excluded IS NOT NULL",
                  "1: excluded by the experimenter"},
     RatingColumn{"first_verdict", "shown_1", "presentation", "verdict"},
@@ -51,6 +58,12 @@ constexpr std::array columns{
     RatingColumn{"first_lag1", "shown_1", "presentation", "lag1"},
     RatingColumn{"first_late_frames", "shown_1", "presentation", "late_frames"},
     RatingColumn{"first_worst_late_ms", "shown_1", "presentation", "worst_late_ms"},
+    RatingColumn{"first_active_fraction", "shown_1", "presentation", "presentation_id",
+                 "(SELECT active_fraction FROM solving v WHERE v.presentation_id = shown_1.presentation_id)",
+                 showing_active_meaning, "REAL"},
+    RatingColumn{"first_tau_fps", "shown_1", "presentation", "presentation_id",
+                 "(SELECT tau_fps FROM solving v WHERE v.presentation_id = shown_1.presentation_id)",
+                 showing_tau_meaning, "REAL"},
     RatingColumn{"second_verdict", "shown_2", "presentation", "verdict"},
     RatingColumn{"second_grade", "shown_2", "presentation", "grade"},
     RatingColumn{"second_frames", "shown_2", "presentation", "frames"},
@@ -63,23 +76,26 @@ constexpr std::array columns{
     RatingColumn{"second_lag1", "shown_2", "presentation", "lag1"},
     RatingColumn{"second_late_frames", "shown_2", "presentation", "late_frames"},
     RatingColumn{"second_worst_late_ms", "shown_2", "presentation", "worst_late_ms"},
+    RatingColumn{"second_active_fraction", "shown_2", "presentation", "presentation_id",
+                 "(SELECT active_fraction FROM solving v WHERE v.presentation_id = shown_2.presentation_id)",
+                 showing_active_meaning, "REAL"},
+    RatingColumn{"second_tau_fps", "shown_2", "presentation", "presentation_id",
+                 "(SELECT tau_fps FROM solving v WHERE v.presentation_id = shown_2.presentation_id)",
+                 showing_tau_meaning, "REAL"},
 };
 
 constexpr const char* joined_tables =
-    " FROM trial JOIN unit USING (trial_id) JOIN session ON session.session_id = trial.session_id "
-    "JOIN protocol USING (protocol_id) "
-    "JOIN ask ON ask.protocol_id = protocol.protocol_id AND ask.block = unit.block "
-    "JOIN question ON question.question_id = ask.question_id AND question.personal = 0 "
+    " FROM judgement JOIN trial USING (trial_id) JOIN unit ON unit.unit_id = judgement.unit_id "
+    "JOIN session ON session.session_id = trial.session_id JOIN protocol USING (protocol_id) "
+    "JOIN question ON question.question_id = judgement.question_id AND question.personal = 0 "
     "JOIN cell AS cell_1 ON cell_1.protocol_id = protocol.protocol_id AND cell_1.cell = trial.first_cell "
     "LEFT JOIN cell AS cell_2 ON cell_2.protocol_id = protocol.protocol_id "
     "AND cell_2.cell = trial.second_cell "
-    "LEFT JOIN response ON response.response_id = (SELECT r.response_id FROM response r "
-    "WHERE r.unit_id = unit.unit_id AND r.question_id = question.question_id "
-    "AND r.attempt > trial.set_aside ORDER BY r.attempt DESC LIMIT 1) "
+    "LEFT JOIN response ON response.response_id = judgement.response_id "
     "LEFT JOIN presentation AS shown_1 ON shown_1.trial_id = trial.trial_id "
-    "AND shown_1.attempt = response.attempt AND shown_1.interval = 0 "
+    "AND shown_1.attempt = judgement.attempt AND shown_1.interval = 0 "
     "LEFT JOIN presentation AS shown_2 ON shown_2.trial_id = trial.trial_id "
-    "AND shown_2.attempt = response.attempt AND shown_2.interval = 1";
+    "AND shown_2.attempt = judgement.attempt AND shown_2.interval = 1";
 
 }  // namespace
 
@@ -98,7 +114,8 @@ std::string rating_table_sql(const std::string& condition) {
         column.expression ? column.expression : std::string(column.from) + '.' + column.column;
     list += (list.empty() ? "" : ", ") + value + " AS " + column.name;
   }
-  return "SELECT " + list + joined_tables + " WHERE " + condition + " ORDER BY trial.trial_id, ask.place";
+  return "SELECT " + list + joined_tables + " WHERE " + condition +
+         " ORDER BY trial.trial_id, judgement.place";
 }
 
 }  // namespace study

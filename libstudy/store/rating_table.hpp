@@ -14,15 +14,31 @@ struct RatingColumn {
   const char* column;
   const char* expression = nullptr;  ///< instead of from.column
   const char* meaning = nullptr;     ///< instead of what the schema says of the column
+  const char* type = "INTEGER";      ///< of the expression
 };
 
 std::span<const RatingColumn> rating_columns();
 
+/// What the columns counts and why_not of a showing say in every export.
+inline constexpr const char* showing_counts_meaning =
+    "1: an answer that counts is about this showing, 0: why_not says why none is";
+inline constexpr const char* showing_why_not_meaning =
+    "set aside (to be shown again), cut short, shown again (after an interruption), not answered, excluded "
+    "(by "
+    "the experimenter) or practice; empty: the showing counts";
+/// And the columns active_fraction and tau_fps.
+inline constexpr const char* showing_active_meaning =
+    "share of particles that the solver solved, mean over the frames; empty: not measured, or a method that "
+    "solves all";
+inline constexpr const char* showing_tau_meaning =
+    "tau that the solver went by, mean over the frames, frames/s; empty: not measured, or a method without "
+    "tau";
+
 /// Which stimulus a column tells of, in words before its meaning; empty: none in particular.
 std::string rating_subject(const RatingColumn& column);
 
-/// Selects them in that order, one row for each trial and question. Without an answer the score and all that
-/// describes the showing are NULL; of several answers the last one counts.
+/// Selects them in that order, one row for each trial and question, with the answer and the showing that the
+/// schema's view judgement names.
 /// `condition` (such as "session.session_id = 3") leaves out the others.
 std::string rating_table_sql(const std::string& condition = "1");
 

@@ -9,26 +9,20 @@ using sqlite::Statement;
 
 namespace {
 
-// The last answer counts, with the showing it judged, unless it was set aside; without an answer, the last
-// showing played.
 constexpr const char* ratings_sql =
     "SELECT s.participant, p.name, p.sha256, s.test_data OR p.test_data, u.kind, t.position, "
     "c.mean_fps, c.sd_fps, c.duration_s, q.scale_min, q.scale_max, a.score, "
     "v.verdict, v.grade, v.reason, v.frames, v.mean_fps, v.mean_arithmetic_fps, v.sd_fps, v.longest_ms, "
     "v.shortest_ms, v.p95_ms, v.lag1, v.late_frames, v.worst_late_ms, coalesce(s.observer, ''), q.code, "
     "t.excluded IS NOT NULL "
-    "FROM trial t JOIN unit u USING (trial_id) JOIN session s ON s.session_id = t.session_id "
-    "JOIN protocol p USING (protocol_id) "
+    "FROM judgement j JOIN trial t USING (trial_id) JOIN unit u ON u.unit_id = j.unit_id "
+    "JOIN session s ON s.session_id = t.session_id JOIN protocol p USING (protocol_id) "
     "JOIN cell c ON c.protocol_id = p.protocol_id AND c.cell = t.first_cell "
-    "JOIN ask k ON k.protocol_id = p.protocol_id AND k.block = u.block "
-    "JOIN question q ON q.question_id = k.question_id AND q.kind = 'scale' AND q.personal = 0 "
-    "LEFT JOIN response a ON a.response_id = (SELECT r.response_id FROM response r "
-    "WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
-    "AND r.attempt > t.set_aside ORDER BY r.attempt DESC LIMIT 1) "
+    "JOIN question q ON q.question_id = j.question_id AND q.kind = 'scale' AND q.personal = 0 "
+    "LEFT JOIN response a ON a.response_id = j.response_id "
     "LEFT JOIN presentation v ON v.trial_id = t.trial_id AND v.interval = 0 AND v.state = 'played' "
-    "AND v.attempt = coalesce(a.attempt, (SELECT max(l.attempt) FROM presentation l "
-    "WHERE l.trial_id = t.trial_id AND l.state = 'played')) "
-    "WHERE t.second_cell IS NULL ORDER BY p.protocol_id, s.participant, s.visit, t.position, k.place";
+    "AND v.attempt = j.attempt "
+    "WHERE t.second_cell IS NULL ORDER BY p.protocol_id, s.participant, s.visit, t.position, j.place";
 
 TimingVerdict read_verdict(const Statement& row, const FpsSetting& nominal) {
   TimingVerdict verdict;

@@ -24,8 +24,8 @@ struct RatingRow {
   int position = 0;       ///< 0-based order of presentation
   FpsSetting nominal;
   int scale_min = 1, scale_max = 7;
-  /// How the trial was shown; empty until it was, and without a schedule to judge by. A trial shown again
-  /// counts by the presentation answered last.
+  /// How the showing that was judged was shown (the schema's view judgement); empty until there is one, and
+  /// without a schedule to judge by.
   std::optional<TimingVerdict> timing;
   /// The answer within [scale_min, scale_max]; empty until given.
   std::optional<int> rating;

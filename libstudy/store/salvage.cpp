@@ -9,6 +9,7 @@
 
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/earlier_shapes.hpp"
 #include "libstudy/store/salvage_rows.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -16,6 +17,7 @@
 namespace study {
 
 namespace fs = std::filesystem;
+using salvaging::EarlierShape;
 using salvaging::RowsByTable;
 using salvaging::Shape;
 using salvaging::Values;
@@ -97,11 +99,17 @@ void read_sound(Connection& database, const std::vector<Shape>& shapes, bool lar
 }
 
 /// Rows of the tables that are large, or of those that are not.
-void read_rows(Connection* sound, const fs::path& database, const std::vector<Shape>& shapes, bool large,
-               const Take& take) {
+void read_rows(Connection* sound, const fs::path& database, const std::vector<Shape>& shapes,
+               const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);
-  salvaging::scan_pages(database, shapes, [&](const Shape& shape, Values values) {
-    if (salvaging::is_large(shape.table) == large) take(shape, std::move(values));
+  std::vector<Shape> all = shapes;
+  for (const auto& one : earlier) all.push_back(one.shape);
+  salvaging::scan_pages(database, all, [&](const Shape& shape, Values values) {
+    if (salvaging::is_large(shape.table) != large) return;
+    const auto index = static_cast<std::size_t>(&shape - all.data());
+    if (index < shapes.size()) return take(shape, std::move(values));
+    const auto& before = earlier[index - shapes.size()];
+    take(shapes[before.now], salvaging::as_now(before, values));
   });
 }
 
@@ -109,12 +117,13 @@ void fill(Connection& target, Connection* sound, const fs::path& database, const
           Salvage& told) {
   sqlite::Transaction transaction(target);
   const auto shapes = salvaging::shapes_of(target);
+  const auto earlier = sound ? std::vector<EarlierShape>() : salvaging::earlier_shapes(shapes);
   RowsByTable rows;
-  read_rows(sound, database, shapes, false,
+  read_rows(sound, database, shapes, earlier, false,
             [&](const Shape& shape, Values values) { rows[shape.table].push_back(std::move(values)); });
   salvaging::Rebuild rebuild(target, journal, told);
   rebuild.take(std::move(rows));
-  read_rows(sound, database, shapes, true,
+  read_rows(sound, database, shapes, earlier, true,
             [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
   rebuild.sum_up();
   Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")

@@ -27,7 +27,6 @@ constexpr const char* sessions_sql =
     "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
-// A showing was answered when some response judges it; one of a pair shares its attempt with the other.
 std::string certificate_sql(FpsMean mean) {
   const std::string realised = mean == FpsMean::Harmonic ? "p.mean_fps" : "p.mean_arithmetic_fps";
   return "SELECT c.scene, c.method, c.n_star, c.mean_fps, c.sd_fps, c.duration_s, count(*), avg(" + realised +
@@ -38,8 +37,7 @@ std::string certificate_sql(FpsMean mean) {
          "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade) "
          "FROM presentation p JOIN trial t USING (trial_id) "
          "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
-         "WHERE s.run_id = ? AND EXISTS (SELECT 1 FROM unit u JOIN response r USING (unit_id) "
-         "WHERE u.trial_id = p.trial_id AND r.attempt = p.attempt) "
+         "JOIN showing w USING (presentation_id) WHERE s.run_id = ? AND w.judged "
          "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";
 }
 

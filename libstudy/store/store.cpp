@@ -32,6 +32,21 @@ std::optional<std::string> particles_text(const std::vector<std::int64_t>& parti
   return text;
 }
 
+/// Columns 10 to 23 of a frame; what nobody measured is NULL.
+void bind_facts(Statement& insert, const FrameFacts& facts) {
+  insert.bind(10, particles_text(facts.particles_by_level));
+  for (int column = 11; column <= 23; ++column) insert.bind_null(column);
+  if (const auto& t = facts.tolerance) {
+    insert.bind(11, t->active_fraction).bind(12, t->tau_fps).bind(13, t->beta);
+    insert.bind(14, t->mu_fps).bind(15, t->delta_fps);
+  }
+  if (const auto& g = facts.guards) {
+    insert.bind(16, g->speed_limited).bind(17, g->coincident_pairs).bind(18, g->not_finite);
+    insert.bind(19, g->neighbours_dropped).bind(20, g->wall_projected).bind(21, g->nozzle_waited);
+    insert.bind(22, g->saliency_not_finite).bind(23, g->gaze_lost);
+  }
+}
+
 const char* state_name(EarlyEnd how) {
   if (how == EarlyEnd::NotEligible) return "not eligible";
   return how == EarlyEnd::Stopped ? "stopped" : "dropped out";
@@ -54,7 +69,9 @@ void check_participant_code(const std::string& code) {
 
 struct Store::Statements {
   explicit Statements(sqlite::Connection& database)
-      : frame(database, "INSERT INTO frame VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+      : frame(database,
+              "INSERT INTO frame VALUES "
+              "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
         event(database,
               "INSERT INTO event (session_id, presentation_id, utc, clock_ns, kind, detail) VALUES "
               "(?,?,?,?,?,?)"),
@@ -154,8 +171,8 @@ void Store::insert_frames(std::int64_t presentation, std::int64_t start_ns,
     insert.bind(5, after(frame.times.submitted_ns, due)).bind(6, after(frame.times.gpu_done_ns, due));
     insert.bind(7, after(frame.times.predicted_display_ns, due))
         .bind(8, after(frame.times.actual_display_ns, due));
-    insert.bind(9, frame.late ? 1 : 0).bind(10, particles_text(frame.facts.particles_by_level));
-    insert.bind(11, frame.facts.active_fraction).bind(12, frame.facts.tolerance);
+    insert.bind(9, frame.late ? 1 : 0);
+    bind_facts(insert, frame.facts);
     insert.run();
   }
 }

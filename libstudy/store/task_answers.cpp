@@ -18,28 +18,19 @@ constexpr const char* sessions_sql =
     "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
     "display FROM session WHERE protocol_id = ? ORDER BY participant, visit";
 
-// The showing that was judged: of several answers to a question the last one counts, unless it was set aside;
-// after an interruption later questions may belong to a later showing, and the one judged first counts.
-// Without an answer, the last one played.
 constexpr const char* trials_sql =
-    "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, "
-    "coalesce((SELECT min(last) FROM (SELECT max(r.attempt) AS last FROM response r "
-    "WHERE r.unit_id = u.unit_id AND r.attempt > t.set_aside GROUP BY r.question_id)), "
-    "(SELECT max(l.attempt) FROM presentation l WHERE l.trial_id = t.trial_id AND l.state = 'played' "
-    "AND l.attempt > t.set_aside), 0), t.set_aside "
-    "FROM trial t JOIN unit u USING (trial_id) WHERE t.session_id = ? ORDER BY t.position";
+    "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, w.attempt "
+    "FROM trial t JOIN unit u USING (trial_id) LEFT JOIN trial_showing w USING (trial_id) "
+    "WHERE t.session_id = ? ORDER BY t.position";
 
 constexpr const char* showing_sql =
     "SELECT verdict, grade, reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames "
     "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
 
 constexpr const char* answers_sql =
-    "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block "
-    "JOIN question q ON q.question_id = k.question_id AND q.kind IN ('scale', 'choice') AND q.personal = 0 "
-    "LEFT JOIN response r ON r.response_id = (SELECT l.response_id FROM response l WHERE l.unit_id = "
-    "u.unit_id "
-    "AND l.question_id = q.question_id AND l.attempt > ?2 ORDER BY l.attempt DESC LIMIT 1) "
-    "WHERE u.unit_id = ?1 AND k.protocol_id = ?3 ORDER BY k.place";
+    "SELECT q.code, r.score FROM judgement j JOIN question q USING (question_id) "
+    "LEFT JOIN response r USING (response_id) "
+    "WHERE j.unit_id = ? AND q.kind IN ('scale', 'choice') AND q.personal = 0 ORDER BY j.place";
 
 constexpr const char* catches_sql =
     "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block AND k.protocol_id = ?2 "
@@ -96,7 +87,7 @@ class Reader {
       trial.first = showing(trial_.integer(0), attempt, 0, trial_.integer(4));
       if (!trial_.is_null(5)) trial.second = showing(trial_.integer(0), attempt, 1, trial_.integer(5));
       if (!trial_.is_null(6)) trial.excluded = trial_.text(6);
-      trial.answers = answers(trial_.integer(1), trial_.integer(8));
+      trial.answers = answers(trial_.integer(1));
       if (trial.kind == "repeat") trial.repeats = original(out, trial);
       out.push_back(std::move(trial));
     }
@@ -122,9 +113,9 @@ class Reader {
     return out;
   }
 
-  std::vector<TaskAnswer> answers(std::int64_t unit, std::int64_t set_aside) {
+  std::vector<TaskAnswer> answers(std::int64_t unit) {
     std::vector<TaskAnswer> out;
-    answer_.bind(0, unit).bind(1, set_aside).bind(2, protocol_id_);
+    answer_.bind(0, unit);
     while (answer_.step()) {
       out.push_back({answer_.text(0), {}});
       if (!answer_.is_null(1)) out.back().score = static_cast<int>(answer_.integer(1));

@@ -81,7 +81,7 @@ struct TaskStudy {
   int withdrawn = 0;                    ///< participants who withdrew, from whatever protocol
 };
 
-/// Of several showings of a trial the last that was answered counts, unless it was set aside. base::Error as
+/// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error as
 /// read_ratings().
 TaskStudy read_tasks(const std::filesystem::path& database);
 

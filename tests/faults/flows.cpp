@@ -241,6 +241,13 @@ const std::vector<Flow>& all_flows() {
        upgraded_content,
        {"s.db"},
        "s.db"},
+      {"upgrade from schema 3",
+       fixture("study_v3.db"),
+       of("s.db", resume_arguments),
+       of("s.db", resume_arguments),
+       upgraded_content,
+       {"s.db"},
+       "s.db"},
   };
   return flows;
 }

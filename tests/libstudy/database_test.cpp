@@ -5,6 +5,7 @@
 
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/ratings.hpp"
+#include "libstudy/store/salvage.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
@@ -230,7 +231,7 @@ TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
   test::write_version_1(path);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 16u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 19u);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // and the copy that upgrades leave
 }
@@ -244,6 +245,50 @@ TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {
     uids.push_back(database->text("SELECT group_concat(uid || ' ' || person) FROM session"));
   }
   EXPECT_EQ(uids[0], uids[1]);
+}
+
+/// What schema 3 made up of each frame is not taken for measured, whichever way its rows come into schema 4.
+TEST(Database, FramesOfEarlierSchemasTellWhatWasMeasuredAlone) {
+  const test::TemporaryFolder folder;
+  const auto expect_frames = [](const fs::path& path, std::int64_t frames) {
+    const auto database = open_database(path, Open::Read, read_schema_steps());
+    EXPECT_EQ(database->integer("SELECT count(*) FROM frame"), frames);
+    EXPECT_EQ(database->integer("SELECT count(coalesce(active_fraction, tau_fps, beta, mu_fps, delta_fps, "
+                                "speed_limited, coincident_pairs, not_finite, neighbours_dropped, "
+                                "wall_projected, nozzle_waited, saliency_not_finite, gaze_lost)) FROM frame"),
+              0);
+  };
+  const fs::path old = folder / "study.db", upgraded = folder / "upgraded.db", salvaged = folder / "new.db";
+  for (const fs::path& copy : {old, upgraded})
+    fs::copy_file(fs::path(VIP_TEST_DIR) / "libstudy/fixtures/study_v3.db", copy);
+  const auto read = [](const fs::path& path) {
+    Connection database(path, Open::Read);
+    sqlite::Statement row(
+        database,
+        "SELECT presentation_id, frame_index, content_step, simulation_time_s, scheduled_ns, "
+        "submitted_ns, late, particles FROM frame");
+    std::vector<std::string> lines;
+    while (row.step()) {
+      lines.emplace_back();
+      for (int i = 0; i < row.columns(); ++i) lines.back() += row.text(i) + "|";
+    }
+    std::sort(lines.begin(), lines.end());
+    return lines;
+  };
+  const auto before = read(old);
+  ASSERT_EQ(before.size(), 40u);
+  EXPECT_THAT(before, ::testing::Contains(HasSubstr("|2218 939|"))) << "counted then, so measured";
+  expect_frames(old, 40);  // the temporary copy that reading makes
+  open_database(upgraded, Open::Write, read_schema_steps());
+  expect_frames(upgraded, 40);
+  EXPECT_EQ(read(upgraded), before);
+  // Page by page, where SQLite reads nothing any more.
+  std::string bytes = test::bytes_of(old);
+  std::fill_n(bytes.begin(), 100, '\0');
+  base::write_file_atomically(old, bytes);
+  salvage(old, salvaged);
+  expect_frames(salvaged, 40);
+  EXPECT_EQ(read(salvaged), before);
 }
 
 TEST(Database, EveryReleasedSchemaIsStillOpened) {

@@ -9,12 +9,14 @@
 
 #include "libstudy/store/database.hpp"
 #include "stats/base/error.hpp"
+#include "tests/common/tables.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
 namespace {
 
 namespace fs = std::filesystem;
+using ::test::read_csv;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -31,29 +33,6 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return folder / "study.db";
 }
 
-/// A table of text: header and lines, split at commas outside quotes.
-std::vector<std::map<std::string, std::string>> read_csv(const fs::path& path) {
-  std::vector<std::vector<std::string>> lines{{""}};
-  bool quoted = false;
-  for (const char c : test::bytes_of(path)) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      lines.back().emplace_back();
-    else if (c == '\n' && !quoted)
-      lines.push_back({""});
-    else if (c != '\r')
-      lines.back().back() += c;
-  }
-  lines.pop_back();
-  std::vector<std::map<std::string, std::string>> rows;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    rows.emplace_back();
-    for (std::size_t j = 0; j < lines[0].size(); ++j) rows.back()[lines[0][j]] = lines[i].at(j);
-  }
-  return rows;
-}
-
 TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
@@ -61,9 +40,10 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   EXPECT_EQ(files.size(), 19u);
   EXPECT_THAT(test::bytes_of(folder / "out" / "responses.csv"),
               ::testing::StartsWith("response_id,unit_id,attempt,question_id,score,response_time_s,"
-                                    "answered_utc\r\n1,3,1,2,6,0.5,2"));
+                                    "answered_utc,counts,why_not\r\n1,3,1,2,6,0.5,2"));
   EXPECT_THAT(test::bytes_of(folder / "out" / "frames.csv"),
-              HasSubstr("\r\n1,3,8,0.30000000000000004,60000000,1003,2000,,,1,100 800,0.75,-2.5\r\n"));
+              HasSubstr("\r\n1,3,8,0.30000000000000004,60000000,1003,2000,,,1,100 "
+                        "800,0.75,-2.5,0.875,18,4,1,2,3,4,5,6,7,8\r\n"));
   EXPECT_EQ(test::bytes_of(folder / "out" / ("protocol_" + test::pilot().sha256.substr(0, 12) + ".toml")),
             test::pilot().text);
 

@@ -195,6 +195,11 @@ std::vector<Flow> all_flows() {
        [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
        [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
        {"s.db"}},
+      {"upgrade from schema 3",
+       fixture("study_v3.db"),
+       [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
+       [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
+       {"s.db"}},
   };
 }
 

@@ -68,7 +68,8 @@ Lines contents(const fs::path& path) {
            "p.mean_fps, p.sd_fps, p.reason FROM presentation p JOIN trial t USING (trial_id) "
            "JOIN session s USING (session_id)",
            "SELECT s.uid, t.position, p.attempt, p.interval, f.frame_index, f.content_step, f.scheduled_ns, "
-           "f.submitted_ns, f.particles, f.tolerance_fps FROM frame f JOIN presentation p USING "
+           "f.submitted_ns, f.particles, f.active_fraction, f.tau_fps, f.gaze_lost FROM frame f JOIN "
+           "presentation p USING "
            "(presentation_id) "
            "JOIN trial t USING (trial_id) JOIN session s USING (session_id)",
            "SELECT s.uid, u.position, r.attempt, q.code, q.wording, r.score, r.words, r.response_time_s, "

@@ -31,7 +31,7 @@ class TimedStimulus final : public study::Stimulus {
     const auto count = static_cast<std::int64_t>(steps.size());
     clock_.wait_until(clock_.now_ns() + (cost_ns.count(count) ? cost_ns[count] : 0));
     steps.push_back(step);
-    return {static_cast<double>(step) / 60, {step, 2 * step}, 0.5, -3};
+    return {static_cast<double>(step) / 60, {step, 2 * step}, study::FrameTolerance{-3, 1, 1, {}, {}}, {}};
   }
   void draw(unsigned, int, int) override {}
 
@@ -91,7 +91,7 @@ TEST(PlayTrial, VirtualTimeFollowsTheScheduleExactly) {
     EXPECT_EQ(frame.scheduled_ns - played.frames[0].scheduled_ns, onset);
     EXPECT_FALSE(frame.late);
     EXPECT_EQ(frame.facts.particles_by_level.at(1), 2 * frame.index);
-    EXPECT_EQ(frame.facts.tolerance, -3);
+    EXPECT_EQ(frame.facts.tolerance.value().tau_fps.value(), -3);
     onset += schedule.intervals_ns[i];
   }
   EXPECT_EQ(played.end_ns - played.frames[0].scheduled_ns, onset);

@@ -112,31 +112,6 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
             0);
 }
 
-TEST(Session, EachFrameHoldsTauWhenAModelIsInForce) {
-  const test::TemporaryFolder folder;
-  const Protocol protocol = test::pilot();
-  Store store(folder / "study.db", Open::Create);
-  store.add_run(test::run_plan(protocol, {"P01", "P02"}));
-  const auto sessions = store.open_runs().at(0).sessions;
-  Desk desk(protocol);
-  const auto observer = ptpe_observer();
-  SessionParts parts = desk.parts(*observer, store);
-  run_session(protocol, sessions.at(0), parts, {});
-  parts.ptpe = stats::PtpeModel{24, 0.02};
-  run_session(protocol, sessions.at(1), parts, {});
-  sqlite::Connection look(folder / "study.db", Open::Read);
-  const std::string frames =
-      "SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
-      "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = "
-      "t.first_cell WHERE ";
-  EXPECT_EQ(look.integer(frames + "participant = 'P01' AND tolerance_fps <> 0"), 0);
-  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND (tolerance_fps = 0) <> (frame_index < 2)"), 0);
-  // Without fluctuation tau is mu - a from the first interval on.
-  EXPECT_EQ(look.integer(frames + "participant = 'P02' AND c.sd_fps = 0 AND frame_index >= 2 "
-                                  "AND abs(tolerance_fps - (c.mean_fps - 24)) > 1e-5"),
-            0);
-}
-
 TEST(Session, RestsAndBreaksBringTheirWords) {
   OneSession one(paced_pairs("", R"(
 [[block]]
@@ -377,17 +352,40 @@ TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
   EXPECT_THROW(one.run(), base::Error);
 }
 
-TEST(Session, UnderPublishedTimingTauIsThatOfTheSchedule) {
+/// What a fluid says of a frame stands in its row, whatever the timing; the session adds nothing of its own.
+TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
+  class Accounting final : public Stimulus {
+   public:
+    std::string description() const override { return "accounting"; }
+    std::int64_t length() const override { return 0; }
+    void start(std::int64_t) override {}
+    FrameFacts prepare(std::int64_t step) override {
+      FrameFacts facts;
+      if (step > 0) facts.tolerance = FrameTolerance{-0.5 * static_cast<double>(step), 0.5, 0.25, 20, 2};
+      return facts;
+    }
+    void draw(unsigned, int, int) override {}
+  };
+  class OneStimulus final : public StimulusSource {
+   public:
+    Stimulus& stimulus(const Cell&) override { return stimulus_; }
+
+   private:
+    Accounting stimulus_;
+  };
   const Protocol protocol = read_protocol(base::resource("protocols/task2.toml"));
   OneSession one(protocol);
-  SessionParts parts = one.desk.parts(one.person, one.store);
-  parts.ptpe = stats::PtpeModel{24, 0.02};
+  OneStimulus stimuli;
+  SessionParts parts{one.desk.clock, one.desk.display, stimuli, one.person, one.store, nullptr, true};
   const auto runs = one.open();
   run_session(protocol, runs.at(0).sessions.at(0), parts, {});
-  EXPECT_EQ(one.count("frame JOIN presentation p USING (presentation_id) JOIN cell c ON c.cell = p.cell "
-                      "WHERE abs(tolerance_fps - (c.mean_fps - 24 * exp(0.02 * c.sd_fps))) > 1e-9"),
+  EXPECT_GT(one.count("frame WHERE content_step > 0"), 10 * 2 * 30 * 15);
+  EXPECT_EQ(one.count("frame WHERE content_step > 0 AND (tau_fps, beta, active_fraction, mu_fps, delta_fps) "
+                      "IS NOT (-0.5 * content_step, 0.5, 0.25, 20, 2)"),
             0);
-  EXPECT_GT(one.count("frame"), 10 * 2 * 30 * 15);
+  EXPECT_EQ(
+      one.count("frame WHERE content_step = 0 AND coalesce(tau_fps, beta, active_fraction) IS NOT NULL"), 0);
+  EXPECT_EQ(one.count("frame WHERE coalesce(particles, speed_limited, gaze_lost) IS NOT NULL"), 0);
 }
 
 TEST(Session, WhoLeavesDropsOutAndFreesTheSlot) {

@@ -179,7 +179,9 @@ TEST(Store, FramesComeBackAsTheyWereRecorded) {
   sqlite::Statement row(*database,
                         "SELECT p.start_ns + f.scheduled_ns, p.start_ns + f.scheduled_ns + f.submitted_ns, "
                         "f.actual_display_ns, f.late, f.particles, f.content_step, f.active_fraction, "
-                        "f.tolerance_fps, f.simulation_time_s, f.gpu_done_ns "
+                        "f.tau_fps, f.simulation_time_s, f.gpu_done_ns, f.beta, f.mu_fps, f.delta_fps, "
+                        "f.speed_limited, f.coincident_pairs, f.not_finite, f.neighbours_dropped, "
+                        "f.wall_projected, f.nozzle_waited, f.saliency_not_finite, f.gaze_lost "
                         "FROM frame f JOIN presentation p USING (presentation_id) ORDER BY frame_index");
   for (const FrameRecord& frame : test::frames(1'000'000'000'000, 40)) {
     ASSERT_TRUE(row.step());
@@ -193,7 +195,34 @@ TEST(Store, FramesComeBackAsTheyWereRecorded) {
     EXPECT_EQ(row.real(7), -2.5);
     EXPECT_EQ(row.real(8), frame.facts.simulation_time_s);
     EXPECT_EQ(row.integer(9), 2000);
+    EXPECT_EQ(row.real(10), 0.875);
+    EXPECT_EQ(row.real(11), 18);
+    EXPECT_EQ(row.real(12), 4);
+    for (int guard = 1; guard <= 8; ++guard) EXPECT_EQ(row.integer(12 + guard), guard);
   }
+}
+
+TEST(Store, WhatNobodyMeasuredOfAFrameIsEmpty) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  const auto session = only_session(store);
+  const OpenUnit& unit = first_trial(session);
+  const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
+  auto frames = test::frames(0, 2);
+  frames[0].facts = {};
+  frames[1].facts.tolerance->mu_fps.reset();  // tau was given
+  frames[1].facts.tolerance->delta_fps.reset();
+  store.add_frames(id, 0, frames);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  sqlite::Statement empty(look, "SELECT * FROM frame WHERE frame_index = 0");
+  ASSERT_TRUE(empty.step());
+  ASSERT_EQ(empty.columns(), 24);
+  for (int column = 10; column < empty.columns(); ++column)
+    EXPECT_TRUE(empty.is_null(column)) << empty.column_name(column);
+  EXPECT_EQ(look.text("SELECT tau_fps || ' ' || active_fraction || ' ' || coalesce(mu_fps, delta_fps, '-') "
+                      "FROM frame WHERE frame_index = 1"),
+            "-2.5 0.75 -");
 }
 
 TEST(Store, WithoutAScheduleNoVerdictIsKept) {

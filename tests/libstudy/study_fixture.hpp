@@ -154,8 +154,8 @@ inline std::vector<FrameRecord> frames(std::int64_t start_ns, std::int64_t count
     frame.late = i == 3;
     frame.facts.simulation_time_s = 0.1 * static_cast<double>(i);
     frame.facts.particles_by_level = {100, 800};
-    frame.facts.active_fraction = 0.75;
-    frame.facts.tolerance = -2.5;
+    frame.facts.tolerance = FrameTolerance{-2.5, 0.875, 0.75, 18, 4};
+    frame.facts.guards = FrameGuards{1, 2, 3, 4, 5, 6, 7, 8};
     all.push_back(frame);
   }
   return all;

@@ -1,0 +1,102 @@
+-- Step 4. What counts, by one rule; what the solver did in each frame, as it had it; how displays framed scenes.
+
+-- What each question about each trial was answered with: the last answer, unless the showing that it judged was set aside.
+-- attempt: showing that was judged; without an answer the last one played and not set aside; empty: none. why_not: empty where
+-- the answer counts. Which of those an analysis then leaves out (timing, straight lines, test data) is said by its plan.
+CREATE VIEW judgement AS
+  SELECT unit_id, trial_id, question_id, place, response_id, attempt, answered, why_not, why_not IS NULL AS counts FROM (
+    SELECT u.unit_id, t.trial_id, k.question_id, k.place, r.response_id,
+      r.score IS NOT NULL OR r.words IS NOT NULL AS answered,
+      coalesce(r.attempt, (SELECT max(p.attempt) FROM presentation p
+        WHERE p.trial_id = t.trial_id AND p.state = 'played' AND p.attempt > t.set_aside)) AS attempt,
+      CASE WHEN t.excluded IS NOT NULL THEN 'excluded'
+        WHEN r.score IS NULL AND r.words IS NULL THEN 'not answered'
+        WHEN u.kind = 'practice' THEN 'practice' END AS why_not
+    FROM trial t JOIN unit u USING (trial_id) JOIN session s ON s.session_id = t.session_id
+      JOIN ask k ON k.protocol_id = s.protocol_id AND k.block = u.block
+      LEFT JOIN response r ON r.response_id = (SELECT l.response_id FROM response l WHERE l.unit_id = u.unit_id
+        AND l.question_id = k.question_id AND l.attempt > t.set_aside ORDER BY l.attempt DESC LIMIT 1));
+
+-- The showing by which a trial is known: the first that was judged, where an interruption parted its questions; without an
+-- answer the last one played and not set aside.
+CREATE VIEW trial_showing AS
+  SELECT trial_id, coalesce(min(attempt) FILTER (WHERE answered), max(attempt)) AS attempt FROM judgement GROUP BY trial_id;
+
+-- Every showing. judged: 1 where an answer above is about it; counts: 1 where that answer counts.
+CREATE VIEW showing AS
+  SELECT presentation_id, trial_id, attempt, interval, judged, why_not, why_not IS NULL AS counts FROM (
+    SELECT p.presentation_id, p.trial_id, p.attempt, p.interval, j.trial_id IS NOT NULL AS judged,
+      CASE WHEN j.trial_id IS NOT NULL THEN j.why_not
+        WHEN p.attempt <= t.set_aside THEN 'set aside'
+        WHEN p.state <> 'played' THEN 'cut short'
+        WHEN t.excluded IS NOT NULL THEN 'excluded'
+        WHEN EXISTS (SELECT 1 FROM presentation l WHERE l.trial_id = p.trial_id AND l.attempt > p.attempt) THEN 'shown again'
+        ELSE 'not answered' END AS why_not
+    FROM presentation p JOIN trial t USING (trial_id)
+      LEFT JOIN (SELECT trial_id, attempt, min(why_not) AS why_not FROM judgement WHERE answered GROUP BY trial_id, attempt) j
+        ON j.trial_id = p.trial_id AND j.attempt = p.attempt);
+
+-- Every answer, on pages and after trials. counts: 1 where it stands in judgement and counts there, or on a page.
+CREATE VIEW answer AS
+  SELECT response_id, why_not, why_not IS NULL AS counts FROM (
+    SELECT r.response_id, CASE WHEN u.trial_id IS NULL THEN NULL
+      WHEN r.attempt <= t.set_aside THEN 'set aside'
+      WHEN j.response_id IS NULL THEN 'answered again' ELSE j.why_not END AS why_not
+    FROM response r JOIN unit u USING (unit_id) LEFT JOIN trial t USING (trial_id)
+      LEFT JOIN judgement j ON j.unit_id = r.unit_id AND j.question_id = r.question_id AND j.response_id = r.response_id);
+
+-- Earlier versions wrote 1 for the share of particles solved, whatever was solved, and for tau an estimate from the intervals shown,
+-- which the onsets still tell: neither was measured where the fluid was computed.
+CREATE TABLE frame_2 (
+  presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
+  frame_index INTEGER NOT NULL, -- from 0
+  content_step INTEGER NOT NULL, -- step of the fluid shown
+  simulation_time_s REAL NOT NULL, -- simulated time of that step, s
+  scheduled_ns INTEGER NOT NULL, -- planned onset after start_ns, ns
+  submitted_ns INTEGER, -- handed over, after the planned onset, ns
+  gpu_done_ns INTEGER, -- drawn, after the planned onset, ns
+  predicted_display_ns INTEGER, -- predicted onset after the planned one, ns
+  actual_display_ns INTEGER, -- reported onset after the planned one, ns
+  late INTEGER NOT NULL CHECK (late IN (0, 1)), -- 1: later than the protocol's bound
+  particles TEXT, -- particles by level, finest first, separated by spaces; before schema 4 without the levels that held none; empty: not measured
+  active_fraction REAL CHECK (active_fraction BETWEEN 0 AND 1), -- share of particles that the solver solved; empty: not measured, or a method that solves all
+  tau_fps REAL, -- tau that the solver went by; empty: not measured, a method without tau, or no frame's time known to it yet, frames/s
+  beta REAL CHECK (beta BETWEEN 0 AND 1), -- lowest probability of a particle to be solved that it went by; empty: as for tau_fps
+  mu_fps REAL, -- mean frame rate behind tau; empty: tau was given, or as for tau_fps, frames/s
+  delta_fps REAL, -- standard deviation of the frame rate behind tau; empty: as for mu_fps, frames/s
+  speed_limited INTEGER, -- guard: particle-substeps of this frame whose speed was limited; empty: not measured
+  coincident_pairs INTEGER, -- guard: neighbour pairs at zero distance; empty: not measured
+  not_finite INTEGER, -- guard: particles whose NaN or infinity was quarantined; empty: not measured
+  neighbours_dropped INTEGER, -- guard: neighbours that found no room in a list; empty: not measured
+  wall_projected INTEGER, -- guard: particle-substeps pushed back inside a wall; empty: not measured
+  nozzle_waited INTEGER, -- guard: layers of water that a nozzle left out; empty: not measured
+  saliency_not_finite INTEGER, -- guard: particles whose saliency was not finite; empty: not measured
+  gaze_lost INTEGER, -- guard: eyes without a valid gaze; empty: not measured
+  PRIMARY KEY (presentation_id, frame_index)
+) STRICT, WITHOUT ROWID;
+INSERT INTO frame_2 (presentation_id, frame_index, content_step, simulation_time_s, scheduled_ns, submitted_ns, gpu_done_ns,
+    predicted_display_ns, actual_display_ns, late, particles)
+  SELECT presentation_id, frame_index, content_step, simulation_time_s, scheduled_ns, submitted_ns, gpu_done_ns,
+    predicted_display_ns, actual_display_ns, late, nullif(particles, '') FROM frame;
+DROP TABLE frame;
+ALTER TABLE frame_2 RENAME TO frame;
+
+-- What the solver went by in each showing: means over those of its frames that measured them.
+CREATE VIEW solving AS
+  SELECT presentation_id, avg(active_fraction) AS active_fraction, avg(tau_fps) AS tau_fps FROM frame GROUP BY presentation_id;
+
+-- How each session's display framed each scene of its protocol. No row: nothing was drawn, or an earlier version, which did not
+-- write it.
+CREATE TABLE framing (
+  framing_id INTEGER PRIMARY KEY, -- row number
+  session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
+  scene TEXT NOT NULL, -- scene file, as in cell
+  width_px INTEGER NOT NULL CHECK (width_px > 0), -- width of the picture as it is drawn, px
+  height_px INTEGER NOT NULL CHECK (height_px > 0), -- its height, px
+  shown_width_px INTEGER NOT NULL CHECK (shown_width_px > 0), -- width of the picture on the display; another where a bake's pictures are scaled, px
+  shown_height_px INTEGER NOT NULL CHECK (shown_height_px > 0), -- likewise its height, px
+  camera_angle_deg REAL NOT NULL CHECK (camera_angle_deg > 0 AND camera_angle_deg < 180), -- vertical angle of the camera, degrees
+  visual_angle_deg REAL CHECK (visual_angle_deg > 0 AND visual_angle_deg < 180), -- vertical angle that the picture fills of the eye's view, in which eccentricity is taken; empty: not known, then it is taken in the camera's, degrees
+  angle_ratio REAL CHECK (angle_ratio > 0), -- visual_angle_deg by camera_angle_deg; empty: not known
+  UNIQUE (session_id, scene)
+) STRICT;
