@@ -109,7 +109,8 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
   }
 }
 
-void add_framing(Connection& database, std::int64_t session, const std::vector<SceneFraming>& framing) {
+void add_framing(sqlite::Connection& database, std::int64_t session,
+                 const std::vector<SceneFraming>& framing) {
   Statement insert(database,
                    "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
                    "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
