@@ -82,7 +82,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data || !setup.stimuli->departure().empty();
+  session.test_data = protocol.test_data || !setup.departure().empty();
+  session.framing = framing_record(setup.scenes);
   session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;
   session.display = setup.display->description();
@@ -149,10 +150,12 @@ void run(RunCommand& command) {
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
-  if (!setup.stimuli->departure().empty()) {
+  if (!setup.departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
-                 setup.stimuli->departure().c_str());
+                 setup.departure().c_str());
   }
+  for (const std::string& note : framing_notes(protocol, setup.scenes))
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
     std::fprintf(stderr, "%s: does not ask %s; where the mouse is will not be recorded\n",
                  command.protocol.c_str(), study::gaze_question);
@@ -202,8 +205,9 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
       ->check(text_up_to(100));
-  sub.add_option("--screen-width-mm", command->run.screen_width_mm,
-                 "Width of the picture on the screen; gives the camera's angle");
+  sub.add_option(
+      "--screen-width-mm", command->run.screen_width_mm,
+      "Width of the participant's picture on the screen: with the distance it gives visual angles");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");
   sub.add_option("--size", command->size,
                  "Pixels of the display (default: 640x360 without a window; a window fills the monitor)");

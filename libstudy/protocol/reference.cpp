@@ -94,6 +94,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "also play settings that the display meets only approximately"},
       {"", "needs_gaze", "true or false", "", "false",
        "without tracked gaze some hypotheses are labelled not testable"},
+      {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",
+       "scene: the camera keeps the scene's angle. true: it has the angle that the picture fills of the "
+       "eye's "
+       "view, refused where that cuts what must stay visible"},
       {"", "design", "table", "", "", "what is shown"},
       {"", "pacing", "table", "", "", "how frames are timed"},
       {"", "content", "table", "", "", "how the process elapses"},

@@ -28,6 +28,15 @@ class AnswerJournal;
 /// never taken for an option or a formula. base::Error otherwise. Earlier databases may hold others.
 void check_participant_code(const std::string& code);
 
+/// How a session's display frames a scene.
+struct SceneFraming {
+  std::string scene;                            ///< scene file as the protocol names it
+  int width_px = 0, height_px = 0;              ///< of the picture as it is drawn
+  int shown_width_px = 0, shown_height_px = 0;  ///< on the display; others where a bake's pictures are scaled
+  double camera_angle_deg = 0;                  ///< vertical, in (0, 180)
+  std::optional<double> visual_angle_deg;       ///< that the picture fills of the eye's view; none: not known
+};
+
 /// What is written of a session before its first unit.
 struct SessionPlan {
   std::string participant;
@@ -41,7 +50,8 @@ struct SessionPlan {
   std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed" or "none"
   std::string station;               ///< where it is recorded
   std::optional<double> screen_width_mm, viewing_distance_mm;
-  std::optional<double> refresh_hz;  ///< of the display; none: frames are shown as they come
+  std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come
+  std::vector<SceneFraming> framing;  ///< not read back; empty: nothing is drawn
   Plan plan;
 };
 

@@ -67,6 +67,9 @@ struct TaskSession {
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
   std::string first_answer_utc;  ///< of any page or trial, by the station's clock; empty: none yet
+  /// "camera 75 degrees, eye 27.4 degrees, ratio 0.37", for each pair of angles of its scenes; empty: not
+  /// stored.
+  std::string angles;
 };
 
 /// A protocol with all its sessions by participant and visit.

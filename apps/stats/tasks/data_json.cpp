@@ -28,7 +28,8 @@ Json protocol_json(const TaskData& data) {
       {"observers", data.observers},
       {"gaze", data.gaze},
       {"stations", data.stations},
-      {"displays", data.displays}};
+      {"displays", data.displays},
+      {"angles", data.angles}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {

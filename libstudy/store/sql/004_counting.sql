@@ -1,4 +1,4 @@
--- Step 4. What counts, by one rule; what the solver did in each frame, as it had it.
+-- Step 4. What counts, by one rule; what the solver did in each frame, as it had it; how displays framed scenes.
 
 -- What each question about each trial was answered with: the last answer, unless the showing that it judged was set aside.
 -- attempt: showing that was judged; without an answer the last one played and not set aside; empty: none. why_not: empty where
@@ -124,3 +124,19 @@ PRAGMA legacy_alter_table = OFF;
 UPDATE session SET state = 'refused' WHERE state = 'not eligible' AND EXISTS (SELECT 1 FROM note n JOIN unit u USING (session_id)
   WHERE n.session_id = session.session_id AND u.kind = 'consent' AND n.words = 'block ' || u.block);
 CREATE INDEX session_of_person ON session (person);
+
+-- How each session's display framed each scene of its protocol. No row: nothing was drawn, or an earlier version, which did not
+-- write it.
+CREATE TABLE framing (
+  framing_id INTEGER PRIMARY KEY, -- row number
+  session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
+  scene TEXT NOT NULL, -- scene file, as in cell
+  width_px INTEGER NOT NULL CHECK (width_px > 0), -- width of the picture as it is drawn, px
+  height_px INTEGER NOT NULL CHECK (height_px > 0), -- its height, px
+  shown_width_px INTEGER NOT NULL CHECK (shown_width_px > 0), -- width of the picture on the display; another where a bake's pictures are scaled, px
+  shown_height_px INTEGER NOT NULL CHECK (shown_height_px > 0), -- likewise its height, px
+  camera_angle_deg REAL NOT NULL CHECK (camera_angle_deg > 0 AND camera_angle_deg < 180), -- vertical angle of the camera, degrees
+  visual_angle_deg REAL CHECK (visual_angle_deg > 0 AND visual_angle_deg < 180), -- vertical angle that the picture fills of the eye's view, in which eccentricity is taken; empty: not known, then it is taken in the camera's, degrees
+  angle_ratio REAL CHECK (angle_ratio > 0), -- visual_angle_deg by camera_angle_deg; empty: not known
+  UNIQUE (session_id, scene)
+) STRICT;
