@@ -15,8 +15,6 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
 }
 
-}
-
 }  // namespace
 
 study::FrameFacts to_facts(double simulation_time_s, const sim::FrameAccount& account) {
