@@ -186,13 +186,15 @@ void Connection::check_integrity() {
     throw base::Error(path_.string(), "is damaged or cut short: " + found, salvage_mend(path_));
 }
 
-void Connection::copy_from(Connection& other) {
+void Connection::copy_from(Connection& other, const std::function<void()>& complete) {
   const std::int64_t page_bytes = integer("PRAGMA page_size");
   if (text("PRAGMA journal_mode") == "wal" && other.integer("PRAGMA page_size") != page_bytes)
     other.execute("PRAGMA page_size = " + std::to_string(page_bytes) + "; VACUUM");
-  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", other.handle_, "main");
-  const int code = copy ? sqlite3_backup_step(copy, -1) : sqlite3_errcode(handle_);
-  sqlite3_backup_finish(copy);
+  const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> copy(
+      sqlite3_backup_init(handle_, "main", other.handle_, "main"), sqlite3_backup_finish);
+  int code = copy ? sqlite3_backup_step(copy.get(), 0) : sqlite3_errcode(handle_);  // takes the lock
+  if (code == SQLITE_OK && complete) complete();
+  if (code == SQLITE_OK) code = sqlite3_backup_step(copy.get(), -1);
   if (code != SQLITE_DONE) fail(code, sqlite3_errstr(code), sqlite3_system_errno(handle_));
 }
 
