@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -14,10 +15,12 @@
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
+#include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/status.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -146,6 +149,15 @@ void check_station(study::Store& store, const study::OpenSession& session, const
   store.log(session.id, "preflight", lines, setup.clock->now_ns());
 }
 
+/// On stderr, before the first step: how long what is left takes in real time.
+void tell_length(const study::OpenRun& run, const study::Protocol& protocol, bool person) {
+  double seconds = 0;
+  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person);
+  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", protocol.name.c_str(),
+               run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
+               base::duration_words(seconds).c_str());
+}
+
 /// The session as it stands in the store now; none when nothing is left of it.
 std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t id) {
   for (study::OpenRun& run : store.open_runs()) {
@@ -156,12 +168,38 @@ std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t i
   return {};
 }
 
+/// Tells that a person's session is over.
+RunEnd tell_ending(const study::OpenSession& session, const std::optional<study::Ending>& ending) {
+  if (!ending || session.plan.observer) return RunEnd::Done;
+  const bool refused = ending->how == study::EarlyEnd::Refused;
+  const bool turned_away = refused || ending->how == study::EarlyEnd::NotEligible;
+  std::printf("%s %s: the session is over, nothing is left to do of it\n", session.plan.participant.c_str(),
+              refused       ? "did not consent"
+              : turned_away ? "is not eligible"
+                            : "stopped before the end");
+  return turned_away ? RunEnd::TurnedAway : RunEnd::Stopped;
+}
+
 }  // namespace
 
-void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-              SessionSetup& setup, const PlayOptions& options) {
+void end_command(const std::filesystem::path& database, const Played& played) {
+  for (const std::string& participant : played.withdraw) withdraw_and_tell(database, participant);
+  if (played.end == RunEnd::Stopped) throw CLI::RuntimeError(3);
+  if (played.end == RunEnd::TurnedAway) throw CLI::RuntimeError(4);
+}
+
+const char* const exit_status_help =
+    "Exit status: 0 done; 1 an error; 2 a wrong command line; 3 a person's session was stopped before its "
+    "end;\n"
+    "4 a person did not consent or is not eligible.";
+
+RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                SessionSetup& setup, const PlayOptions& options) {
   std::optional<study::RealTimeScheduling> real_time;
-  if (!setup.virtual_clock) real_time.emplace();
+  if (!setup.virtual_clock) {
+    real_time.emplace();
+    tell_length(run, protocol, !setup.participant->simulated());
+  }
   std::optional<study::PersonalFile> personal;
   if (asks_personal(protocol)) personal.emplace(options.database);
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
@@ -170,15 +208,20 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   parts.gaze = setup.gaze.get();
   for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
   Steering steering(store, run, protocol, setup.wish, options);
+  RunEnd end = RunEnd::Done;
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
-      study::run_session(protocol, session, parts, steering.hooks(session));
+      end = std::max(
+          end, tell_ending(session, study::run_session(protocol, session, parts, steering.hooks(session))));
       while (steering.take_reopened()) {
         const auto again = read_again(store, session.id);
-        if (again) study::run_session(protocol, *again, parts, steering.hooks(*again));
+        if (again)
+          end = std::max(
+              end, tell_ending(*again, study::run_session(protocol, *again, parts, steering.hooks(*again))));
       }
     }
+    return end;
   } catch (const study::Stopped&) {
     throw base::Error(options.database.string(), "stopped on request; all answers given are kept",
                       "continue with vip-study resume --db " + options.database.string());

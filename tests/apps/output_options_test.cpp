@@ -44,7 +44,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-study salvage --db " + database_ + " --into ",
             "vip-stats fit-ptpe " + database_ + " --json ",
             "vip-stats fit-ptpe " + database_ + " --svg ",
-            "vip-stats fit-ptpe " + database_ + " --out ",
+            "vip-stats fit-ptpe " + database_ + " --force --out ",
             "vip-stats report " + database_ + " --html ",
             "vip-stats report " + database_ + " --html " + page_ + " --json ",
             "vip-stats task2 " + database_ + " --json ",
@@ -90,6 +90,18 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
   for (const std::string& line : folder_options()) {
     expect_refused(line, full, "/full");
     expect_refused(line, below, file);  // a folder is made with those above it
+  }
+}
+
+TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
+  auto all = file_options();
+  std::erase_if(all, [](const std::string& line) { return line.find("table") != std::string::npos; });
+  for (const std::string& line : folder_options()) all.push_back(line);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const fs::path target = folder_ / ("new" + std::to_string(i)) / "deep" / "out";
+    const Ended ended = run_shell(VIP_BIN_DIR "/" + all[i] + target.string());
+    EXPECT_EQ(ended.exit_code, 0) << all[i] << "\n" << ended.out;
+    EXPECT_TRUE(fs::exists(target)) << all[i];
   }
 }
 

@@ -57,6 +57,17 @@ TEST_F(StudyCommandsE2e, RunPrintsTheCertificateAndStatusTheCounts) {
   EXPECT_THAT(written.out, HasSubstr("frames.csv: 4200 rows"));
 }
 
+TEST_F(StudyCommandsE2e, ARunInRealTimeSaysHowLongBeforeItStarts) {
+  Process process(run_arguments(folder_ / "short.toml", database_,
+                                {"--participants", "40", "--clock", "real", "--display", "none"}));
+  ASSERT_TRUE(process.read_line());  // of --events: the first step begins
+  process.send(SIGINT);
+  const Ended ended = process.wait();
+  EXPECT_EQ(ended.exit_code, 1) << ended.err;
+  EXPECT_THAT(ended.err, ::testing::StartsWith("short: 40 sessions in real time, about 40 min\n"));
+  EXPECT_THAT(run({"--participant", "P41"}).err, ::testing::Not(HasSubstr("real time")));
+}
+
 TEST_F(StudyCommandsE2e, ShortenedTrialsAreTestData) {
   ASSERT_EQ(run({"--participants", "1", "--trial-seconds", "2"}).exit_code, 0);
   EXPECT_EQ(count_in(database_, "SELECT count(*) FROM session WHERE test_data = 1"), 1);

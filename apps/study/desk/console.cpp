@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/study/desk/progress.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 
@@ -292,8 +293,7 @@ std::vector<std::string> Console::take_lines() {
 std::string Console::left() const {
   const auto& units = session_->units;
   const std::size_t done = std::min(done_, units.size());
-  const double s = expected_s(protocol_, std::span(units).subspan(done));
-  return s < 90 ? text("about %.0f s", s) : text("about %.0f min", s / 60);
+  return "about " + base::duration_words(expected_s(protocol_, std::span(units).subspan(done)));
 }
 
 std::string Console::describe(const study::OpenUnit& unit) const {
