@@ -91,10 +91,10 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
 class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-           const WindowWish& window, const PlayOptions& options)
-      : protocol_(protocol), window_(window), events_(options.events) {
+           const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
+      : protocol_(protocol), window_(setup.wish), events_(options.events), warnings_(std::move(warnings)) {
     if (options.console) {
-      console_.emplace(protocol, store, options.database);
+      console_.emplace(protocol, store, options.database, setup.idle);
       terminal_.emplace(*console_);
     } else {
       progress_.emplace("session steps", units_left(run));
@@ -103,6 +103,9 @@ class Steering {
 
   study::SessionHooks hooks(const study::OpenSession& session) {
     if (console_) console_->begin(session);
+    for (const std::string& warning : warnings_) {
+      if (console_) console_->warn(warning);
+    }
     study::SessionHooks hooks;
     hooks.begins = [this, &session](const study::OpenUnit& unit) {
       if (console_) console_->begins(unit);
@@ -130,21 +133,29 @@ class Steering {
   const study::Protocol& protocol_;
   const WindowWish& window_;
   bool events_;
+  std::vector<std::string> warnings_;  ///< of the station, for the console
   std::size_t done_ = 0;
   std::optional<Progress> progress_;
   std::optional<Console> console_;
   std::optional<ConsoleTerminal> terminal_;
 };
 
-/// Before the first step at a window: what the screen and the computer are like, told and kept.
-void check_station(study::Store& store, const study::OpenSession& session, const study::Protocol& protocol,
-                   const SessionSetup& setup, const PlayOptions& options) {
-  if (!setup.screen) return;
+/// Before the first step at a window: what the screen and the computer are like, told and kept. Returns what
+/// is not as it should be.
+std::vector<std::string> check_station(study::Store& store, const study::OpenSession& session,
+                                       const study::Protocol& protocol, const SessionSetup& setup,
+                                       const PlayOptions& options) {
+  if (!setup.screen) return {};
   const auto bytes = expected_bytes(protocol, session.units);
-  const std::string lines =
-      format_preflight(judge_preflight(setup.screen, read_station(options.database), bytes));
+  const auto judged = judge_preflight(setup.screen, read_station(options.database), bytes);
+  const std::string lines = format_preflight(judged);
   std::fprintf(stderr, "%s", lines.c_str());
   store.log(session.id, "preflight", lines, setup.clock->now_ns());
+  std::vector<std::string> warnings;
+  for (const PreflightLine& line : judged) {
+    if (line.readiness == Readiness::Warn) warnings.push_back(line.what + ": " + line.finding);
+  }
+  return warnings;
 }
 
 /// On stderr, before the first step: how long what is left takes in real time.
@@ -181,8 +192,9 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
   parts.gaze = setup.gaze.get();
-  for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
-  Steering steering(store, run, protocol, setup.wish, options);
+  std::vector<std::string> warnings;
+  for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
+  Steering steering(store, run, protocol, setup, options, warnings);
   try {
     for (const auto& session : run.sessions) {
       if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());

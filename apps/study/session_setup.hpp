@@ -21,9 +21,10 @@ struct SessionSetup {
   std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::unique_ptr<study::GazeSource> gaze;  ///< what is recorded of it; none: nothing is measured
-  WindowWish wish;                          ///< the window's, or empty
-  std::optional<ScreenFacts> screen;        ///< likewise
+  std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
+  WindowWish wish;                              ///< the window's, or empty
+  std::function<std::optional<double>()> idle;  ///< likewise
+  std::optional<ScreenFacts> screen;            ///< likewise
 };
 
 /// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives
