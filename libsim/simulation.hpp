@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "libsim/exec/launch_time.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/saliency/looks.hpp"
 #include "libsim/scene/scene.hpp"
 #include "stats/ptpe/ptpe.hpp"
@@ -50,10 +52,12 @@ struct TargetRegion {
 
 /// What tau temporal acceleration goes by (ViP-Fluid, Algorithm 3); for methods that have it.
 struct TemporalOptions {
-  std::optional<double> fixed_tau;  ///< frames/s; none = measured from Simulation::frame_time
-  stats::PtpeModel model;           ///< of tau and beta, Eq. 11
-  std::uint32_t seed = 1;           ///< of the choice of active particles
-  bool always = false;              ///< also for methods without it, in tests and comparisons
+  /// frames/s; without it and fixed_rate tau is measured from Simulation::frame_time.
+  std::optional<double> fixed_tau;
+  std::optional<FrameRate> fixed_rate;  ///< mu and delta that tau follows from
+  stats::PtpeModel model;               ///< of tau and beta, Eq. 11
+  std::uint32_t seed = 1;               ///< of the choice of active particles
+  bool always = false;                  ///< also for methods without it, in tests and comparisons
 };
 
 struct SimulationOptions {
@@ -76,8 +80,8 @@ struct SimulationOptions {
   /// Frames that lie behind the start: nozzles go on from there. >= 0.
   int start_frame = 0;
   /// For starts in the middle of a run: at most so many density projections move the particles of `start`,
-  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %; velocities stay. The velocity grid
-  /// of temporal acceleration is then made from the start as well. 0 = take the start as it is.
+  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %; velocities stay. The velocity
+  /// grid of temporal acceleration is then made from the start as well. 0 = take the start as it is.
   int start_projections = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
@@ -122,11 +126,23 @@ struct LevelEvents {
   double energy_lost_j = 0;      ///< kinetic energy lost in merges
 };
 
-/// What temporal acceleration did in the last frame.
+/// What temporal acceleration went by in a frame, and did.
 struct TemporalReport {
-  double tau = 0;   ///< frames/s, Eq. 11
-  double beta = 1;  ///< lowest probability of being solved
-  std::int64_t active = 0;
+  std::optional<double> tau;      ///< frames/s, Eq. 11; none = no frame's time was known yet
+  std::optional<FrameRate> rate;  ///< mu and delta behind it; none = tau was given, or as for tau
+  double beta = 1;                ///< lowest probability of being solved
+  std::int64_t active = 0;        ///< particles that were solved
+};
+
+/// What a frame consisted of and how it was solved, as the solver had it. Costs a frame nothing to speak of.
+struct FrameAccount {
+  std::vector<std::int64_t> particles_by_level;  ///< one count for each radius of Simulation::radii_m
+  std::optional<TemporalReport> temporal;  ///< none = a method that solves every particle, or no frame yet
+  std::optional<GuardCounts> guards;       ///< of this frame alone; none = no frame yet
+
+  std::int64_t particles() const {
+    return std::accumulate(particles_by_level.begin(), particles_by_level.end(), std::int64_t{0});
+  }
 };
 
 /// Milliseconds of the last frame's parts, as the paper's Table 2 splits them.
@@ -205,6 +221,8 @@ class Simulation {
   virtual void change(const LiveNumbers&) {}
   /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
+  /// Of the frame that step_frame computed last; before the first, who is there.
+  virtual const FrameAccount& account() const = 0;
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;

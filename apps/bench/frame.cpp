@@ -7,10 +7,13 @@
 #include <numeric>
 #include <optional>
 
+#include "apps/bench/account_json.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timing.hpp"
+#include "apps/bench/watcher.hpp"
 #include "apps/common/finite_water.hpp"
+#include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/settled_state.hpp"
@@ -28,6 +31,7 @@ struct FrameOptions {
   std::string n_star = "4k";
   std::string backend = "auto";
   std::string tau = "live";
+  std::string rate;
   std::string json;
   int frames = 100;
   int warm_up = 5;
@@ -35,6 +39,7 @@ struct FrameOptions {
       fluid;  ///< the solver's numbers; method, n_* and back end are read from the words above
   bool no_render = false;
   bool passes = false;
+  bool look = false;
   std::string size = "1280x720";
   int views = 1;
 };
@@ -46,6 +51,7 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   out.n_star = sim::parse_n_star(options.n_star);
   out.backend = sim::choose_backend(options.backend);
   out.temporal.fixed_tau = sim::parse_tau(options.tau);
+  if (!options.rate.empty()) out.temporal.fixed_rate = sim::parse_frame_rate(options.rate);
   Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
   out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
   return sim::make_simulation(scene, out);
@@ -77,6 +83,7 @@ struct Accuracy {
 struct Pictures {
   std::unique_ptr<RenderTimer> timer;
   std::string left_out;
+  std::unique_ptr<Watcher> watcher = {};  ///< goes before the timer, which holds the context
 };
 
 Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
@@ -86,10 +93,25 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
   try {
     context.emplace(sim::GlContext::make_headless());
   } catch (const base::Error& error) {
+    if (options.look) throw;
     return {nullptr, error.what()};
   }
-  return {std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
+  Pictures out{std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
+  if (options.look) out.watcher = std::make_unique<Watcher>(scene, size);
+  return out;
 }
+
+/// What each frame's account says, and the share of particles solved over all of them.
+struct Accounts {
+  nlohmann::json all = nlohmann::json::array();
+  double solved = 0;
+  void add(const sim::Simulation& fluid, double frame_dt_s) {
+    const auto facts = to_facts(fluid.frame() * frame_dt_s, fluid.account());
+    all.push_back(account_json(fluid.frame(), facts));
+    const double share = facts.tolerance ? facts.tolerance->active_fraction : 1;
+    solved += (share - solved) / static_cast<double>(all.size());
+  }
+};
 
 nlohmann::json run_frames(const FrameOptions& options) {
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
@@ -98,14 +120,16 @@ nlohmann::json run_frames(const FrameOptions& options) {
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
   fluid->synchronize();
   if (pictures.timer) pictures.timer->warm_up(*fluid);
+  if (pictures.watcher) pictures.watcher->draw(*fluid);
 
   fluid->profile_launches(options.passes);
   std::vector<double> solve_ms, frame_ms;
   Accuracy accuracy;
-  double solved = 0;
+  Accounts accounts;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
   const int stride = std::max(1, options.frames / 10);
   for (int frame = 0; frame < options.frames; ++frame) {
+    if (pictures.watcher) pictures.watcher->look(*fluid);
     const double start = milliseconds_now();
     fluid->step_frame();
     fluid->synchronize();
@@ -115,13 +139,9 @@ nlohmann::json run_frames(const FrameOptions& options) {
       frame_ms.push_back(solve_ms.back() + times.transfer + times.render);
     }
     fluid->frame_time(pictures.timer ? frame_ms.back() : solve_ms.back());
-    if (frame % stride == stride - 1) {
-      const auto state = fluid->report();
-      accuracy.add(state);
-      const auto share = static_cast<double>(state.temporal.active) /
-                         static_cast<double>(std::max<std::int64_t>(1, state.particles));
-      solved += (share - solved) / accuracy.samples;
-    }
+    if (pictures.watcher) pictures.watcher->draw(*fluid);
+    accounts.add(*fluid, options.fluid.frame_dt_s > 0 ? options.fluid.frame_dt_s : scene.frame_dt_s);
+    if (frame % stride == stride - 1) accuracy.add(fluid->report());
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   nlohmann::json launches = nlohmann::json::array();
@@ -154,10 +174,10 @@ nlohmann::json run_frames(const FrameOptions& options) {
                         {"speed_max_m_s", report.speed_max_m_s},
                         {"particle_bytes", fluid->particle_bytes()},
                         {"temporal",
-                         {{"tau_given", options.tau},
-                          {"tau_fps", report.temporal.tau},
+                         {{"tau_given", options.rate.empty() ? options.tau : "rate:" + options.rate},
+                          {"tau_fps", or_null(report.temporal.tau)},
                           {"beta", report.temporal.beta},
-                          {"solved_share_mean", solved}}},
+                          {"solved_share_mean", accounts.solved}}},
                         {"guards",
                          {{"speed_limited", report.guards.speed_limited},
                           {"coincident_pairs", report.guards.coincident_pairs},
@@ -165,6 +185,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
                           {"neighbours_dropped", report.guards.neighbours_dropped},
                           {"wall_projected", report.guards.wall_projected},
                           {"nozzle_waited", report.guards.nozzle_waited}}},
+                        {"accounts", accounts.all},
                         {"launches", launches},
                         {"schedule", fluid->explain()}};
   if (pictures.timer) {
@@ -197,9 +218,10 @@ void print_table(const nlohmann::json& result) {
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
               100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
   const auto& temporal = result["temporal"];
-  std::printf("  temporal     tau %.2f frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
-              temporal["tau_fps"].get<double>(), temporal["tau_given"].get<std::string>().c_str(),
-              temporal["beta"].get<double>(), 100 * temporal["solved_share_mean"].get<double>());
+  std::printf("  temporal     tau %s frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
+              temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
+              temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
+              100 * temporal["solved_share_mean"].get<double>());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
   for (const auto& pass : result["launches"]) {
     std::printf("  %-32s %8.4f ms a frame in %6.1f launches\n", pass["pass"].get<std::string>().c_str(),
@@ -217,8 +239,13 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
       ->capture_default_str();
   command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();
-  command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
-      ->capture_default_str();
+  auto* tau = command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
+                  ->capture_default_str();
+  command
+      ->add_option("--rate", options->rate,
+                   "Mean and standard deviation of the frame rate that its tau follows from, as in a study's "
+                   "cell: 16.9,3.2")
+      ->excludes(tau);
   command->add_flag("--temporal", options->fluid.temporal.always,
                     "Temporal acceleration also for a method without it");
   command->add_option("--frames", options->frames, "Timed frames")
@@ -248,7 +275,12 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
       ->check(number_in(0.5, 8.0));
   command->add_flag("--passes", options->passes, "Also time every launch of the solver (slows it down)");
-  command->add_flag("--no-render", options->no_render, "Time the solver alone");
+  auto* no_render = command->add_flag("--no-render", options->no_render, "Time the solver alone");
+  command
+      ->add_flag("--look", options->look,
+                 "Let the method see each picture and its middle, as in a live session; the picture is drawn "
+                 "once more for it, untimed")
+      ->excludes(no_render);
   command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
   command->add_option("--views", options->views, "1, or 2 eyes side by side")
       ->check(CLI::Range(1, 2))

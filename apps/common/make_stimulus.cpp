@@ -20,7 +20,7 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake));
+  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing);
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice) {
   options.n_star = sim::parse_n_star(choice.n_star);
   options.backend = sim::choose_backend(choice.backend);
   options.frame_dt_s = choice.content_step_s;
-  options.temporal.fixed_tau = choice.fixed_tau;
+  options.temporal.fixed_rate = choice.fixed_rate;
   options.temporal.model = choice.model;
   const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
   const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +

@@ -51,6 +51,8 @@ int run_commands(CLI::App& app, int argc, char** argv) {
   try {
     check_arguments(argc, argv);
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& ended) {  // a command's own exit status
+    return ended.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

@@ -159,7 +159,8 @@ void bake(const BakeCommand& command) {
       work.simulation->step_frame();
     }
     work.simulation->read_particles(particles);
-    writer.add_frame(static_cast<double>(frame) * work.header.frame_dt_s, particles);
+    writer.add_frame(static_cast<double>(frame) * work.header.frame_dt_s, particles,
+                     work.simulation->account());
     if (work.pictures) writer.add_picture(work.pictures->take(*work.simulation));
     progress.update(static_cast<std::size_t>(frame + 1));
   }

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/common/program.hpp"
 #include "apps/common/picture_measure.hpp"
+#include "apps/common/program.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -106,7 +106,8 @@ study::PictureFeatures CellFeatures::read_or_measure(const study::Cell& cell,
   const auto fluid = make_live_fluid(choice);
   std::string key = fluid->description() + "; from step " + std::to_string(start_frame) + " by " +
                     std::to_string(choice.content_step_s) + " s";
-  if (choice.fixed_tau) key += "; tau " + std::to_string(*choice.fixed_tau);
+  if (const auto& rate = choice.fixed_rate)
+    key += "; tau " + std::to_string(stats::ptpe_tolerance(choice.model, rate->mean, rate->sd));
   key += "; version " + base::version();
   const auto path = folder_ / ("features-" + base::sha256_hex(key).substr(0, 32) + ".json");
   if (const auto found = read_features(path, key)) return *found;

@@ -62,7 +62,7 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
 }  // namespace
 
 CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& protocol,
-                         const stats::PtpeModel& model, LiveViewing viewing)
+                         const stats::PtpeModel& model, Viewing viewing)
     : options_(options) {
   choice_.bake = options.bake;
   choice_.content_step_s = protocol.content.content_step_s;
@@ -87,7 +87,7 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
   const bool paced = cell.setting.mean > 0;
-  if (paced) choice.fixed_tau = stats::ptpe_tolerance(choice.model, cell.setting.mean, cell.setting.sd);
+  if (paced) choice.fixed_rate = sim::FrameRate{cell.setting.mean, cell.setting.sd};
   return choice;
 }
 
@@ -95,7 +95,7 @@ study::Stimulus& CellStimuli::stimulus(const study::Cell& cell) {
   if (!live_) return *stimulus_;
   const StimulusChoice choice = choice_of(cell);
   Made wanted{cell.stimulus, {}};
-  if (sim::traits_of(sim::parse_method(choice.method)).temporal) wanted.tau = choice.fixed_tau;
+  if (sim::traits_of(sim::parse_method(choice.method)).temporal) wanted.rate = choice.fixed_rate;
   if (made_ != wanted) {
     made_.reset();
     stimulus_.reset();

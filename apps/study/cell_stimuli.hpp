@@ -15,7 +15,7 @@ namespace apps {
 class CellStimuli final : public study::StimulusSource {
  public:
   CellStimuli(const RunOptions& options, const study::Protocol& protocol, const stats::PtpeModel& model,
-              LiveViewing viewing);
+              Viewing viewing);
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
   /// Of all cells, for the record; does not depend on which of them were shown.
@@ -31,10 +31,11 @@ class CellStimuli final : public study::StimulusSource {
   StimulusChoice choice_;
   bool live_ = false;
   std::string description_, departure_;
-  /// What the present stimulus was made for; tau counts for methods with temporal acceleration alone.
+  /// What the present stimulus was made for; the frame rate counts for methods with temporal acceleration
+  /// alone.
   struct Made {
     study::StimulusSpec what;
-    std::optional<double> tau;
+    std::optional<sim::FrameRate> rate;
     bool operator==(const Made&) const = default;
   };
   std::optional<Made> made_;

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -14,9 +15,11 @@
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
+#include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
+#include "libstudy/store/session_counts.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
@@ -111,6 +114,7 @@ class Steering {
       if (console_) console_->begins(unit);
       if (events_) print_begins(session, unit, protocol_);
     };
+    if (console_) hooks.ends = [this](const study::Ending& ending) { console_->ends(ending); };
     if (console_) hooks.shown = [this](const study::FrameRecord& frame) { console_->shown(frame); };
     hooks.done = [this](const study::UnitDone& unit) {
       if (progress_) progress_->update(++done_);
@@ -177,10 +181,37 @@ std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t i
   return {};
 }
 
-}  // namespace
+/// A person's session that ended before its last step.
+struct EndedEarly {
+  std::string participant;
+  study::Ending ending;
+};
 
-void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-              SessionSetup& setup, const PlayOptions& options) {
+RunEnd tell_end(const EndedEarly& early) {
+  const bool refused = early.ending.how == study::EarlyEnd::Refused;
+  const bool turned_away = refused || early.ending.how == study::EarlyEnd::NotEligible;
+  std::printf("%s %s: the session is over, nothing is left to do of it\n", early.participant.c_str(),
+              refused       ? "did not consent"
+              : turned_away ? "is not eligible"
+                            : "stopped before the end");
+  return turned_away ? RunEnd::TurnedAway : RunEnd::Stopped;
+}
+
+/// When the console's screen is gone: which sessions are over, and what the database holds of each person's
+/// and of a single one.
+RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
+                 const std::filesystem::path& database) {
+  RunEnd end = RunEnd::Done;
+  for (const EndedEarly& early : all) end = std::max(end, tell_end(early));
+  for (const study::OpenSession& session : run.sessions) {
+    if (session.plan.observer && run.sessions.size() > 1) continue;
+    std::fputs(study::summary_of(study::count_session(database, session.id)).c_str(), stdout);
+  }
+  return end;
+}
+
+void play_sessions(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                   SessionSetup& setup, const PlayOptions& options, std::vector<EndedEarly>& early) {
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) {
     real_time.emplace();
@@ -195,19 +226,44 @@ void play_run(study::Store& store, const study::OpenRun& run, const study::Proto
   std::vector<std::string> warnings;
   for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
   Steering steering(store, run, protocol, setup, options, warnings);
-  try {
-    for (const auto& session : run.sessions) {
-      if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
-      study::run_session(protocol, session, parts, steering.hooks(session));
-      while (steering.take_reopened()) {
-        const auto again = read_again(store, session.id);
-        if (again) study::run_session(protocol, *again, parts, steering.hooks(*again));
-      }
+  const auto play = [&](const study::OpenSession& session) {
+    const auto ending = study::run_session(protocol, session, parts, steering.hooks(session));
+    if (ending && !session.plan.observer) early.push_back({session.plan.participant, *ending});
+  };
+  for (const auto& session : run.sessions) {
+    if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
+    play(session);
+    while (steering.take_reopened()) {
+      if (const auto again = read_again(store, session.id)) play(*again);
     }
+  }
+}
+
+}  // namespace
+
+void end_command(const std::filesystem::path& database, const Played& played) {
+  for (const std::string& participant : played.withdraw) withdraw_and_tell(database, participant);
+  if (played.end == RunEnd::Stopped) throw CLI::RuntimeError(3);
+  if (played.end == RunEnd::TurnedAway) throw CLI::RuntimeError(4);
+}
+
+const char* const exit_status_help =
+    "Exit status: 0 done; 1 an error; 2 a wrong command line; 3 a person's session was stopped before its "
+    "end;\n"
+    "4 a person did not consent or is not eligible.";
+
+RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                SessionSetup& setup, const PlayOptions& options) {
+  std::vector<EndedEarly> early;
+  const auto tell = [&] { return tell_ends(run, early, options.database); };
+  try {
+    play_sessions(store, run, protocol, setup, options, early);
   } catch (const study::Stopped&) {
+    tell();
     throw base::Error(options.database.string(), "stopped on request; all answers given are kept",
                       "continue with vip-study resume --db " + options.database.string());
   }
+  return tell();
 }
 
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,

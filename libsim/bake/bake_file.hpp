@@ -9,7 +9,8 @@
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer comes last, so a file that was cut short is known as such. Positions are 16 bit per axis over
 /// each frame's bounding box: off by at most extent / 131070, which the writer holds under a twentieth of the
-/// finest radius. All else is kept exactly. Equal content gives equal bytes (no date is stored).
+/// finest radius. All else is kept exactly, the solver's account of each frame too (not in format 1). Equal
+/// content gives equal bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -26,8 +27,6 @@ namespace sim {
 
 /// What was baked.
 struct BakeHeader {
-  static constexpr std::uint32_t format_version = 1;
-
   std::string scene_name;
   std::string scene_sha256;
   std::string scene_text;       ///< the scene file, so that a bake can be drawn without it; at most 1 MiB
@@ -67,8 +66,8 @@ class BakeWriter {
   BakeWriter(const BakeWriter&) = delete;
   BakeWriter& operator=(const BakeWriter&) = delete;
 
-  /// The next frame's particles.
-  void add_frame(double time_s, const std::vector<RenderParticle>& particles);
+  /// The next frame's particles, and the solver's account of it (Simulation::account).
+  void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account);
   /// The picture of the frame just added: 4 x width x height bytes, bottom row first; alpha is dropped.
   void add_picture(ByteSpan rgba);
   /// Writes index and footer, syncs, renames. Every frame that the header states must be there.

@@ -81,6 +81,7 @@ struct BakeReader::State {
   std::vector<bake::IndexEntry> particles, pictures;
   std::uint64_t content_hash = 0;
   std::uint64_t body_begin = 0;  ///< first byte after the header
+  std::uint32_t format = 0;
 
   template <typename... Args>
   explicit State(Args&&... args) : source(std::forward<Args>(args)...) {
@@ -104,13 +105,13 @@ struct BakeReader::State {
     if (bytes.size() < bake::prologue_bytes) truncated();
     ByteReader in(ByteSpan(bytes).subspan(bake::magic.size()), source.name());
     const auto version = in.get<std::uint32_t>();
-    if (version != BakeHeader::format_version) {
-      throw base::Error(
-          source.name(),
-          "has bake format " + std::to_string(version) + "; this program reads " +
-              std::to_string(BakeHeader::format_version),
-          version > BakeHeader::format_version ? "use a newer program, or bake it again" : "bake it again");
+    if (version == 0 || version > bake_format) {
+      throw base::Error(source.name(),
+                        "has bake format " + std::to_string(version) + "; this program reads 1 to " +
+                            std::to_string(bake_format),
+                        version > bake_format ? "use a newer program, or bake it again" : "bake it again");
     }
+    format = version;
     const auto size = in.get<std::uint32_t>();
     const auto checksum = in.get<std::uint64_t>();
     if (size > bake::max_header_bytes) fail(source.name(), "has a header of the wrong length");
@@ -195,7 +196,7 @@ void BakeReader::read_frame(std::int64_t frame, BakeFrame& out) const {
   thread_local Bytes chunk, scratch;
   const std::string place = bake::frame_place(s.source.name(), "frame", frame);
   s.read_chunk(s.at(s.particles, frame), place, chunk);
-  decode_particles(chunk, s.header.radius_by_level_m, s.header.max_particles, place, scratch, out);
+  decode_particles(chunk, s.format, s.header.radius_by_level_m, s.header.max_particles, place, scratch, out);
 }
 
 const BakePicture& PictureReader::read(std::int64_t frame) {
@@ -214,8 +215,9 @@ void PictureReader::decode(std::int64_t frame) {
   have_ = -1;
   std::swap(picture_, previous_);
   const bool key = entry.kind == bake::ChunkKind::KeyPicture;
-  decode_picture(chunk_, s.header.radius_by_level_m.size(), key ? ByteSpan() : ByteSpan(previous_.rgba),
-                 s.header.picture_width_px, s.header.picture_height_px, place, scratch_, picture_);
+  decode_picture(chunk_, s.format, s.header.radius_by_level_m.size(),
+                 key ? ByteSpan() : ByteSpan(previous_.rgba), s.header.picture_width_px,
+                 s.header.picture_height_px, place, scratch_, picture_);
   have_ = frame;
 }
 

@@ -47,7 +47,7 @@ struct BakeWriter::State {
     Bytes bytes;
     ByteWriter out(bytes);
     out.bytes(bake::as_bytes(bake::magic));
-    out.put(BakeHeader::format_version);
+    out.put(bake_format);
     out.put(static_cast<std::uint32_t>(body.size()));
     out.put(static_cast<std::uint64_t>(XXH3_64bits(body.data(), body.size())));
     out.bytes(body);
@@ -100,7 +100,8 @@ BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool over
 
 BakeWriter::~BakeWriter() = default;
 
-void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& particles) {
+void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& particles,
+                           const FrameAccount& account) {
   State& s = *state_;
   const std::string place = bake::frame_place(s.path.string(), "frame", s.frames);
   if (s.frames == s.header.frame_count || (s.header.has_pictures() && s.pictures != s.frames)) {
@@ -109,9 +110,10 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
     throw base::Error(place, "holds more particles than the header states", "state the largest count");
   }
-  encode_particles(time_s, particles, s.header.radius_by_level_m, particle_zstd_level, place, s.chunk);
+  encode_particles(time_s, account, particles, s.header.radius_by_level_m, particle_zstd_level, place,
+                   s.chunk);
   ByteReader facts(s.chunk, place);
-  s.facts = get_facts(facts, s.header.radius_by_level_m.size());
+  s.facts = get_facts(facts, bake_format, s.header.radius_by_level_m.size());
   s.write_chunk(bake::ChunkKind::Particles);
   s.sizes.particle_bytes += s.chunk.size();
   ++s.frames;

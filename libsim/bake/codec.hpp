@@ -14,8 +14,8 @@ namespace sim {
 
 /// What a frame consisted of; stands before the particles and before the picture of a frame.
 struct BakeFacts {
-  double time_s = 0;                             ///< since the gate opened
-  std::vector<std::int64_t> particles_by_level;  ///< one count for each radius of the file's header
+  double time_s = 0;     ///< since the gate opened
+  FrameAccount account;  ///< one count for each radius of the file's header; files of format 1 hold no more
 };
 
 /// The particles of one frame, by level and within a level in the solver's order.
@@ -40,13 +40,15 @@ inline constexpr int max_picture_side = 8192;
 /// e / 131070 (+ float rounding). That must stay below a twentieth of the finest radius; a frame that spreads
 /// wider, a particle that is not finite or a radius that is not in `radius_by_level_m` is a base::Error at
 /// `place`.
-void encode_particles(double time_s, const std::vector<RenderParticle>& particles,
+/// The counts of `account` are taken from the particles.
+void encode_particles(double time_s, const FrameAccount& account,
+                      const std::vector<RenderParticle>& particles,
                       const std::vector<float>& radius_by_level_m, int zstd_level, const std::string& place,
                       Bytes& out);
 
 /// The inverse. Refuses (base::Error at `place`) counts beyond `max_particles` before it allocates, and data
-/// that decode to another size than stated. `scratch` keeps its memory between calls.
-void decode_particles(ByteSpan payload, const std::vector<float>& radius_by_level_m,
+/// that decode to another size than stated. `scratch` keeps its memory between calls. format: of the file.
+void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<float>& radius_by_level_m,
                       std::int64_t max_particles, const std::string& place, Bytes& scratch, BakeFrame& out);
 
 /// Pictures: colour planes G, R - G, B - G; each row the residual of one of five predictors (none, left,
@@ -56,12 +58,17 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
                     int zstd_level, Bytes& out);
 
 /// The inverse, with the same `previous`; it may not overlap out.rgba.
-void decode_picture(ByteSpan payload, std::size_t levels, ByteSpan previous, int width_px, int height_px,
-                    const std::string& place, Bytes& scratch, BakePicture& out);
+void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
+                    int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
-/// Facts as they stand at the front of both kinds of chunk.
+/// Format of what is written; 1 is still read.
+inline constexpr std::uint32_t bake_format = 2;
+
+/// Facts as they stand at the front of both kinds of chunk: time and counts, since format 2 then one byte
+/// that says what was measured (FactBits), and that: tau, mu and delta, beta and the number of active
+/// particles, the guards.
 void put_facts(ByteWriter& out, const BakeFacts& facts);
-BakeFacts get_facts(ByteReader& in, std::size_t levels);
+BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels);
 
 /// zstd of `data`, or the data as they are when they would shrink by more than 4096 to 1; the first byte says
 /// which. unpack() refuses any other size than `size`, and allocates only after the ratio was checked, so

@@ -61,23 +61,4 @@ void unpack(ByteReader& in, std::size_t size, Bytes& out) {
   if (ZSTD_isError(got) != 0 || got != size) in.fail("does not decompress");
 }
 
-void put_facts(ByteWriter& out, const BakeFacts& facts) {
-  out.put(facts.time_s);
-  for (const std::int64_t count : facts.particles_by_level) out.put(count);
-}
-
-BakeFacts get_facts(ByteReader& in, std::size_t levels) {
-  BakeFacts facts;
-  facts.time_s = in.get<double>();
-  if (!std::isfinite(facts.time_s)) in.fail("holds a time that is not finite");
-  for (std::size_t i = 0; i < levels; ++i) {
-    facts.particles_by_level.push_back(in.get<std::int64_t>());
-    const std::int64_t count = facts.particles_by_level.back();
-    if (count < 0 || count > max_bake_particles) {
-      in.fail("states " + std::to_string(count) + " particles in level " + std::to_string(i));
-    }
-  }
-  return facts;
-}
-
 }  // namespace sim

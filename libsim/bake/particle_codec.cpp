@@ -128,14 +128,15 @@ Box get_box(ByteReader& in) {
 
 }  // namespace
 
-void encode_particles(double time_s, const std::vector<RenderParticle>& particles,
+void encode_particles(double time_s, const FrameAccount& account,
+                      const std::vector<RenderParticle>& particles,
                       const std::vector<float>& radius_by_level_m, int zstd_level, const std::string& place,
                       Bytes& out) {
   if (particles.size() > static_cast<std::size_t>(max_bake_particles)) {
     throw base::Error(place, "holds more particles than a bake may", "use a smaller --n-star");
   }
-  BakeFacts facts{time_s, {}};
-  const auto order = order_by_level(particles, radius_by_level_m, place, facts.particles_by_level);
+  BakeFacts facts{time_s, account};
+  const auto order = order_by_level(particles, radius_by_level_m, place, facts.account.particles_by_level);
   const Box box = bounding_box(particles, place);
   check_error(box, radius_by_level_m, place);
 
@@ -153,12 +154,11 @@ void encode_particles(double time_s, const std::vector<RenderParticle>& particle
   pack(planes, zstd_level, out);
 }
 
-void decode_particles(ByteSpan payload, const std::vector<float>& radius_by_level_m,
+void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<float>& radius_by_level_m,
                       std::int64_t max_particles, const std::string& place, Bytes& scratch, BakeFrame& out) {
   ByteReader in(payload, place);
-  out.facts = get_facts(in, radius_by_level_m.size());
-  std::int64_t total = 0;
-  for (const std::int64_t count : out.facts.particles_by_level) total += count;
+  out.facts = get_facts(in, format, radius_by_level_m.size());
+  const std::int64_t total = out.facts.account.particles();
   if (total > max_particles) in.fail("states " + std::to_string(total) + " particles");
   const Box box = get_box(in);
   const auto n = static_cast<std::size_t>(total);
@@ -172,7 +172,7 @@ void decode_particles(ByteSpan payload, const std::vector<float>& radius_by_leve
   decode_axis(planes + 4 * n, n, box[2], [=](std::size_t i, float z) { particles[i].z_m = z; });
   std::size_t begin = 0;
   for (std::size_t level = 0; level < radius_by_level_m.size(); ++level) {
-    const std::size_t end = begin + static_cast<std::size_t>(out.facts.particles_by_level[level]);
+    const std::size_t end = begin + static_cast<std::size_t>(out.facts.account.particles_by_level[level]);
     for (std::size_t i = begin; i < end; ++i) particles[i].radius_m = radius_by_level_m[level];
     begin = end;
   }

@@ -102,13 +102,13 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
   pack(data, zstd_level, out);
 }
 
-void decode_picture(ByteSpan payload, std::size_t levels, ByteSpan previous, int width_px, int height_px,
-                    const std::string& place, Bytes& scratch, BakePicture& out) {
+void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
+                    int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out) {
   const auto width = static_cast<std::size_t>(width_px);
   const auto rows = 3 * static_cast<std::size_t>(height_px);
   const std::size_t pixels = width * static_cast<std::size_t>(height_px);
   ByteReader in(payload, place);
-  out.facts = get_facts(in, levels);
+  out.facts = get_facts(in, format, levels);
   unpack(in, rows + 3 * pixels, scratch);
 
   thread_local Bytes old_planes;

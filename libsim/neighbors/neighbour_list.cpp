@@ -169,9 +169,9 @@ void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {
   entry_.from_host(entries);
 }
 
-bool NeighbourList::grow() {
-  if (longest_.size() == 0) return false;
-  const int longest = longest_.to_host()[0];
+bool NeighbourList::grow() { return longest_.size() > 0 && grow(longest_.to_host()[0]); }
+
+bool NeighbourList::grow(int longest) {
   if (longest < capacity_ || capacity_ >= most_capacity) return false;
   capacity_ = std::min(most_capacity, (longest + 1) * 5 / 4);
   longest_.zero();

@@ -65,6 +65,10 @@ class NeighbourList {
   /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries.
   /// True when it grew.
   bool grow();
+  /// The same with the longest list as longest() had it.
+  bool grow(int longest);
+  /// Length of the longest list of the last build, in the back end's memory; nullptr before the first.
+  const int* longest() const { return longest_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
 

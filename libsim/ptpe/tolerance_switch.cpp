@@ -22,8 +22,25 @@ std::optional<double> parse_tau(std::string_view text) {
                     "write for example fixed:-6, in frames/s");
 }
 
-ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<double> fixed_tau)
-    : model_(model), fixed_(fixed_tau.has_value()) {
+FrameRate parse_frame_rate(std::string_view text) {
+  FrameRate rate;
+  const char* end = text.data() + text.size();
+  const auto [comma, error] = std::from_chars(text.data(), end, rate.mean);
+  if (error == std::errc() && comma != end && *comma == ',') {
+    const auto [rest, second] = std::from_chars(comma + 1, end, rate.sd);
+    const bool finite = std::isfinite(rate.mean) && std::isfinite(rate.sd);
+    if (second == std::errc() && rest == end && finite && rate.mean > 0 && rate.sd >= 0) return rate;
+  }
+  throw base::Error("frame rate \"" + std::string(text) + "\"", "is not a mean and a standard deviation",
+                    "write for example 16.9,3.2, in frames/s");
+}
+
+ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<double> fixed_tau,
+                                 std::optional<FrameRate> fixed_rate)
+    : model_(model), fixed_(fixed_tau || fixed_rate), rate_(fixed_rate) {
+  if (fixed_tau && fixed_rate)
+    throw base::Error("tau", "is given, and the frame rate that it follows from too", "give one of them");
+  if (fixed_rate) fixed_tau = stats::ptpe_tolerance(model, fixed_rate->mean, fixed_rate->sd);
   if (!fixed_tau) return;
   if (!std::isfinite(*fixed_tau)) throw base::Error("tau", "is not finite", "give frames per second");
   set(*fixed_tau);
@@ -38,6 +55,7 @@ void ToleranceSwitch::frame_time(double ms) {
   window_.push(1e-3 * ms);
   const stats::FpsMoments known = window_.moments();
   const double tau = stats::ptpe_tolerance(model_, known.mean, known.sd);
+  rate_ = FrameRate{known.mean, known.sd};
   if (known.frames < window_frames) {
     tau_ = tau;
   } else {
@@ -46,7 +64,7 @@ void ToleranceSwitch::frame_time(double ms) {
 }
 
 double ToleranceSwitch::beta() const {
-  return on_ ? std::min(1.0, stats::activation_floor(model_, tau_)) : 1;
+  return on_ ? std::min(1.0, stats::activation_floor(model_, *tau_)) : 1;
 }
 
 void ToleranceSwitch::set(double tau) {

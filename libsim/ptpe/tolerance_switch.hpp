@@ -13,23 +13,36 @@ namespace sim {
 /// "live" gives none (tau from the frames' times), "fixed:X" gives X in frames/s; others are a base::Error.
 std::optional<double> parse_tau(std::string_view text);
 
+/// Mean and standard deviation of a frame rate, frames/s.
+struct FrameRate {
+  double mean = 0, sd = 0;
+  bool operator==(const FrameRate&) const = default;
+};
+
+/// "MEAN,SD" in frames/s, such as "16.9,3.2"; others are a base::Error.
+FrameRate parse_frame_rate(std::string_view text);
+
 /// tau over the last 30 frames, with two thresholds so that noise does not switch back and forth: on below 0,
-/// off above +1 frames/s. A tau from outside (tests, benches) stands in for the measured one and goes the
-/// same way.
+/// off above +1 frames/s. A tau from outside (tests, benches), or the tau of a frame rate from outside (a
+/// study's schedule), stands in for the measured one and goes the same way.
 class ToleranceSwitch {
  public:
   static constexpr std::size_t window_frames = 30;
   static constexpr double off_above = 1;  ///< frames/s
 
-  explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {});
+  /// Of fixed_tau and fixed_rate at most one is given; base::Error otherwise, or when one is not finite.
+  explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {},
+                           std::optional<FrameRate> fixed_rate = {});
 
   /// Takes the time of a whole frame, ms. A time that is not positive and finite is left out and counted;
   /// with a fixed tau the call changes nothing. The switch waits for a full window: few frames do not tell
   /// delta.
   void frame_time(double ms);
 
-  /// tau = mu - a exp(b delta), frames/s; 0 before the first frame.
-  double tau() const { return tau_; }
+  /// tau = mu - a exp(b delta), frames/s; none before the first frame's time is known.
+  std::optional<double> tau() const { return tau_; }
+  /// mu and delta behind it; none where tau itself was given, or is not known.
+  std::optional<FrameRate> rate() const { return rate_; }
   bool on() const { return on_; }
   /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability of a
   /// particle to be solved. Never above 1, whatever the sign of a fitted b.
@@ -43,7 +56,8 @@ class ToleranceSwitch {
   stats::FpsWindow window_{window_frames};
   bool fixed_ = false;
   bool on_ = false;
-  double tau_ = 0;
+  std::optional<double> tau_;
+  std::optional<FrameRate> rate_;
   std::uint64_t left_out_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
+#include "libsim/solver/account_keeper.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -56,7 +57,7 @@ class FluidSimulation final : public Simulation {
       : scene_(scene),
         options_(options),
         resolution_(resolution_of(scene, options.method, options.n_star)),
-        tolerance_(options.temporal.model, options.temporal.fixed_tau),
+        tolerance_(options.temporal.model, options.temporal.fixed_tau, options.temporal.fixed_rate),
         frame_(options.start_frame) {
     if (options.levels < 1 || options.levels > most_levels) {
       throw base::Error(
@@ -110,10 +111,13 @@ class FluidSimulation final : public Simulation {
     state_.activation.beta = static_cast<float>(tolerance_.beta());
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     run_frame(schedule_, state_);
+    const FrameTally tally = keeper_.take(state_, went_by());
     // Longer lists lie elsewhere: what they held is gone.
-    if (state_.neighbours.grow()) state_.lists_hold = false;
+    if (state_.neighbours.grow(tally.longest_list)) state_.lists_hold = false;
     ++frame_;
   }
+
+  const FrameAccount& account() const override { return keeper_.account(); }
 
   void force_targets(const TargetRegion& region) override {
     if (!options_.forced_targets) {
@@ -140,9 +144,7 @@ class FluidSimulation final : public Simulation {
   void frame_time(double ms) override { tolerance_.frame_time(ms); }
 
   FrameReport report() override {
-    const TemporalReport temporal = temporal_report();
     const Measured measured = measure(state_);
-    const Guards met = state_.guards.to_host()[0];
     FrameReport out;
     out.frame = frame_;
     out.time_s = frame_ * static_cast<double>(state_.parameters.dt) * state_.parameters.substeps;
@@ -158,15 +160,12 @@ class FluidSimulation final : public Simulation {
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
     out.speed_max_m_s = measured.speed_max_m_s;
-    out.guards = {met.speed_limited,      met.coincident_pairs, met.not_finite,
-                  met.neighbours_dropped, met.wall_projected,   state_.jets.waited};
+    out.guards = guard_counts(state_.guards.to_host()[0], state_);
     out.poured = state_.jets.poured;
     out.particles_in = state_.jets.made;
     out.particles_out = state_.jets.taken;
     out.reservoir = state_.jets.reservoir;
-    out.guards.saliency_not_finite = met.saliency_not_finite;
-    out.guards.gaze_lost = state_.saliency.input.gaze_lost();
-    out.temporal = temporal;
+    out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
     out.seen = state_.saliency.input.seen();
     out.start = relaxed_;
     return out;
@@ -275,12 +274,10 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  TemporalReport temporal_report() const {
-    TemporalReport out{tolerance_.tau(), tolerance_.beta(), particle_count()};
-    if (!state_.activation.columns_set || state_.activation.all_marked) return out;
-    out.active = 0;
-    for (const auto active : state_.particles.active.to_host()) out.active += active;
-    return out;
+  /// What temporal acceleration went by in the frame just run, of which frame_time has not been told yet.
+  std::optional<TemporalReport> went_by() const {
+    if (!state_.particles.has(Column::Active)) return {};
+    return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};
   }
 
   std::string levels_in_words() const {
@@ -320,6 +317,7 @@ class FluidSimulation final : public Simulation {
     std::vector<int> id;
     std::vector<std::uint8_t> level;
     state_.mass_units = 0;
+    keeper_.begin(start, finest_level_, coarsest_level_);
     for (const auto& particle : start) {
       state_.mass_units += std::int64_t{1} << particle.level;
       const float h = state_.supports.h[particle.level];
@@ -398,6 +396,7 @@ class FluidSimulation final : public Simulation {
   GlSharing gl_{GlSharing::Access::Overwrite};
   int frame_;
   int finest_level_ = 0, coarsest_level_ = 0;  ///< that particles can have
+  AccountKeeper keeper_;
 };
 
 }  // namespace

@@ -85,11 +85,11 @@ TEST_F(BakeE2e, ParticlesThatSplitAndMergeKeepTheirLevels) {
     for (int i = 0; i < 12; ++i) {
       sim::BakeFrame frame;
       bake.read_frame(i, frame);
-      ASSERT_EQ(frame.facts.particles_by_level.size(), 4u);
+      ASSERT_EQ(frame.facts.account.particles_by_level.size(), 4u);
       std::int64_t mass = 0, counted = 0;
       for (std::size_t k = 0; k < 4; ++k) {
-        mass += frame.facts.particles_by_level[k] << k;
-        counted += frame.facts.particles_by_level[k];
+        mass += frame.facts.account.particles_by_level[k] << k;
+        counted += frame.facts.account.particles_by_level[k];
       }
       EXPECT_EQ(mass, 512) << "frame " << i << ": no level may be taken for another";
       EXPECT_EQ(frame.particles.size(), static_cast<std::size_t>(counted));

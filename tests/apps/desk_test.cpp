@@ -163,6 +163,33 @@ TEST(Words, UnknownLanguagesAreEnglish) {
   EXPECT_EQ(desk_words("tlh").go_on, "Continue");
 }
 
+TEST(Words, NothingIsLeftUnsaidInAnyLanguage) {
+  using study::Notice;
+  using study::Offer;
+  for (const char* language : {"en", "de"}) {
+    const DeskWords& words = desk_words(language);
+    for (const std::string& one :
+         {words.go_on, words.confirm, words.finish, words.rest, words.pause, words.ready, words.first,
+          words.second, words.held_title, words.held, words.corner, words.begin})
+      EXPECT_FALSE(one.empty()) << language;
+    for (const Notice notice : {Notice::Over, Notice::Refused, Notice::NotEligible, Notice::Kept,
+                                Notice::Deleted, Notice::Goodbye}) {
+      const DeskPage& page = words.page(notice);
+      for (const std::string& one : {page.title, page.text, page.button})
+        EXPECT_FALSE(one.empty()) << language;
+      EXPECT_EQ(page.button == words.finish, notice != Notice::Over) << "the last page says so";
+    }
+    for (const Offer offer : {Offer::StayOut, Offer::Questionnaire, Offer::Keep}) {
+      const DeskChoice& choice = words.choice(offer);
+      for (const std::string& one : {choice.title, choice.text, choice.question, choice.first, choice.second})
+        EXPECT_FALSE(one.empty()) << language;
+    }
+    EXPECT_THAT(words.begin, HasSubstr("Esc"));
+    EXPECT_THAT(words.corner, HasSubstr("Esc"));
+  }
+  EXPECT_NE(desk_words("de").over.text, desk_words("en").over.text);
+}
+
 TEST(Strip, SignsFollowTheRate) {
   EXPECT_EQ(strip_sign(1, 1.01), '.');
   EXPECT_EQ(strip_sign(1, 1.1), '+');

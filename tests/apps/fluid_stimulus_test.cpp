@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "apps/common/headless_display.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "stats/base/error.hpp"
@@ -28,7 +30,11 @@ class FakeSimulation final : public sim::Simulation {
   }
   bool follows_picture() const override { return false; }
   int frame() const override { return frame_; }
-  void step_frame() override { ++frame_; }
+  void step_frame() override {
+    account_ = bake_test::account(++frame_);
+    account_.particles_by_level = {768, 192};
+  }
+  const sim::FrameAccount& account() const override { return account_; }
   sim::FrameReport report() override { return {}; }
   std::int64_t particle_count() const override { return 960; }
   double spacing_m() const override { return 0.1; }
@@ -53,13 +59,25 @@ class FakeSimulation final : public sim::Simulation {
  private:
   std::vector<sim::Looks>* looks_;
   int frame_ = 0;
+  sim::FrameAccount account_{{768, 192}, {}, {}};
 };
 
-TEST(FluidStimulus, LevelsAreCountedFinestFirst) {
-  const auto levels = apps::count_levels({{0, 0, 0, 2}, {0, 0, 0, 1}, {0, 0, 0, 2}, {0, 0, 0, 2}});
-  EXPECT_THAT(levels.radius_m, ElementsAre(1, 2));
-  EXPECT_THAT(levels.count, ElementsAre(1, 3));
-  EXPECT_TRUE(apps::count_levels({}).count.empty());
+/// What the frame's record is to hold of bake_test::account(frame).
+void expect_facts(const study::FrameFacts& facts, std::int64_t frame) {
+  SCOPED_TRACE(frame);
+  const sim::FrameAccount account = bake_test::account(frame);
+  EXPECT_THAT(facts.particles_by_level, ElementsAre(768, 192));
+  ASSERT_EQ(facts.tolerance.has_value(), account.temporal.has_value());
+  ASSERT_EQ(facts.guards.has_value(), account.guards.has_value());
+  if (!account.temporal) return;
+  EXPECT_EQ(facts.tolerance->tau_fps, account.temporal->tau);
+  EXPECT_EQ(facts.tolerance->beta, account.temporal->beta);
+  EXPECT_DOUBLE_EQ(facts.tolerance->active_fraction, static_cast<double>(account.temporal->active) / 960);
+  EXPECT_EQ(facts.tolerance->mu_fps.has_value(), account.temporal->rate.has_value());
+  EXPECT_EQ(facts.tolerance->mu_fps.value_or(17.25), 17.25);
+  EXPECT_EQ(facts.tolerance->delta_fps.value_or(3.5), 3.5);
+  EXPECT_EQ(facts.guards->speed_limited, frame);
+  EXPECT_EQ(facts.guards->gaze_lost, 8 * frame);
 }
 
 TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
@@ -77,6 +95,29 @@ TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
   fluid.start(0);
   EXPECT_EQ(made, 3);
   EXPECT_EQ(fluid.length(), 0);
+}
+
+TEST(FluidStimulus, FramesHoldTheSolversAccountWhetherLiveOrBaked) {
+  const bake_test::Folder folder;
+  bake_test::write(folder / "a.bake", 7);
+  apps::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
+  sim::BakeFrame frame;
+  const sim::BakeReader baked(folder / "a.bake");
+  live.start(0);
+  for (int step = 0; step < 7; ++step) {
+    expect_facts(live.prepare(step), step);
+    baked.read_frame(step, frame);
+    expect_facts(apps::to_facts(frame.facts.time_s, frame.facts.account), step);
+  }
+}
+
+TEST(FluidStimulus, FramesOfABakeOfFormat1MeasuredCountsAlone) {
+  const auto file = base::resource("tests/libsim/bake/fixtures/format_1.bake");
+  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(file));
+  pictures.start(0);
+  const study::FrameFacts facts = pictures.prepare(0);
+  EXPECT_FALSE(facts.particles_by_level.empty());
+  EXPECT_FALSE(facts.tolerance || facts.guards);
 }
 
 TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
@@ -123,7 +164,7 @@ TEST_F(FluidStimulusGl, BakedPicturesAreShownExactly) {
     for (int step = start; step < 40; step += 3) {
       const study::FrameFacts facts = pictures.prepare(step);
       EXPECT_DOUBLE_EQ(facts.simulation_time_s, step / 60.0);
-      EXPECT_THAT(facts.particles_by_level, ElementsAre(768, 192));
+      expect_facts(facts, step);
       display.render(pictures);
       const study::PresentTimes times = display.present(clock_);
       EXPECT_GE(times.gpu_done_ns, times.submitted_ns);
@@ -169,7 +210,7 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   header.scene_text = scene_text();
   {
     sim::BakeWriter writer(folder_ / "a.bake", header);
-    for (int i = 0; i < 3; ++i) writer.add_frame(i / 60.0, bake_test::particles(i));
+    for (int i = 0; i < 3; ++i) writer.add_frame(i / 60.0, bake_test::particles(i), bake_test::account(i));
     writer.finish();
   }
   apps::HeadlessDisplay display(96, 54);
@@ -196,9 +237,9 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
 TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAPicture) {
   apps::HeadlessDisplay display(64, 36);
   std::vector<sim::Looks> looks;
-  apps::LiveViewing viewing;
+  apps::Viewing viewing;
   viewing.gaze = [](int width, int height) { return std::optional(std::pair(0.25 * width, 0.5 * height)); };
-  viewing.vertical_fov_deg = [](int, int) { return 40.0; };
+  viewing.visual_angle_deg = [](int, int) { return 40.0; };
   apps::LiveFluid live(
       scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
   live.start(0);
@@ -209,13 +250,34 @@ TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAP
   ASSERT_EQ(looks.size(), 2u);
   const sim::EyeLook& eye = looks[0].eyes.at(0);
   EXPECT_TRUE(eye.gaze.valid);
-  // The camera has the viewer's angle, and the gaze goes through a quarter of its width.
-  sim::Camera camera = scene().view;
-  camera.vertical_fov_deg = 40;
-  const sim::View view = sim::make_view(camera, 64, 36);
+  // The camera keeps the scene's angle, and the gaze goes through a quarter of its width.
+  const sim::View view = sim::make_view(scene().view, 64, 36);
   EXPECT_EQ(eye.view.projection, view.projection);
   const sim::Gaze expected = apps::gaze_through(view, 16, 18);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(eye.gaze.direction[k], expected.direction[k], 1e-6);
+  const double half_degree = std::acos(-1.0) / 360;
+  EXPECT_NEAR(eye.visual_scale,
+              std::tan(40 * half_degree) / std::tan(scene().view.vertical_fov_deg * half_degree), 1e-12);
+}
+
+TEST_F(FluidStimulusGl, LiveFluidIsAWindowOntoTheSceneWhereThatIsAsked) {
+  apps::HeadlessDisplay display(64, 36);
+  std::vector<sim::Looks> looks;
+  apps::Viewing viewing;
+  viewing.visual_angle_deg = [](int, int) { return 40.0; };
+  viewing.true_angle = true;
+  apps::LiveFluid live(
+      scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
+  live.start(0);
+  live.prepare(1);
+  display.render(live);
+  live.prepare(2);
+  ASSERT_EQ(looks.size(), 1u);
+  sim::Camera camera = scene().view;
+  camera.vertical_fov_deg = 40;
+  const sim::EyeLook& eye = looks[0].eyes.at(0);
+  EXPECT_EQ(eye.view.projection, sim::make_view(camera, 64, 36).projection);
+  EXPECT_EQ(eye.visual_scale, 1);
 }
 
 }  // namespace

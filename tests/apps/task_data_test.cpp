@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "apps/stats/tasks/data_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"
 #include "apps/stats/tasks/task1_results.hpp"
 #include "tests/apps/made_task_study.hpp"
@@ -113,6 +114,31 @@ TEST(TaskData, FailedTimingAndTheExperimenterTakeTrialsOut) {
   EXPECT_EQ(data.exclusions[2].answers, 0);
   EXPECT_THAT(data.choices, SizeIs(57));
   EXPECT_EQ(data.flow.trials_excluded, 2) << "of those answered";
+}
+
+TEST(TaskData, TimingTellsWhatTheSolverWentByWhereItWasMeasured) {
+  auto protocol = made_study::task1(12);
+  int measured = 0;
+  for (auto& session : protocol.sessions) {
+    for (auto& trial : session.trials) {
+      if (trial.first.what.method != "Ours-TSp" || measured > 20) continue;
+      trial.first.active_fraction = measured % 2 ? 0.5 : 0.75;
+      trial.first.tau_fps = measured % 2 ? -8 : -4;
+      ++measured;
+    }
+  }
+  bool found = false;
+  for (const Json& cell : timing_json(select(of(protocol)))) {
+    if (cell["method"] != "Ours-TSp") {
+      EXPECT_TRUE(cell["active_fraction"].is_null() && cell["tau_fps"].is_null()) << cell;
+    } else if (!cell["tau_fps"].is_null()) {
+      // Means of the showings that measured them, whatever the others: tau and share go together here.
+      EXPECT_NEAR(cell["active_fraction"].get<double>(), 1 + cell["tau_fps"].get<double>() / 16, 1e-12);
+      EXPECT_LT(cell["tau_fps"].get<double>(), -3.9);
+      found = true;
+    }
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST(TaskData, NoRuleSeesMethodsOrScenes) {

@@ -32,7 +32,7 @@ TEST(ToleranceSwitch, GoesOnBelowZeroAndOffAboveOne) {
   EXPECT_FALSE(s.on()) << "between the thresholds it stays as it was";
   feed(s, 23.68 - 0.5);
   EXPECT_TRUE(s.on());
-  EXPECT_NEAR(s.tau(), -0.5, 1e-9);
+  EXPECT_NEAR(s.tau().value(), -0.5, 1e-9);
   EXPECT_NEAR(s.beta(), std::exp(2 * 0.02 * -0.5), 1e-9);
   feed(s, 23.68 + 0.5);
   EXPECT_TRUE(s.on());
@@ -45,11 +45,11 @@ TEST(ToleranceSwitch, WaitsForAFullWindowAndForgetsOlderFrames) {
   ToleranceSwitch s;
   for (std::size_t i = 1; i < ToleranceSwitch::window_frames; ++i) s.frame_time(100);
   EXPECT_FALSE(s.on());
-  EXPECT_NEAR(s.tau(), 10 - 23.68, 1e-9);
+  EXPECT_NEAR(s.tau().value(), 10 - 23.68, 1e-9);
   s.frame_time(100);
   EXPECT_TRUE(s.on());
   feed(s, 60);
-  EXPECT_NEAR(s.tau(), 60 - 23.68, 1e-9);
+  EXPECT_NEAR(s.tau().value(), 60 - 23.68, 1e-9);
   EXPECT_FALSE(s.on());
 }
 
@@ -57,14 +57,14 @@ TEST(ToleranceSwitch, TauFallsWithTheScatterOfTheRate) {
   ToleranceSwitch s;
   // 25 and 50 frames/s in turn: mu = 2 / (0.04 + 0.02) = 33.3, delta = 12.5.
   for (std::size_t i = 0; i < ToleranceSwitch::window_frames; ++i) s.frame_time(i % 2 ? 40 : 20);
-  EXPECT_NEAR(s.tau(), 100.0 / 3 - 23.68 * std::exp(0.02 * 12.5), 1e-9);
+  EXPECT_NEAR(s.tau().value(), 100.0 / 3 - 23.68 * std::exp(0.02 * 12.5), 1e-9);
 }
 
 TEST(ToleranceSwitch, CountsTimesThatAreNone) {
   ToleranceSwitch s;
   for (const double ms : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) s.frame_time(ms);
   EXPECT_EQ(s.left_out(), 4u);
-  EXPECT_EQ(s.tau(), 0);
+  EXPECT_FALSE(s.tau());
 }
 
 TEST(ParseTau, ReadsLiveAndFixedValuesOnly) {

@@ -37,7 +37,7 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
   const auto files = export_csv(database, folder / "out");
-  EXPECT_EQ(files.size(), 19u);
+  EXPECT_EQ(files.size(), 20u);
   EXPECT_THAT(test::bytes_of(folder / "out" / "responses.csv"),
               ::testing::StartsWith("response_id,unit_id,attempt,question_id,score,response_time_s,"
                                     "answered_utc,counts,why_not\r\n1,3,1,2,6,0.5,2"));

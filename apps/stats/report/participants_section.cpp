@@ -69,17 +69,17 @@ std::string timing_section(const Field& root) {
       (any_unjudged(timing) ? "Without a schedule there is nothing to judge by. " : "") +
       "Grades of evidence: A photodiode, B display feedback, C compositor, D submission by the program.");
   for (const auto& [key, title] : all_parts) {
-    Table table(
-        std::string("Timing certificate, ") + title,
-        {"Scene", "n*", "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass", "Degraded", "Fail",
-         "Not judged", "Grades", "Realised mean", "SD (frames/s)", "Longest (ms)", "Late frames"});
+    Table table(std::string("Timing certificate, ") + title,
+                {"Scene", "n*", "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass", "Degraded",
+                 "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)", "Longest (ms)",
+                 "Late frames", "Solved (%)", "Tau (frames/s)"});
     for (const Field& c : timing.entries()) {
       if (c["task"].words() != key) continue;
       table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
                  fixed(c["nominal_sd_fps"], 2), count(c["showings"]), count(c["pass"]), count(c["degraded"]),
                  count(c["fail"]), count(c["unjudged"]), counts(c["grades"]),
                  fixed(c["realised_mean_fps"], 2), fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1),
-                 count(c["late_frames"])});
+                 count(c["late_frames"]), percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
     }
     if (table.empty()) continue;
     const std::string by = std::string(key) == "pilot" ? "setting" : "method and n*";

@@ -28,7 +28,8 @@ Json protocol_json(const TaskData& data) {
       {"observers", data.observers},
       {"gaze", data.gaze},
       {"stations", data.stations},
-      {"displays", data.displays}};
+      {"displays", data.displays},
+      {"angles", data.angles}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
@@ -52,6 +53,17 @@ std::vector<std::string> notes_of(const TaskData& data) {
   return notes;
 }
 
+/// Of what may not have been measured.
+struct Mean {
+  int count = 0;
+  double sum = 0;
+  void add(const std::optional<double>& value) {
+    count += value ? 1 : 0;
+    sum += value.value_or(0);
+  }
+  Json json() const { return count > 0 ? Json(sum / count) : Json(); }
+};
+
 /// One line of the certificates.
 struct TimedCell {
   int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
@@ -59,6 +71,7 @@ struct TimedCell {
   study::FpsSetting nominal;
   double mean = 0, sd = 0, longest_ms = 0;
   std::int64_t late = 0;
+  Mean active_fraction, tau_fps;  ///< over the showings that measured them
 
   void add(const study::TaskShowing& shown) {
     ++showings;
@@ -75,6 +88,8 @@ struct TimedCell {
     sd += shown.realised.sd;
     longest_ms = std::max(longest_ms, shown.longest_ms);
     late += shown.late;
+    active_fraction.add(shown.active_fraction);
+    tau_fps.add(shown.tau_fps);
   }
 };
 
@@ -91,7 +106,9 @@ Json timed_json(const TimedCell& cell) {
           {"realised_mean_fps", cell.mean / cell.showings},
           {"realised_sd_fps", cell.sd / cell.showings},
           {"longest_ms", cell.longest_ms},
-          {"late_frames", cell.late}};
+          {"late_frames", cell.late},
+          {"active_fraction", cell.active_fraction.json()},
+          {"tau_fps", cell.tau_fps.json()}};
 }
 
 int place(const std::vector<std::string>& list, const std::string& item) {
@@ -134,6 +151,7 @@ Json flow_json(const TaskFlow& flow) {
     return found == flow.by_state.end() ? 0 : found->second;
   };
   return {{"started", flow.started},
+          {"refused", in_state("refused")},
           {"not_eligible", in_state("not eligible")},
           {"stopped", in_state("stopped")},
           {"dropped_out", in_state("dropped out")},

@@ -20,6 +20,7 @@ std::string short_time(double seconds) { return base::duration_words(std::max(0.
 std::string words_of(const study::Ending& ending) {
   if (ending.how == study::EarlyEnd::Stopped) return "STOPPED: rest until well; let nobody go before";
   if (ending.how == study::EarlyEnd::DroppedOut) return "LEFT: see to them; the answers given are kept";
+  if (ending.how == study::EarlyEnd::Refused) return "DID NOT CONSENT: nothing more is asked; thank them";
   return "INELIGIBLE: nothing more is asked; thank them";
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "libstudy/session/participant.hpp"
+
 namespace apps {
 
 namespace {
@@ -36,7 +38,8 @@ double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit, boo
   for (const study::TrialStep& step : block_of(protocol, unit).steps) {
     if (step.kind == StepKind::Black || step.kind == StepKind::Rest) total += step.seconds;
     if (step.kind == StepKind::Stimulus)
-      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s;
+      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s +
+               (unit.trial->second ? study::word_s + study::after_word_s : 0);
     if (step.kind == StepKind::Ask && person) total += 5 * static_cast<double>(step.asks.size());
   }
   return total;

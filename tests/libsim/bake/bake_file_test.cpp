@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "libsim/bake/layout.hpp"
+#include "stats/base/file.hpp"
 #include "tests/libsim/bake/make_bake.hpp"
 
 namespace {
@@ -58,7 +59,7 @@ TEST(BakeFile, ParticlesComeBackWithinTheQuantisationErrorInOrder) {
     std::stable_sort(want.begin(), want.end(),
                      [](const auto& a, const auto& b) { return a.radius_m < b.radius_m; });
     ASSERT_EQ(frame.particles.size(), want.size());
-    EXPECT_THAT(frame.facts.particles_by_level, ::testing::ElementsAre(768, 192));
+    EXPECT_THAT(frame.facts.account.particles_by_level, ::testing::ElementsAre(768, 192));
     EXPECT_DOUBLE_EQ(frame.facts.time_s, static_cast<double>(i) / 60);
     // Widest axis: 19 m and the sway; half a step, and the rounding of float at 20 m.
     const double bound = 19.6 / 131070 + 4e-6;
@@ -72,10 +73,74 @@ TEST(BakeFile, ParticlesComeBackWithinTheQuantisationErrorInOrder) {
   }
 }
 
+void expect_account(const sim::FrameAccount& found, std::int64_t frame) {
+  SCOPED_TRACE(frame);
+  const sim::FrameAccount want = bake_test::account(frame);
+  EXPECT_THAT(found.particles_by_level, ::testing::ElementsAre(768, 192));
+  ASSERT_EQ(found.temporal.has_value(), want.temporal.has_value());
+  ASSERT_EQ(found.guards.has_value(), want.guards.has_value());
+  if (!want.temporal) return;
+  EXPECT_EQ(found.temporal->tau, want.temporal->tau);
+  EXPECT_EQ(found.temporal->rate, want.temporal->rate);
+  EXPECT_EQ(found.temporal->beta, want.temporal->beta);
+  EXPECT_EQ(found.temporal->active, want.temporal->active);
+  EXPECT_EQ(found.guards->coincident_pairs, want.guards->coincident_pairs);
+  EXPECT_EQ(found.guards->nozzle_waited, want.guards->nozzle_waited);
+  EXPECT_EQ(found.guards->gaze_lost, want.guards->gaze_lost);
+}
+
+TEST(BakeFile, EveryFrameAndPictureKeepsTheSolversAccount) {
+  const Folder folder;
+  bake_test::write(folder / "a.bake", 7, 32, 18);
+  const sim::BakeReader bake(folder / "a.bake");
+  sim::PictureReader pictures(bake);
+  sim::BakeFrame frame;
+  for (std::int64_t i = 0; i < 7; ++i) {
+    bake.read_frame(i, frame);
+    expect_account(frame.facts.account, i);
+    expect_account(pictures.read(i).facts.account, i);
+  }
+}
+
+/// Kept as version 0.1.0 wrote it.
+TEST(BakeFile, Format1IsReadAndMeasuredNothingButCounts) {
+  const sim::BakeReader bake(base::resource("tests/libsim/bake/fixtures/format_1.bake"));
+  ASSERT_TRUE(bake.header().has_pictures());
+  sim::PictureReader pictures(bake);
+  sim::BakeFrame frame;
+  for (std::int64_t i = 0; i < bake.header().frame_count; ++i) {
+    bake.read_frame(i, frame);
+    EXPECT_EQ(frame.facts.account.particles(), static_cast<std::int64_t>(frame.particles.size()));
+    EXPECT_FALSE(frame.facts.account.temporal || frame.facts.account.guards);
+    const sim::BakeFacts& facts = pictures.read(i).facts;
+    EXPECT_EQ(facts.account.particles_by_level, frame.facts.account.particles_by_level);
+    EXPECT_FALSE(facts.account.temporal || facts.account.guards);
+  }
+}
+
+TEST(BakeFile, AccountsThatCannotBeAreRefused) {
+  const auto error_with = [](const auto& change) {
+    sim::BakeFacts facts{0, {{10}, sim::TemporalReport{-6.0, {}, 0.5, 4}, sim::GuardCounts{}}};
+    change(facts.account);
+    sim::Bytes bytes;
+    sim::ByteWriter out(bytes);
+    sim::put_facts(out, facts);
+    sim::ByteReader in(bytes, "f");
+    return error_of([&] { sim::get_facts(in, sim::bake_format, 1); });
+  };
+  using Account = sim::FrameAccount;
+  EXPECT_EQ(error_with([](Account&) {}), "");
+  EXPECT_THAT(error_with([](Account& a) { a.temporal->tau = NAN; }), HasSubstr("not finite"));
+  EXPECT_THAT(error_with([](Account& a) { a.temporal->beta = 1.5; }), HasSubstr("outside 0 to 1"));
+  EXPECT_THAT(error_with([](Account& a) { a.temporal->active = 11; }), HasSubstr("more particles solved"));
+  EXPECT_THAT(error_with([](Account& a) { a.guards->gaze_lost = UINT64_MAX; }),
+              HasSubstr("no guard reaches"));
+}
+
 TEST(BakeFile, EndsOfTheBoxAreKeptExactly) {
   const Folder folder;
   sim::BakeWriter writer(folder / "a.bake", bake_test::header(1));
-  writer.add_frame(0, {{-1.25F, 0, 0, 0.05F}, {7.5F, 0, 0, 0.05F}});
+  writer.add_frame(0, {{-1.25F, 0, 0, 0.05F}, {7.5F, 0, 0, 0.05F}}, {});
   writer.finish();
   sim::BakeFrame frame;
   sim::BakeReader(folder / "a.bake").read_frame(0, frame);
@@ -87,14 +152,14 @@ TEST(BakeFile, EndsOfTheBoxAreKeptExactly) {
 TEST(BakeFile, FrameWithoutParticles) {
   const Folder folder;
   sim::BakeWriter writer(folder / "a.bake", bake_test::header(2));
-  writer.add_frame(0, {});
-  writer.add_frame(1, {{1, 2, 3, 0.1F}});
+  writer.add_frame(0, {}, {});
+  writer.add_frame(1, {{1, 2, 3, 0.1F}}, {});
   writer.finish();
   const sim::BakeReader bake(folder / "a.bake");
   sim::BakeFrame frame;
   bake.read_frame(0, frame);
   EXPECT_TRUE(frame.particles.empty());
-  EXPECT_THAT(frame.facts.particles_by_level, ::testing::ElementsAre(0, 0));
+  EXPECT_THAT(frame.facts.account.particles_by_level, ::testing::ElementsAre(0, 0));
   bake.read_frame(1, frame);
   ASSERT_EQ(frame.particles.size(), 1U);
   EXPECT_EQ(frame.particles[0].z_m, 3);
@@ -110,7 +175,7 @@ TEST(BakeFile, PicturesComeBackExactlyInAnyOrder) {
   for (const int i : {0, 40, 41, 5, 5, 64, 29, 30}) {
     ASSERT_EQ(pictures.read(i).rgba, bake_test::picture(i, 34, 18)) << i;
     ASSERT_DOUBLE_EQ(pictures.read(i).facts.time_s, i / 60.0);
-    ASSERT_THAT(pictures.read(i).facts.particles_by_level, ::testing::ElementsAre(768, 192));
+    ASSERT_THAT(pictures.read(i).facts.account.particles_by_level, ::testing::ElementsAre(768, 192));
   }
 }
 
@@ -123,9 +188,9 @@ TEST(BakeFile, PicturesOfPureNoiseAndOfOneColourComeBack) {
       if (i % 4 == 3) rgba[i] = 255;
     }
     for (const sim::ByteSpan previous : {sim::ByteSpan(), sim::ByteSpan(before)}) {
-      sim::encode_picture({0, {1}}, rgba, previous, 40, 30, 3, payload);
+      sim::encode_picture({0, {{1}, {}, {}}}, rgba, previous, 40, 30, 3, payload);
       sim::BakePicture out;
-      sim::decode_picture(payload, 1, previous, 40, 30, "p", scratch, out);
+      sim::decode_picture(payload, sim::bake_format, 1, previous, 40, 30, "p", scratch, out);
       EXPECT_EQ(out.rgba, rgba);
     }
   }
@@ -185,21 +250,22 @@ TEST(BakeFile, NewerVersionIsRefused) {
   const Folder folder;
   bake_test::write(folder / "a.bake", 1);
   sim::Bytes bytes = bake_test::read_all(folder / "a.bake");
-  bytes[8] = 2;
+  bytes[8] = 3;
   EXPECT_THAT(error_of([&] { const sim::BakeReader bake(bytes, "new.bake"); }),
-              AllOf(HasSubstr("new.bake"), HasSubstr("format 2"), HasSubstr("newer program")));
+              AllOf(HasSubstr("new.bake"), HasSubstr("format 3"), HasSubstr("newer program")));
 }
 
 TEST(BakeFile, LyingCountsAreRefusedBeforeMemoryIsTaken) {
   const std::vector<float> radii{0.05F};
   sim::Bytes payload, scratch;
   sim::ByteWriter out(payload);
-  sim::put_facts(out, {0, {sim::max_bake_particles}});
+  sim::put_facts(out, {0, {{sim::max_bake_particles}, {}, {}}});
   for (int i = 0; i < 6; ++i) out.put(float(i % 2));
   sim::pack(sim::Bytes(600), 1, payload);
   sim::BakeFrame frame;
   const auto decode = [&](std::int64_t most) {
-    return error_of([&] { sim::decode_particles(payload, radii, most, "f", scratch, frame); });
+    return error_of(
+        [&] { sim::decode_particles(payload, sim::bake_format, radii, most, "f", scratch, frame); });
   };
   EXPECT_THAT(decode(1000), HasSubstr("states 33554432 particles"));
   EXPECT_THAT(decode(sim::max_bake_particles), HasSubstr("more data than its bytes can hold"));
@@ -210,7 +276,7 @@ TEST(BakeFile, WriterRefusesWhatItCannotKeep) {
   const Folder folder;
   sim::BakeWriter writer(folder / "a.bake", bake_test::header(9));
   const auto add = [&](const std::vector<sim::RenderParticle>& particles) {
-    return error_of([&] { writer.add_frame(0, particles); });
+    return error_of([&] { writer.add_frame(0, particles, {}); });
   };
   EXPECT_THAT(add({{NAN, 0, 0, 0.05F}}), HasSubstr("not finite"));
   EXPECT_THAT(add({{0, 0, 0, 0.07F}}), HasSubstr("none of the bake's levels"));
@@ -223,7 +289,7 @@ TEST(BakeFile, UnfinishedWriterLeavesNothing) {
   const Folder folder;
   {
     sim::BakeWriter writer(folder / "a.bake", bake_test::header(2));
-    writer.add_frame(0, bake_test::particles(0));
+    writer.add_frame(0, bake_test::particles(0), {});
     EXPECT_THROW(writer.finish(), std::logic_error);
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

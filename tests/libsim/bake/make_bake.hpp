@@ -57,6 +57,17 @@ inline std::vector<sim::RenderParticle> particles(std::int64_t frame, int nx = 1
   return out;
 }
 
+/// Three frames in turn: one that nothing is known of, one whose tau was given, one with everything.
+inline sim::FrameAccount account(std::int64_t frame) {
+  sim::FrameAccount out;
+  if (frame % 3 == 0) return out;
+  const auto count = static_cast<std::uint64_t>(frame);
+  out.guards = sim::GuardCounts{count, 2 * count, 3, 4, 5, 6, 7, 8 * count};
+  out.temporal = sim::TemporalReport{-0.5 * static_cast<double>(frame), {}, 0.625, 900 - frame};
+  if (frame % 3 == 2) out.temporal->rate = sim::FrameRate{17.25, 3.5};
+  return out;
+}
+
 /// A still gradient with a moving noisy disc.
 inline sim::Bytes picture(std::int64_t frame, int width, int height) {
   sim::Bytes out;
@@ -78,7 +89,7 @@ inline sim::Bytes picture(std::int64_t frame, int width, int height) {
 inline void write(const std::filesystem::path& path, std::int64_t frames, int width = 0, int height = 0) {
   sim::BakeWriter writer(path, header(frames, width, height), true);
   for (std::int64_t i = 0; i < frames; ++i) {
-    writer.add_frame(static_cast<double>(i) / 60, particles(i));
+    writer.add_frame(static_cast<double>(i) / 60, particles(i), account(i));
     if (width) writer.add_picture(picture(i, width, height));
   }
   writer.finish();

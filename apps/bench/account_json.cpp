@@ -1,0 +1,27 @@
+#include "apps/bench/account_json.hpp"
+
+namespace apps {
+
+nlohmann::json account_json(std::int64_t frame, const study::FrameFacts& facts) {
+  nlohmann::json out{{"frame", frame}, {"particles", facts.particles_by_level}};
+  const auto t = facts.tolerance.value_or(study::FrameTolerance{});
+  const bool known = facts.tolerance.has_value();
+  out["active_fraction"] = known ? nlohmann::json(t.active_fraction) : nlohmann::json();
+  out["tau_fps"] = or_null(t.tau_fps);
+  out["beta"] = known ? nlohmann::json(t.beta) : nlohmann::json();
+  out["mu_fps"] = or_null(t.mu_fps);
+  out["delta_fps"] = or_null(t.delta_fps);
+  if (const auto& met = facts.guards) {
+    out["guards"] = {{"speed_limited", met->speed_limited},
+                     {"coincident_pairs", met->coincident_pairs},
+                     {"not_finite", met->not_finite},
+                     {"neighbours_dropped", met->neighbours_dropped},
+                     {"wall_projected", met->wall_projected},
+                     {"nozzle_waited", met->nozzle_waited},
+                     {"saliency_not_finite", met->saliency_not_finite},
+                     {"gaze_lost", met->gaze_lost}};
+  }
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,88 @@
+#include "libsim/solver/account_keeper.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Index `level` counts one level between its two borders, which halving finds; the first also takes the
+/// rest.
+struct Tally {
+  const Guards* guards;
+  const int* longest_list;
+  const int* active_ranks;  ///< inclusive sums of who was solved; nullptr when everyone was
+  const std::uint8_t* level_of;
+  int n;
+  FrameTally* out;
+
+  SIM_FN void operator()(int level) const {
+    if (level >= LevelSupports::most) return;  // never: for compilers that look for it
+    out->by_level[level] = first_of(level + 1) - first_of(level);
+    if (level > 0) return;
+    out->guards = *guards;
+    out->longest_list = longest_list ? *longest_list : 0;
+    out->active = active_ranks && n > 0 ? active_ranks[n - 1] : n;
+  }
+
+  /// The first particle of this level or a coarser one.
+  SIM_FN int first_of(int level) const {
+    if (level == 0) return 0;
+    if (level == LevelSupports::most) return n;
+    int first = 0, last = n;
+    while (first < last) {
+      const int middle = first + (last - first) / 2;
+      if (level_of[middle] < level) {
+        first = middle + 1;
+      } else {
+        last = middle;
+      }
+    }
+    return first;
+  }
+};
+
+GuardCounts difference(const GuardCounts& now, const GuardCounts& before) {
+  return {now.speed_limited - before.speed_limited,
+          now.coincident_pairs - before.coincident_pairs,
+          now.not_finite - before.not_finite,
+          now.neighbours_dropped - before.neighbours_dropped,
+          now.wall_projected - before.wall_projected,
+          now.nozzle_waited - before.nozzle_waited,
+          now.saliency_not_finite - before.saliency_not_finite,
+          now.gaze_lost - before.gaze_lost};
+}
+
+}  // namespace
+
+GuardCounts guard_counts(const Guards& met, const FluidState& state) {
+  return {
+      met.speed_limited,  met.coincident_pairs, met.not_finite,          met.neighbours_dropped,
+      met.wall_projected, state.jets.waited,    met.saliency_not_finite, state.saliency.input.gaze_lost()};
+}
+
+void AccountKeeper::begin(const std::vector<ParticleState>& start, int finest_level, int coarsest_level) {
+  finest_level_ = finest_level;
+  coarsest_level_ = coarsest_level;
+  account_ = {};
+  account_.particles_by_level.assign(static_cast<std::size_t>(coarsest_level - finest_level + 1), 0);
+  for (const ParticleState& particle : start)
+    ++account_.particles_by_level[static_cast<std::size_t>(particle.level - finest_level)];
+}
+
+FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalReport> went_by) {
+  const auto& a = state.activation;
+  const bool left_out = a.columns_set && !a.all_marked;
+  tally_.resize(1);
+  for_each("frame tally", LevelSupports::most,
+           Tally{state.guards.data(), state.neighbours.longest(), left_out ? a.ranks.data() : nullptr,
+                 state.particles.level.data(), state.particles.size(), tally_.data()});
+  const FrameTally tally = tally_.to_host()[0];
+  account_.particles_by_level.assign(tally.by_level + finest_level_, tally.by_level + coarsest_level_ + 1);
+  if (went_by) went_by->active = tally.active;
+  account_.temporal = went_by;
+  const GuardCounts met = guard_counts(tally.guards, state);
+  account_.guards = difference(met, met_);
+  met_ = met;
+  return tally;
+}
+
+}  // namespace sim::SIM_BACKEND

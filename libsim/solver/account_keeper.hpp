@@ -1,0 +1,36 @@
+#pragma once
+/// The account of each frame (sim::FrameAccount): what the host knows already, and the few numbers that stand
+/// in the back end's memory, brought over in one copy.
+
+#include "libsim/stages/fluid_state.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// What is brought over.
+struct FrameTally {
+  Guards guards;                      ///< since the run began
+  int longest_list;                   ///< neighbours, of the last substep
+  int active;                         ///< particles that the frame solved
+  int by_level[LevelSupports::most];  ///< particles
+};
+
+/// What the guards met since the run began.
+GuardCounts guard_counts(const Guards& met, const FluidState& state);
+
+class AccountKeeper {
+ public:
+  /// Who is there before the first frame; levels that particles can have: finest .. coarsest.
+  void begin(const std::vector<ParticleState>& start, int finest_level, int coarsest_level);
+  /// After run_frame, which leaves the particles in the grid's order: level by level. `went_by`: temporal
+  /// acceleration, whose number of active particles is filled in; none where the method has none.
+  FrameTally take(const FluidState& state, std::optional<TemporalReport> went_by);
+  const FrameAccount& account() const { return account_; }
+
+ private:
+  int finest_level_ = 0, coarsest_level_ = 0;
+  FrameAccount account_;
+  GuardCounts met_;  ///< up to the last frame
+  Array<FrameTally> tally_;
+};
+
+}  // namespace sim::SIM_BACKEND
