@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "apps/common/option_checks.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -62,8 +63,8 @@ void add_table_options(CLI::App& command, TableOptions& options) {
   command.add_option("--tau", options.tau, "live, fixed:X (frames/s) or table2 (the paper's)")
       ->capture_default_str();
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
-  command.add_option("--csv", options.csv, "File for the rows");
-  command.add_option("--markdown", options.markdown, "File for the same as a table");
+  command.add_option("--csv", options.csv, "File for the rows")->check(output_file());
+  command.add_option("--markdown", options.markdown, "File for the same as a table")->check(output_file());
   command.add_option("--svg", options.svg_folder, "Folder for figures; made when missing");
 }
 

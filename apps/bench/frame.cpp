@@ -285,7 +285,7 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--views", options->views, "1, or 2 eyes side by side")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
-  command->add_option("--json", options->json, "Also write the figures to this file");
+  command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
   command->callback([options] {
     const auto result = run_frames(*options);
     print_table(result);

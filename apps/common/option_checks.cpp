@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -55,6 +56,14 @@ CLI::Validator text_up_to(std::size_t most_bytes) {
   const auto check = [most_bytes](std::string& text) -> std::string {
     if (text.size() <= most_bytes) return "";
     return "\"" + base::shortened(text) + "\" is longer than " + std::to_string(most_bytes) + " bytes";
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator output_file() {
+  const auto check = [](std::string& path) -> std::string {
+    base::check_output(path);
+    return "";
   };
   return CLI::Validator(check, "");
 }

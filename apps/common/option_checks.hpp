@@ -12,6 +12,10 @@ CLI::Validator number_in(double low, double high);
 /// Accepts texts of at most so many bytes.
 CLI::Validator text_up_to(std::size_t most_bytes);
 
+/// Throws base::Error unless a file can be written there (base::check_output): before an hour of work, not
+/// after it.
+CLI::Validator output_file();
+
 /// Throws CLI::ValidationError, which names the first argument that is not a plain line of UTF-8
 /// (base::is_plain_line): arguments come to stand in databases, JSON and messages.
 void check_arguments(int argc, const char* const* argv);

@@ -61,6 +61,21 @@ int run_commands(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
+std::string error_text(const std::exception& error, const std::string& command) {
+  if (dynamic_cast<const base::Error*>(&error)) return error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    return base::Error(command, "out of memory", "use a smaller --n-star or free memory").what();
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    const std::string place = file->path1().empty() ? command : file->path1().string();
+    return base::Error(place, "unexpected: " + file->code().message(),
+                       "check that path, its permissions and the room on the disk")
+        .what();
+  }
+  return base::Error(command, std::string("unexpected: ") + error.what(),
+                     "give the command again; if it ends like this again, report the whole command line")
+      .what();
+}
+
 int run_program(CLI::App& app, int argc, char** argv) {
   if (!open_standard_streams()) return 1;
   wait_passively(argv);
@@ -77,11 +92,11 @@ int run_program(CLI::App& app, int argc, char** argv) {
   try {
     const int status = run_commands(app, argc, argv);
     return finish_output() ? status : std::max(status, 1);
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "%s: error: out of memory\n  mend: use a smaller --n-star or free memory\n",
-                 app.get_name().c_str());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: error: %s\n", app.get_name().c_str(), for_terminal(error.what()).c_str());
+    const auto chosen = app.get_subcommands();
+    const std::string command = app.get_name() + (chosen.empty() ? "" : " " + chosen.front()->get_name());
+    std::fprintf(stderr, "%s: error: %s\n", app.get_name().c_str(),
+                 for_terminal(error_text(error, command)).c_str());
   }
   return 1;
 }

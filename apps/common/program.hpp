@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <string>
 
@@ -16,6 +17,10 @@ namespace apps {
 /// stream is closed, and unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, it starts the program over, once,
 /// with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
+
+/// What an error says on stderr, with place and mend also where it comes from another library, which tells
+/// neither. command: as typed, "vip-stats report".
+std::string error_text(const std::exception& error, const std::string& command);
 
 /// Makes a folder and its parents unless it is there; base::Error when that fails.
 void make_folder(const std::filesystem::path& folder);

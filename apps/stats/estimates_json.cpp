@@ -152,13 +152,22 @@ Json bands_json(const PilotFit& fit) {
 Json lack_of_fit_json(const stats::DirectEstimate& estimate) {
   if (!estimate.lack_of_fit) return {{"refused", estimate.lack_of_fit.reason()}};
   const auto& test = *estimate.lack_of_fit;
-  const bool usable = test.p >= 0.05;
-  char text[160];
-  std::snprintf(text, sizeof text, "F(%d, %d) = %.2f, p %s %.3f: the straight form (m = q = 0) %s be used",
-                test.df1, test.df2, test.f, test.p < 0.001 ? "<" : "=", std::max(test.p, 0.001),
-                usable ? "may" : "must not");
+  const bool straight_fits = test.p >= 0.05;
+  char statistic[80];
+  std::snprintf(statistic, sizeof statistic, "F(%d, %d) = %.2f, p %s %.3f", test.df1, test.df2, test.f,
+                test.p < 0.001 ? "<" : "=", std::max(test.p, 0.001));
+  const std::string text =
+      straight_fits
+          ? std::string(statistic) +
+                ": the scores do not depart from an even rise with the logarithm of the mean frame rate and "
+                "with the deviation; the estimates allow for a departure all the same"
+          : std::string(statistic) +
+                ": the scores do not rise evenly with the logarithm of the mean frame rate and with the "
+                "deviation, as where they level off towards an end of the scale; the estimates allow for "
+                "that "
+                "and stand, only those of the simpler straight form (m = q = 0) would be biased";
   Json json{{"m", test.m},     {"q", test.q}, {"f", test.f},  {"df1", test.df1},
-            {"df2", test.df2}, {"p", test.p}, {"text", text}, {"straight_may_be_used", usable}};
+            {"df2", test.df2}, {"p", test.p}, {"text", text}, {"straight_may_be_used", straight_fits}};
   Json straight{{"reason", estimate.straight_jackknife.reason()}};
   add_curve(straight, estimate.straight ? &estimate.straight->curve : nullptr);
   add_spread(straight, estimate.straight_jackknife);

@@ -2,14 +2,15 @@
 
 #include "apps/stats/estimates_json.hpp"
 #include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/tasks/json_parts.hpp"
 #include "stats/base/file.hpp"
 #include "stats/gsl_errors.hpp"
+#include "stats/inference/describe.hpp"
+#include "stats/mean_interval.hpp"
 
 namespace apps {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* estimator =
     "least squares of all ratings (a participant's mean of each setting): E[score] = level + k u + m u delta "
@@ -34,36 +35,50 @@ Json levels_json(const std::map<double, LevelFit>& estimates) {
   return list;
 }
 
-Json cells_json(const stats::ScoreGrid& grid) {
+/// One value for each participant, at each setting.
+Json cells_json(const PilotFit& fit) {
+  const auto& grid = fit.grid;
   Json cells = Json::array();
   for (std::size_t row = 0; row < grid.mu.size(); ++row) {
     for (std::size_t column = 0; column < grid.delta.size(); ++column) {
       const auto& node = grid.at(row, column);
       if (!node) continue;
+      const auto& scores = fit.scores[row * grid.delta.size() + column];
+      const auto about = stats::mean_interval(scores, fit.bootstrap.confidence);
+      const auto described = stats::describe(scores);
       cells.push_back({{"fps_mean", grid.mu[row]},
                        {"fps_sd", grid.delta[column]},
                        {"realised_mean", node->mu},
                        {"realised_sd", node->delta},
-                       {"score", node->score}});
+                       {"score", node->score},
+                       {"n", scores.size()},
+                       {"sd", described ? json_number(described->sd) : Json()},
+                       {"ci", scores.size() > 1 ? Json{about.low, about.high} : Json()}});
     }
   }
   return cells;
 }
 
-Json data_json(const PilotData& data) {
-  return {{"protocol", {{"name", data.protocol_name}, {"sha256", data.protocol_sha256}}},
+/// What was analysed, by verdict and grade of its showing, and what was not.
+Json data_json(const TaskData& data) {
+  std::map<std::string, int> verdicts, grades, rules;
+  for (const auto& one : data.showings) {
+    if (!one.analysed) continue;
+    ++verdicts[one.shown.verdict ? study::verdict_name(*one.shown.verdict) : "unjudged"];
+    ++grades[std::string(1, static_cast<char>(one.shown.grade))];
+  }
+  for (const auto& one : data.exclusions) rules[one.rule] += one.answers;
+  return {{"protocol", {{"name", data.protocol.name}, {"sha256", data.protocol.sha256}}},
           {"test_data", data.test_data},
-          {"simulated_participants", data.simulated_participants},
-          {"used", {{"by_verdict", data.used_by_verdict}, {"by_grade", data.used_by_grade}}},
+          {"simulated_participants", data.simulated.size()},
+          {"used", {{"by_verdict", verdicts}, {"by_grade", grades}}},
           {"excluded",
-           {{"by_verdict", data.excluded_by_verdict},
-            {"practice", data.practice},
-            {"repeat", data.repeat},
-            {"by_experimenter", data.excluded},
-            {"unanswered", data.unanswered},
-            {"test_data_beside_real", data.test_left_out},
-            {"simulated_beside_people", data.simulated_left_out},
-            {"without_timing", data.without_timing}}}};
+           {{"answers_by_rule", rules},
+            {"practice", data.flow.practice},
+            {"repeat", data.flow.repeat},
+            {"unanswered", data.flow.trials_planned - data.flow.trials_answered},
+            {"sessions_of_test_data", data.flow.test_left_out},
+            {"sessions_simulated", data.flow.simulated_left_out}}}};
 }
 
 void add_provenance(Json& json) {
@@ -98,8 +113,8 @@ Json fit_json(const PilotFit& fit) {
   json["estimator"] = estimator;
   json["interval"] = {{"method", interval_method}, {"confidence", fit.bootstrap.confidence}};
   json["bootstrap"] = {{"resamples", fit.bootstrap.resamples}, {"seed", fit.bootstrap.seed}};
-  json["scale_min"] = fit.data.scale_min;
-  json["scale_max"] = fit.data.scale_max;
+  json["scale_min"] = fit.data.question.scale_min;
+  json["scale_max"] = fit.data.question.scale_max;
   if (fit.ok()) json["relative_half_width"] = fit.relative_half_width();
   json["level5"] = direct_json(fit.harmonic.at(5.0).direct);
   json["estimators"] = estimators_json(fit);
@@ -109,7 +124,7 @@ Json fit_json(const PilotFit& fit) {
                    {"harmonic", levels_json(fit.harmonic)},
                    {"arithmetic", levels_json(fit.arithmetic)}};
   json.update(data_json(fit.data));
-  json["cells"] = cells_json(fit.grid);
+  json["cells"] = cells_json(fit);
   add_provenance(json);
   return json;
 }

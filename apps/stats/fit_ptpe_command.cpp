@@ -11,14 +11,15 @@
 #include <optional>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/calibration_history.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/estimates_json.hpp"
 #include "apps/stats/heat_map.hpp"
-#include "apps/stats/pilot_data.hpp"
 #include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/tasks/plan_file.hpp"
 #include "apps/stats/truth.hpp"
-#include "libstudy/store/ratings.hpp"
+#include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
@@ -28,11 +29,13 @@ namespace apps {
 namespace {
 
 struct FitCommand {
-  std::string database, out, json, svg, truth, exclude = "fail";
+  std::string database, out, json, svg, truth, plan;
+  std::optional<std::string> exclude;  ///< instead of the plan's rule for timing verdicts
+  std::optional<std::uint64_t> seed;   ///< instead of the plan's
   double level = 4;
   double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
   bool force = false;
-  PilotSelection selection;
+  TaskSelection selection{TaskKind::Pilot, {}, {}};
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
@@ -61,7 +64,7 @@ void print_contour(double level, const char* name, const stats::PilotEstimate& c
                  &contour.spread->b_ci);
 }
 
-/// The curve at the deviations shown, and whether the straight form would do.
+/// The curve at the deviations shown, and whether the scores rise evenly.
 void print_curve(const PilotFit& fit) {
   const auto& direct = fit.chosen().direct;
   if (!direct.jackknife) return;
@@ -73,7 +76,8 @@ void print_curve(const PilotFit& fit) {
   }
   std::printf("\n");
   const auto test = lack_of_fit_json(direct);
-  if (test.contains("text")) std::printf("  lack of fit: %s\n", test["text"].get<std::string>().c_str());
+  if (test.contains("text"))
+    std::printf("  shape of the scores: %s\n", test["text"].get<std::string>().c_str());
 }
 
 void print_fit(const PilotFit& fit) {
@@ -154,8 +158,8 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   const auto main = fit.main();
   append_calibration(command.out, text,
                      {{"database", std::filesystem::path(command.database).filename().string()},
-                      {"protocol", fit.data.protocol_name},
-                      {"protocol_sha256", fit.data.protocol_sha256},
+                      {"protocol", fit.data.protocol.name},
+                      {"protocol_sha256", fit.data.protocol.sha256},
                       {"estimator", "direct"},
                       {"level", fit.level},
                       {"a", main.fit->a},
@@ -163,9 +167,9 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
                       {"a_ci", main.spread->a_ci},
                       {"b_ci", main.spread->b_ci},
                       {"n_participants", fit.participants},
-                      {"n_simulated", fit.data.simulated_participants},
+                      {"n_simulated", fit.data.simulated.size()},
                       {"test_data", fit.data.test_data},
-                      {"exclude", command.exclude},
+                      {"exclude", timing_rule_name(command.selection.plan.exclusions.timing)},
                       {"relative_half_width", fit.relative_half_width()},
                       {"max_relative_half_width", command.max_width},
                       {"forced", command.force && command.too_wide(fit)},
@@ -177,10 +181,11 @@ void fit_ptpe(FitCommand& command) {
   check_outputs(command);
   std::optional<stats::PtpeModel> truth;
   if (!command.truth.empty()) truth = parse_truth(command.truth);
-  command.selection.exclude = command.exclude == "none"       ? ExcludedVerdicts::None
-                              : command.exclude == "degraded" ? ExcludedVerdicts::Degraded
-                                                              : ExcludedVerdicts::Fail;
-  auto data = select_pilot(study::read_ratings(command.database), command.selection);
+  if (!command.plan.empty()) command.selection.plan = read_plan(command.plan).plan;
+  command.bootstrap.seed = command.seed.value_or(command.selection.plan.seed);
+  command.bootstrap.confidence = command.selection.plan.confidence;
+  if (command.exclude) command.selection.plan.exclusions.timing = timing_rule_of(*command.exclude);
+  const auto data = select_task(study::read_tasks(command.database), command.selection);
   if (!data) {
     write_json(command, failed_fit_json(command.level, data.reason()));
     no_fit(command, data.reason());
@@ -203,28 +208,34 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
   fit->add_option("--out", command->out,
                   "File for the solver (TOML), written on success only; every one is kept in "
-                  "FILE.history.jsonl");
+                  "FILE.history.jsonl")
+      ->check(output_file());
   fit->add_option("--max-width", command->max_width,
                   "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   fit->add_flag("--force", command->force, "Write the solver's file although the curve is wider");
   fit->add_option("--json", command->json,
-                  "File for every number of the fit, written whenever the database can be read");
+                  "File for every number of the fit, written whenever the database can be read")
+      ->check(output_file());
   fit->add_option("--svg", command->svg,
-                  "File for the heat map with contours and curve, written on success only");
+                  "File for the heat map with contours and curve, written on success only")
+      ->check(output_file());
   fit->add_option(
       "--truth", command->truth,
       "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
   fit->add_option("--protocol", command->selection.protocol, "First digits of the protocol's SHA-256");
   fit->add_option("--question", command->selection.question, "Id of the question, where several are asked");
-  fit->add_option("--exclude", command->exclude, "Trials left out by timing verdict")
-      ->check(CLI::IsMember({"none", "fail", "degraded"}))
-      ->capture_default_str();
+  fit->add_option(
+      "--plan", command->plan,
+      "Analysis plan (TOML) with the rules of exclusion; without: the defaults, as for the tasks");
+  fit->add_option("--exclude", command->exclude,
+                  "Trials left out by timing verdict, instead of what the plan says (default: fail)")
+      ->check(CLI::IsMember({"none", "fail", "degraded"}));
   fit->add_option("--resamples", command->bootstrap.resamples, "Bootstrap resamples of the participants")
       ->check(CLI::Range(100, 1000000))
       ->capture_default_str();
-  fit->add_option("--seed", command->bootstrap.seed, "Seed of the resamples")->capture_default_str();
+  fit->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's (default: 1)");
   fit->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     if (!std::isfinite(command->level)) throw CLI::ValidationError("--level", "is not a number");

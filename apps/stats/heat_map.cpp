@@ -252,14 +252,14 @@ constexpr const char* no_score_pattern =
 }  // namespace
 
 HeatMap heat_map_of(const PilotFit& fit) {
-  const std::string data = fit.data.test_data                    ? " (test data)"
-                           : fit.data.simulated_participants > 0 ? " (simulated)"
-                                                                 : "";
+  const std::string data = fit.data.test_data            ? " (test data)"
+                           : !fit.data.simulated.empty() ? " (simulated)"
+                                                         : "";
   HeatMap map;
   map.title = "PTPE pilot: mean scores of " + std::to_string(fit.participants) + " participants" + data;
   map.grid = fit.grid;
-  map.scale_min = fit.data.scale_min;
-  map.scale_max = fit.data.scale_max;
+  map.scale_min = fit.data.question.scale_min;
+  map.scale_max = fit.data.question.scale_max;
   for (const auto& [level, estimate] : fit.harmonic) map.levels.push_back(level);
   const auto main = fit.main();
   map.a = main.fit->a;

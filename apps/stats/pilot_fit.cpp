@@ -1,5 +1,6 @@
 #include "apps/stats/pilot_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -46,29 +47,48 @@ void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour) {
   }
 }
 
-void flag_data(std::vector<FitFlag>& flags, const PilotData& data, const stats::PilotTable& table) {
+/// "3 answers left out: 1 by timing, 2 by straight lining".
+void flag_exclusions(std::vector<FitFlag>& flags, const TaskData& data) {
+  std::map<std::string, int> by_rule;
+  int all = 0;
+  for (const auto& one : data.exclusions) {
+    by_rule[one.rule] += one.answers;
+    all += one.answers;
+  }
+  if (all == 0) return;
+  std::string rules;
+  for (const auto& [rule, n] : by_rule)
+    if (n > 0) rules += (rules.empty() ? "" : ", ") + rule + " " + std::to_string(n);
+  flags.push_back({"excluded_answers", counted(all, "answer") + " left out by rule or by hand: " + rules});
+}
+
+void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::PilotTable& table) {
   if (data.test_data) flags.push_back({"test_data", "these are test data, not a study"});
-  if (data.simulated_participants > 0) {
-    flags.push_back({"simulated", counted(data.simulated_participants, "participant") + " simulated"});
+  if (!data.simulated.empty()) {
+    flags.push_back(
+        {"simulated", counted(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
   }
-  if (data.test_left_out > 0) {
-    flags.push_back({"test_data_left_out", counted(data.test_left_out, "trial") + " of test data left out"});
+  for (const auto& protocol : data.set_aside)
+    flags.push_back({"protocol_left_out", "protocol " + protocol + " left out: it holds no real answers"});
+  if (data.flow.test_left_out > 0) {
+    flags.push_back(
+        {"test_data_left_out", counted(data.flow.test_left_out, "session") + " of test data left out"});
   }
-  if (data.simulated_left_out > 0) {
+  if (data.flow.simulated_left_out > 0) {
     flags.push_back({"simulated_left_out",
-                     counted(data.simulated_left_out, "trial") + " of simulated observers left out"});
+                     counted(data.flow.simulated_left_out, "session") + " of simulated observers left out"});
   }
   if (table.incomplete_participants() > 0) {
     flags.push_back(
         {"incomplete_participants", counted(table.incomplete_participants(), "participant") +
                                         " lack settings that others rated; means use what is there"});
   }
-  int excluded = 0;
-  for (const auto& [verdict, n] : data.excluded_by_verdict) excluded += n;
-  if (excluded > 0)
-    flags.push_back({"excluded_trials", counted(excluded, "trial") + " excluded by timing verdict"});
-  if (data.used_by_verdict.contains("degraded")) {
-    flags.push_back({"degraded_trials", counted(data.used_by_verdict.at("degraded"), "trial") +
+  flag_exclusions(flags, data);
+  const auto degraded = std::count_if(data.showings.begin(), data.showings.end(), [](const auto& one) {
+    return one.analysed && one.shown.verdict == study::Verdict::Degraded;
+  });
+  if (degraded > 0) {
+    flags.push_back({"degraded_trials", counted(static_cast<int>(degraded), "trial") +
                                             " with degraded timing enter at what was really shown"});
   }
 }
@@ -108,12 +128,11 @@ void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direc
 }
 
 /// What the solver's file cannot take is no usable fit.
-std::string unusable(const PilotFit& fit, const PilotData& data, const stats::PilotTable& table) {
+std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
   if (table.ratings() == 0) return "no answered trial is left to analyse";
-  if (!(fit.level > data.scale_min && fit.level < data.scale_max)) {
-    return "the level does not lie within the rating scale, " +
-           std::to_string(static_cast<int>(data.scale_min)) + " to " +
-           std::to_string(static_cast<int>(data.scale_max));
+  if (!(fit.level > data.question.scale_min && fit.level < data.question.scale_max)) {
+    return "the level does not lie within the rating scale, " + std::to_string(data.question.scale_min) +
+           " to " + std::to_string(data.question.scale_max);
   }
   if (table.all_equal()) return "all ratings are equal: there is no contour";
   const auto main = fit.main();
@@ -126,7 +145,7 @@ std::string unusable(const PilotFit& fit, const PilotData& data, const stats::Pi
   return "";
 }
 
-LevelFit fit_level(const PilotData& data, const stats::PilotTable& table, PilotMean mean, double level,
+LevelFit fit_level(const TaskData& data, const stats::PilotTable& table, PilotMean mean, double level,
                    const stats::BootstrapOptions& options) {
   LevelFit fit;
   fit.direct = stats::estimate_direct(table.observations(mean), level, options);
@@ -151,7 +170,7 @@ double PilotFit::relative_half_width() const {
   return chosen().direct.jackknife->largest_relative_half_width(deltas);
 }
 
-PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& bootstrap) {
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap) {
   const stats::PilotTable table(data.ratings);
   PilotFit fit;
   fit.level = level;
@@ -159,6 +178,7 @@ PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& 
   fit.participants = table.participants();
   fit.settings = table.settings();
   fit.grid = table.grid(PilotMean::Harmonic);
+  for (std::size_t cell = 0; cell < fit.grid.nodes.size(); ++cell) fit.scores.push_back(table.scores(cell));
   fit.deltas = fit.grid.delta;
   const std::set<double> levels{4.0, 5.0, level};
   Progress progress("resampling participants",
@@ -187,10 +207,10 @@ sim::PtpeFile ptpe_file(const PilotFit& fit) {
   file.a_ci = main.spread->a_ci;
   file.b_ci = main.spread->b_ci;
   file.n_participants = fit.participants;
-  file.n_simulated = fit.data.simulated_participants;
+  file.n_simulated = static_cast<int>(fit.data.simulated.size());
   file.test_data = fit.data.test_data;
   file.fps_mean = "harmonic";
-  file.protocol_sha256 = fit.data.protocol_sha256;
+  file.protocol_sha256 = fit.data.protocol.sha256;
   file.date_utc = base::utc_now();
   return file;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// vip-stats fit-ptpe: everything between the ratings and the files.
+/// The fit of a pilot: everything between its ratings and the files.
 
 #include <array>
 #include <map>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/pilot_data.hpp"
+#include "apps/stats/tasks/task_data.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"
@@ -44,12 +44,13 @@ struct MainEstimate {
 /// The estimates at the level wished and at 4.0 and 5.0, with the harmonic and with the arithmetic realised
 /// mean. The ordinal one is made with the harmonic mean only.
 struct PilotFit {
-  PilotData data;
+  TaskData data;
   double level = 4;
   stats::BootstrapOptions bootstrap;
   int participants = 0;
   std::size_t settings = 0;
   stats::ScoreGrid grid;                            ///< harmonic
+  std::vector<std::vector<double>> scores;          ///< of the grid's nodes: a mean for each participant
   std::vector<double> deltas;                       ///< nominal, ascending
   std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
   std::vector<FitFlag> flags;
@@ -65,7 +66,7 @@ struct PilotFit {
 };
 
 /// `level` is finite; outside the rating scale there is no fit.
-PilotFit fit_pilot(PilotData data, double level, const stats::BootstrapOptions& bootstrap);
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap);
 
 /// The same for a database without usable data: only the reason is known.
 nlohmann::ordered_json failed_fit_json(double level, const std::string& reason);

@@ -1,25 +1,24 @@
 /// vip-stats report: a study's results as one page, with the same numbers as JSON and CSV.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/pilot_data.hpp"
-#include "apps/stats/pilot_fit.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "apps/stats/tasks/sickness_json.hpp"
 #include "libstudy/store/export_register.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
+#include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -43,26 +42,8 @@ void check_outputs(const ReportCommand& command) {
   }
 }
 
-/// Ratings under protocols that set the frame rate itself; those that show methods are tasks.
-std::vector<study::RatingRow> pilot_ratings(const std::filesystem::path& database) {
-  std::set<std::string> tasks;
-  for (const auto& protocol : study::read_tasks(database).protocols) tasks.insert(protocol.sha256);
-  auto rows = study::read_ratings(database);
-  std::erase_if(rows, [&](const auto& row) { return tasks.contains(row.protocol_sha256); });
-  return rows;
-}
-
-/// "pilot" of the results; none without a pilot in the database.
-std::optional<Json> pilot_json(const std::filesystem::path& database) {
-  const auto rows = pilot_ratings(database);
-  if (rows.empty()) return {};
-  constexpr double level = 4;
-  auto data = select_pilot(rows, {});
-  return data ? fit_json(fit_pilot(*data, level, {})) : failed_fit_json(level, data.reason());
-}
-
 Json document(const ReportCommand& command) {
-  ResultsRequest request{command.database, {TaskKind::Task1, TaskKind::Task2}, "", {}};
+  ResultsRequest request{command.database, {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", {}};
   std::optional<report::Bundle> bundle;
   if (!command.bundle.empty()) {
     bundle = report::read_bundle(command.bundle);
@@ -70,14 +51,14 @@ Json document(const ReportCommand& command) {
   } else if (!command.plan.empty()) {
     request.plan = read_plan(command.plan);
   }
-  Results results = study_results(request);
+  const auto study = study::read_tasks(command.database);
+  Results results = make_results(study, request);
   // A task that the study never had stays absent; one without results says why.
-  for (const auto& protocol : study::read_tasks(command.database).protocols) {
-    for (const auto& missing : results.missing)
-      if ((missing.task == TaskKind::Task2) == protocol.pairs)
-        results.json[task_name(missing.task)] = {{"refused", missing.reason}};
+  for (const auto& missing : results.missing) {
+    const bool planned = std::any_of(study.protocols.begin(), study.protocols.end(),
+                                     [&](const auto& one) { return kind_of(one) == missing.task; });
+    if (planned) results.json[task_name(missing.task)] = json_refused(missing.reason);
   }
-  if (auto pilot = pilot_json(command.database)) results.json["pilot"] = *pilot;
   Json sickness = sickness_json(study::read_sickness(command.database), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
   if (bundle)
@@ -93,14 +74,19 @@ void write_report(const ReportCommand& command) {
   if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
     throw base::Error(command.database, "holds no answers of a pilot, of Task 1 or of Task 2",
                       "collect answers first; nothing was written");
-  const std::string page = report::results_page(json);
+  const std::string page = command.html.empty() ? "" : report::results_page(json);
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
     files.write("vip-stats report", path, bytes);
   };
-  if (!command.csv.empty()) write_csv_folder(json, command.csv, write);
+  if (!command.csv.empty()) {
+    files.make_folder(command.csv);
+    write_csv_folder(json, command.csv, write);
+  }
   if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
-  write(command.html, page);
-  std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
+  if (!command.html.empty()) {
+    write(command.html, page);
+    std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
+  }
   if (json.contains("preregistration")) {
     const Json& check = json["preregistration"];
     std::printf("%s\n", check["summary"].get<std::string>().c_str());
@@ -116,8 +102,9 @@ void add_report_command(CLI::App& app) {
   auto* sub = app.add_subcommand("report", "One page with every table, figure, test and decision of a study");
   auto* positional = sub->add_option("database", command->database, "The study's database");
   sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
-  sub->add_option("--html", command->html, "File for the page")->required();
-  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)");
+  sub->add_option("--html", command->html, "File for the page")->check(output_file());
+  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
+      ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
   auto* plan =
       sub->add_option("--plan", command->plan,
@@ -127,10 +114,14 @@ void add_report_command(CLI::App& app) {
       ->excludes(plan);
   sub->footer(
       "All of it is the lab's own: it is made of everybody's data, also of those who refused to share it.\n"
-      "The files hold values of single participants, so they are registered in the database, which must be\n"
-      "writable for that: when one of them withdraws, the files are deleted, to be made again.");
+      "The files hold values of single participants, so only their owner may read them (0600), and they are\n"
+      "registered in the database, which must be writable for that: when one of them withdraws, the files "
+      "are\n"
+      "deleted, to be made again.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    if (command->html.empty() && command->json.empty() && command->csv.empty())
+      throw CLI::RequiredError("--html, --json or --csv");
     write_report(*command);
   });
 }

@@ -102,7 +102,7 @@ void add_check_command(CLI::App& app) {
   command->add_option("--backend", options->measuring.backend, "Computes the fluid")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
-  command->add_option("--json", options->json, "File for every number of the report");
+  command->add_option("--json", options->json, "File for every number of the report")->check(output_file());
   command->callback([options] { check_protocol(*options); });
 }
 

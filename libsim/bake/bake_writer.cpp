@@ -1,7 +1,5 @@
-#include <unistd.h>
 #include <xxhash.h>
 
-#include <cerrno>
 #include <cstdio>
 
 #include "libsim/bake/bake_file.hpp"
@@ -32,6 +30,7 @@ struct BakeWriter::State {
 
   void open(bool overwrite) {
     check_target(path, overwrite);
+    base::remove_stale_drafts(path);
     file.emplace(path);
     content = XXH3_createState();
     if (!content) throw std::bad_alloc();
@@ -87,12 +86,7 @@ void BakeWriter::check_target(const fs::path& path, bool overwrite) {
   if (!overwrite && fs::exists(fs::symlink_status(path, ignored))) {
     throw base::Error(path.string(), "exists already", "name another file, or overwrite it with --force");
   }
-  if (fs::is_directory(path, ignored)) throw base::Error(path.string(), "is a folder", "name a file");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw base::Error(path.string(), std::string("cannot be created: ") + std::strerror(errno),
-                      "write to a folder that exists and that you may write to");
-  }
+  base::check_output(path);
 }
 
 BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool overwrite)

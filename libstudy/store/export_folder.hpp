@@ -13,6 +13,7 @@
 #include "libstudy/store/export_register.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/sqlite.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
@@ -22,8 +23,8 @@ struct ExportedFile {
   std::int64_t rows = 0;
 };
 
-/// Who may read an export: the owner alone (folder 0700, files 0600), or whoever the umask lets.
-enum class Readers { Owner, AsUmask };
+/// Who may read an export; the folders of Readers::Owner are 0700.
+using base::Readers;
 
 /// An export that others may read, and whom it leaves out.
 struct PublicExport {

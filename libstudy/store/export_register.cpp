@@ -1,34 +1,32 @@
 #include "libstudy/store/export_register.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <vector>
 
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/export_rows.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
 namespace fs = std::filesystem;
+using export_rows::strike_out;
+using export_rows::this_host;
 using sqlite::Connection;
 using sqlite::Open;
 using sqlite::Statement;
 using sqlite::Transaction;
 
 namespace {
-
-constexpr std::size_t largest_file_bytes = std::size_t{1} << 32;
-
-/// Name of this computer; empty where it has none.
-std::string this_host() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
 
 fs::path without_links(const fs::path& path) {
   fs::path target = fs::absolute(path);
@@ -75,85 +73,17 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
   return id;
 }
 
-void strike_out(Connection& database, std::int64_t id) {
+}  // namespace
+
+std::string export_rows::this_host() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+void export_rows::strike_out(Connection& database, std::int64_t id) {
   Statement(database, "DELETE FROM export_person WHERE export_id = ?").bind(0, id).run();
   Statement(database, "DELETE FROM export WHERE export_id = ?").bind(0, id).run();
 }
-
-bool is_draft_name(const std::string& name, const std::string& target) {
-  if (!name.starts_with(target + ".tmp")) return false;
-  std::string rest = name.substr(target.size() + 4);
-  if (rest.ends_with(".old")) rest.resize(rest.size() - 4);
-  return !rest.empty() && rest.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
-/// What a kill left of it, and what another deletion had begun with.
-void remove_drafts(const fs::path& path) {
-  std::error_code none;
-  std::vector<fs::path> drafts;
-  for (const auto& entry : fs::directory_iterator(path.parent_path(), none))
-    if (is_draft_name(entry.path().filename().string(), path.filename().string()))
-      drafts.push_back(entry.path());
-  for (const fs::path& draft : drafts) fs::remove_all(draft);
-}
-
-/// Aside first: the place never holds a part of it, which nobody would recognise.
-void remove_whole(const fs::path& path) {
-  const fs::path aside = draft_of(path);
-  fs::rename(path, aside);
-  fs::remove_all(aside);
-}
-
-std::string sha256_of(const fs::path& path) {
-  const auto kind = fs::symlink_status(path).type();
-  if (kind == fs::file_type::directory) return sha256_of_names(path);
-  return kind == fs::file_type::regular ? base::sha256_hex(base::read_file(path, largest_file_bytes)) : "";
-}
-
-/// A row of `export` that holds somebody who withdrew.
-struct Leftover {
-  std::int64_t id = 0;
-  std::string kind, host, sha256;
-  fs::path path;
-  bool tackled = false;
-};
-
-std::vector<Leftover> leftovers(Connection& database) {
-  Statement row(database,
-                "SELECT export_id, kind, host, sha256, path, tackled FROM export e WHERE EXISTS "
-                "(SELECT 1 FROM export_person JOIN tombstone USING (person) WHERE export_id = e.export_id) "
-                "ORDER BY host, path");
-  std::vector<Leftover> all;
-  while (row.step())
-    all.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5) != 0});
-  return all;
-}
-
-void mark_tackled(Connection& database, const Leftover& one) {
-  Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind(0, one.id).run();
-}
-
-/// Why it is not deleted; empty: it is gone.
-std::string remove_leftover(Connection& database, const Leftover& one) {
-  if (one.host != this_host() && !one.host.empty()) {
-    return "is on the computer '" + one.host +
-           "'\n  mend: delete it there, with what was copied from it, or repeat the withdrawal there";
-  }
-  remove_drafts(one.path);
-  if (!fs::exists(fs::symlink_status(one.path))) {
-    const bool was_there = one.host.empty() || !one.sha256.empty();
-    if (one.tackled || !was_there) return "";
-    return "is no longer there\n  mend: where it was moved or copied to, delete it";
-  }
-  if (one.sha256.empty() && !one.host.empty()) return "";  // it was never put in place
-  if (one.sha256.empty() || sha256_of(one.path) != one.sha256)
-    return "is not as it was written: it was changed, or files were added\n  mend: delete it by hand";
-  mark_tackled(database, one);
-  remove_whole(one.path);
-  return "";
-}
-
-}  // namespace
 
 std::set<std::string> everybody(Connection& database) {
   std::set<std::string> people;
@@ -232,9 +162,30 @@ void RegisteredFiles::write(const std::string& kind, const fs::path& path, const
   std::set<std::string> people = everybody(*open_register(database_));
   people.insert(people_.begin(), people_.end());
   RegisteredExport record(database_, kind, path, people);
+  base::NewFile file(path, base::Readers::Owner);
+  file.write(bytes);
   record.will_be(base::sha256_hex(bytes));
-  base::write_file_atomically(path, bytes);
+  file.put_in_place();
   record.is_in_place();
+}
+
+// A kill between the two leaves an empty folder, which holds nobody.
+void RegisteredFiles::make_folder(const fs::path& folder) const {
+  const fs::path path = without_links(folder);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return;
+  make_folder(path.parent_path());
+  if (::mkdir(path.c_str(), 0700) != 0)
+    throw base::Error(path.string(), std::string("cannot be made a folder: ") + std::strerror(errno),
+                      "choose another folder");
+  const auto file = open_register(database_);
+  Statement(*file,
+            "INSERT OR IGNORE INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,'',?,0)")
+      .bind(0, export_rows::folder_kind)
+      .bind(1, path.string())
+      .bind(2, this_host())
+      .bind(3, base::utc_now())
+      .run();
 }
 
 std::string sha256_of_names(const fs::path& folder) {
@@ -248,33 +199,5 @@ std::string sha256_of_names(const fs::path& folder) {
 }
 
 fs::path draft_of(const fs::path& path) { return path.string() + ".tmp" + std::to_string(::getpid()); }
-
-bool holds_withdrawn(Connection& database) {
-  const auto all = leftovers(database);
-  return std::any_of(all.begin(), all.end(),
-                     [](const Leftover& one) { return one.host.empty() || one.host == this_host(); });
-}
-
-void delete_exports_of_withdrawn(Connection& database, CleanUp& done) {
-  for (const Leftover& one : leftovers(database)) {
-    std::string problem;
-    try {
-      const bool there = fs::exists(one.path);
-      problem = remove_leftover(database, one);
-      if (problem.empty() && there) done.cleaned.push_back(one.path);
-    } catch (const std::exception& error) {
-      problem = std::string("cannot be deleted: ") + error.what() + "\n  mend: delete it by hand";
-    }
-    Transaction transaction(database);
-    if (problem.empty()) {
-      strike_out(database, one.id);
-      ChorePlan(database).rewrite();
-    } else {
-      mark_tackled(database, one);
-      done.left.push_back("export " + one.path.string() + " (" + one.kind + ") " + problem);
-    }
-    transaction.commit();
-  }
-}
 
 }  // namespace study

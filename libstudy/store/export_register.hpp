@@ -51,6 +51,10 @@ class RegisteredExport {
 class RegisteredFiles {
  public:
   explicit RegisteredFiles(const std::filesystem::path& database);
+  /// Makes a missing folder for such files, 0700, with those above it. What is made here is removed by the
+  /// withdrawal that leaves it empty.
+  void make_folder(const std::filesystem::path& folder) const;
+  /// Puts a file in place, 0600 whatever the umask and whatever stood there.
   void write(const std::string& kind, const std::filesystem::path& path, const std::string& bytes) const;
 
  private:
@@ -68,8 +72,9 @@ std::filesystem::path draft_of(const std::filesystem::path& path);
 bool holds_withdrawn(sqlite::Connection& database);
 
 /// Deletes every registered export that holds somebody who withdrew, with the drafts that a kill left beside
-/// it. Named as left: what is on another computer, is not what was written there, or cannot be deleted; and
-/// once, what is no longer there, since it may have been moved.
+/// it, and then the folders that were made for such files and are empty. Named as left: what is on another
+/// computer, is not what was written there, or cannot be deleted; and once, what is no longer there, since it
+/// may have been moved.
 void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 
 }  // namespace study

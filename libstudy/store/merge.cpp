@@ -127,13 +127,18 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
 
   const auto target = open_database(into, Open::Create, read_schema_steps());
   carry_chores_over(*target, *result);
-  merging::add_exports(*target, *result);  // those of this very moment
   plan_chores(*result, residents_of(*target), names, content, merge);
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
   prepare_rewrite(*target, withdrawn);
   target->execute("PRAGMA secure_delete = ON");
-  target->copy_from(*result);
+  // Exports are registered beside whoever holds the lock of writers: also those of this very moment.
+  target->copy_from(*result, [&] {
+    Connection standing(into, Open::Read);
+    sqlite::Transaction transaction(*result);
+    merging::add_exports(standing, *result);
+    transaction.commit();
+  });
   lock.keep();
   merge.beside = clean_up_all(*target);
   return merge;

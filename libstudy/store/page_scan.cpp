@@ -1,17 +1,10 @@
 #include "libstudy/store/page_scan.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <map>
 #include <optional>
-#include <set>
 #include <string_view>
 
-#include "stats/base/error.hpp"
+#include "libstudy/store/page_file.hpp"
 
 // The format: https://www.sqlite.org/fileformat2.html
 namespace study::salvaging {
@@ -21,18 +14,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr std::size_t default_page_bytes = 4096, most_payload_bytes = std::size_t{1} << 30;
-constexpr std::size_t wal_header_bytes = 32, frame_header_bytes = 24, header_bytes = 100;
-
-std::uint64_t big_endian(std::string_view bytes) {
-  std::uint64_t value = 0;
-  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
-  return value;
-}
-
-std::uint32_t u32(std::string_view bytes, std::size_t at) {
-  return at + 4 <= bytes.size() ? static_cast<std::uint32_t>(big_endian(bytes.substr(at, 4))) : 0;
-}
+constexpr std::size_t most_payload_bytes = std::size_t{1} << 30;
 
 /// Reads numbers of one to nine bytes; none: behind the end.
 class Cursor {
@@ -61,143 +43,6 @@ class Cursor {
  private:
   std::string_view bytes_;
   std::size_t at_;
-};
-
-class File {
- public:
-  explicit File(const fs::path& path)
-      : path_(path), fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
-    if (fd_ < 0 && errno != ENOENT) fail();
-    const off_t end = fd_ < 0 ? 0 : ::lseek(fd_, 0, SEEK_END);
-    size = end > 0 ? static_cast<std::size_t>(end) : 0;
-  }
-  ~File() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  /// Shorter at the end. A sector that the disk cannot read is as good as zeros.
-  std::string read(std::size_t at, std::size_t count) const {
-    if (at >= size) return {};
-    std::string bytes(std::min(count, size - at), '\0');
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t n = ::pread(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0 && errno != EIO) fail();
-      if (n <= 0) break;
-      done += static_cast<std::size_t>(n);
-    }
-    return bytes;
-  }
-
-  std::size_t size = 0;
-
- private:
-  [[noreturn]] void fail() const {
-    throw base::Error(path_.string(), std::string("cannot be read: ") + std::strerror(errno),
-                      "check the path and its permissions");
-  }
-  fs::path path_;
-  int fd_;
-};
-
-std::optional<std::size_t> page_size(std::uint64_t bytes) {
-  if (bytes == 1) return 65536;
-  if (bytes < 512 || bytes > 65536 || !std::has_single_bit(bytes)) return {};
-  return bytes;
-}
-
-/// Which page stands where in a log, as of its last commit.
-class Log {
- public:
-  explicit Log(const fs::path& path) : file_(path) {
-    const std::string head = file_.read(0, wal_header_bytes);
-    if (head.size() < wal_header_bytes || (u32(head, 0) & ~1U) != 0x377f0682) return;
-    const auto bytes = page_size(u32(head, 8));
-    if (!bytes) return;
-    page_bytes = *bytes;
-    std::uint32_t first = 0, second = 0;
-    const bool big = (u32(head, 0) & 1U) != 0;
-    add(first, second, std::string_view(head).substr(0, 24), big);
-    std::map<std::uint32_t, std::size_t> open;
-    for (std::size_t at = wal_header_bytes; at + frame_header_bytes + page_bytes <= file_.size;
-         at += frame_header_bytes + page_bytes) {
-      const std::string frame = file_.read(at, frame_header_bytes + page_bytes);
-      if (frame.compare(8, 8, head, 16, 8) != 0) return;  // of an earlier round
-      add(first, second, std::string_view(frame).substr(0, 8), big);
-      add(first, second, std::string_view(frame).substr(frame_header_bytes), big);
-      if (u32(frame, 16) != first || u32(frame, 20) != second) return;
-      open[u32(frame, 0)] = at + frame_header_bytes;
-      if (u32(frame, 4) == 0) continue;
-      for (const auto& [page, place] : open) pages[page] = place;
-      open.clear();
-      page_count = u32(frame, 4);
-    }
-  }
-
-  std::string read(std::size_t at) const { return file_.read(at, page_bytes); }
-
-  std::size_t page_bytes = 0, page_count = 0;
-  std::map<std::uint32_t, std::size_t> pages;
-
- private:
-  static void add(std::uint32_t& first, std::uint32_t& second, std::string_view bytes, bool big) {
-    const auto word = [&](std::size_t at) {
-      const std::uint32_t value = u32(bytes, at);
-      return big ? value : __builtin_bswap32(value);
-    };
-    for (std::size_t at = 0; at + 8 <= bytes.size(); at += 8) {
-      first += word(at) + second;
-      second += word(at + 4) + first;
-    }
-  }
-  File file_;
-};
-
-/// The pages of a database, those in its log in place of the older ones.
-class Pages {
- public:
-  explicit Pages(const fs::path& path) : file_(path), log_(path.string() + "-wal") {
-    const std::string head = first_bytes();
-    const auto told =
-        head.starts_with("SQLite format 3") ? page_size(big_endian(head.substr(16, 2))) : std::nullopt;
-    if (told && head.size() > 20) reserved_ = static_cast<unsigned char>(head[20]);
-    page_bytes_ = log_.page_bytes ? log_.page_bytes : told.value_or(default_page_bytes);
-    count_ = std::max((file_.size + page_bytes_ - 1) / page_bytes_, log_.page_count);
-    if (told) find_free(u32(head, 32));
-  }
-
-  std::size_t count() const { return count_; }
-  std::size_t usable() const { return page_bytes_ - reserved_; }
-  bool is_free(std::size_t page) const { return free_.contains(page); }
-  /// Numbers count from 1.
-  std::string read(std::size_t page) const {
-    const auto logged = log_.pages.find(static_cast<std::uint32_t>(page));
-    return logged != log_.pages.end() ? log_.read(logged->second)
-                                      : file_.read((page - 1) * page_bytes_, page_bytes_);
-  }
-
- private:
-  std::string first_bytes() const {
-    const auto logged = log_.pages.find(1);
-    return logged != log_.pages.end() ? log_.read(logged->second).substr(0, header_bytes)
-                                      : file_.read(0, header_bytes);
-  }
-
-  void find_free(std::size_t trunk) {
-    while (trunk > 1 && trunk <= count_ && free_.insert(trunk).second) {
-      const std::string page = read(trunk);
-      const std::size_t leaves = std::min<std::size_t>(u32(page, 4), page.size() / 4);
-      for (std::size_t i = 0; i < leaves; ++i) free_.insert(u32(page, 8 + 4 * i));
-      trunk = u32(page, 0);
-    }
-  }
-
-  File file_;
-  Log log_;
-  std::size_t page_bytes_ = default_page_bytes, count_ = 0, reserved_ = 0;
-  std::set<std::size_t> free_;
 };
 
 /// The payload of a cell, with what of it stands on further pages.
@@ -289,7 +134,7 @@ bool fits(const Shape& shape, const Values& values) {
 void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes,
                const std::function<void(const Shape&, Values)>& take) {
   const std::string page = pages.read(number);
-  const std::size_t start = number == 1 ? header_bytes : 0;
+  const std::size_t start = number == 1 ? Pages::header_bytes : 0;
   if (page.size() < start + 8) return;
   const int type = page[start];
   const bool table = type == 0x0d, inner = type == 0x02;

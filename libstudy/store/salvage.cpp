@@ -6,11 +6,13 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/earlier_shapes.hpp"
 #include "libstudy/store/salvage_rows.hpp"
+#include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -62,6 +64,14 @@ void copy(const fs::path& from, const fs::path& to) {
   fs::copy_file(from, to, error);
   if (error)
     throw base::Error(from.string(), "cannot be copied: " + error.message(), "check the disk and its room");
+}
+
+/// Held on the damaged file while it is read, where it is there and may be written to: a program that goes on
+/// writing would have parts of two moments salvaged.
+std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(database, ignored) || ::access(database.c_str(), W_OK) != 0) return {};
+  return std::make_unique<WriterLock>(database);
 }
 
 /// A copy of the database as SQLite reads it; null: it is damaged, or none.
@@ -144,6 +154,7 @@ void check(Connection& made) {
 
 /// The file alone is put in place, and closing it says nothing of a log that could not be copied back.
 void leave_no_log(Connection& made) {
+  made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
   throw base::Error(made.path().string(), "its log cannot be copied back into it",
                     "free space, and do this again");
@@ -160,6 +171,7 @@ void put_in_place(const fs::path& made, const fs::path& into) {
 
 Salvage salvage(const fs::path& database, const fs::path& into) {
   refuse(into);
+  const auto lock = lock_out_writers(database);
   const JournalContent journal = read_journal(journal_beside(database));
   const Workplace workplace(into);
   const auto sound = open_sound(database, workplace / "copy.db");

@@ -32,7 +32,7 @@ struct Salvage {
 /// Writes `into`, of the newest schema, mode 0600, with a journal of its own: whole or not at all. `database`
 /// may be damaged, cut short, empty or gone; it, its log and its journal stay as they are. What was answered
 /// counts as the database has it, and as the journal has it where the database has nothing. base::Error:
-/// `into` exists, nothing was found, or the journal is of another study.
+/// `into` exists, another vip-study writes `database`, nothing was found, or the journal is of another study.
 Salvage salvage(const std::filesystem::path& database, const std::filesystem::path& into);
 
 }  // namespace study

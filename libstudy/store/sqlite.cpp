@@ -186,13 +186,15 @@ void Connection::check_integrity() {
     throw base::Error(path_.string(), "is damaged or cut short: " + found, salvage_mend(path_));
 }
 
-void Connection::copy_from(Connection& other) {
+void Connection::copy_from(Connection& other, const std::function<void()>& complete) {
   const std::int64_t page_bytes = integer("PRAGMA page_size");
   if (text("PRAGMA journal_mode") == "wal" && other.integer("PRAGMA page_size") != page_bytes)
     other.execute("PRAGMA page_size = " + std::to_string(page_bytes) + "; VACUUM");
-  sqlite3_backup* copy = sqlite3_backup_init(handle_, "main", other.handle_, "main");
-  const int code = copy ? sqlite3_backup_step(copy, -1) : sqlite3_errcode(handle_);
-  sqlite3_backup_finish(copy);
+  const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> copy(
+      sqlite3_backup_init(handle_, "main", other.handle_, "main"), sqlite3_backup_finish);
+  int code = copy ? sqlite3_backup_step(copy.get(), 0) : sqlite3_errcode(handle_);  // takes the lock
+  if (code == SQLITE_OK && complete) complete();
+  if (code == SQLITE_OK) code = sqlite3_backup_step(copy.get(), -1);
   if (code != SQLITE_DONE) fail(code, sqlite3_errstr(code), sqlite3_system_errno(handle_));
 }
 
@@ -209,6 +211,8 @@ std::string Connection::text(const std::string& sql) {
 std::int64_t Connection::last_row_id() const { return sqlite3_last_insert_rowid(handle_); }
 
 bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
+
+void Connection::unwatch() { watch_.reset(); }
 
 void Connection::watch() {
   integer("SELECT count(*) FROM sqlite_schema");  // the log is made by the first look into the file

@@ -76,14 +76,18 @@ class Connection {
   /// What stands in this connection is then saved as "<file>.rescued-<UTC time>.db", the log is taken away
   /// from beside the path, and that commit and all later ones are a base::Error.
   void watch();
+  /// Ends it. Before the log is given up: a log that could be given up by half cannot be watched.
+  void unwatch();
 
   /// Runs statements that give no rows.
   void execute(const std::string& sql);
   /// base::Error unless all pages, rows and indices are sound. Reads the whole file.
   void check_integrity();
   /// Takes over all that stands in another database, in one transaction; what stood here is gone. A log fixes
-  /// the size of pages: where it differs, `other` is written anew, and must be a temporary one.
-  void copy_from(Connection& other);
+  /// the size of pages: where it differs, `other` is written anew, and must be a temporary one. `complete` is
+  /// called once nobody else can write here any more, and may change `other`; it reads what stood here
+  /// through another connection.
+  void copy_from(Connection& other, const std::function<void()>& complete = {});
   /// First column of the first row; 0 when there is no row.
   std::int64_t integer(const std::string& sql);
   std::string text(const std::string& sql);

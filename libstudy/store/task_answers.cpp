@@ -6,6 +6,7 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
+#include "libstudy/store/stored_protocol.hpp"
 
 namespace study {
 
@@ -16,7 +17,8 @@ namespace {
 
 constexpr const char* sessions_sql =
     "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
-    "display FROM session WHERE protocol_id = ? ORDER BY participant, visit";
+    "display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
+    "WHERE u.session_id = session.session_id) FROM session WHERE protocol_id = ? ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
     "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, w.attempt "
@@ -69,7 +71,8 @@ class Reader {
                           session_.text(7),
                           session_.text(8),
                           {},
-                          {}};
+                          {},
+                          session_.is_null(9) ? "" : session_.text(9)};
       session.trials = trials(session_.integer(0));
       session.catches = catches(session_.integer(0));
       out.push_back(std::move(session));
@@ -146,11 +149,15 @@ class Reader {
     return {};
   }
 
+  static bool same_stimulus(const TaskShowing& a, const TaskShowing& b) {
+    return a.what == b.what && a.nominal.mean == b.nominal.mean && a.nominal.sd == b.nominal.sd;
+  }
+
   static std::optional<int> original(const std::vector<TaskTrial>& before, const TaskTrial& repeat) {
     for (const TaskTrial& trial : before) {
       const bool same_second = trial.second.has_value() == repeat.second.has_value() &&
-                               (!trial.second || trial.second->what == repeat.second->what);
-      if (trial.kind == "stimulus" && trial.first.what == repeat.first.what && same_second)
+                               (!trial.second || same_stimulus(*trial.second, *repeat.second));
+      if (trial.kind == "stimulus" && same_stimulus(trial.first, repeat.first) && same_second)
         return trial.position;
     }
     return {};
@@ -197,15 +204,9 @@ TaskStudy read_tasks(const std::filesystem::path& path) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   TaskStudy study;
   study.withdrawn = static_cast<int>(database->integer("SELECT count(*) FROM tombstone"));
-  // A protocol that shows several methods; a database of the first version knew none.
-  Statement row(*database,
-                "SELECT p.protocol_id, p.name, p.text, p.trial_seconds FROM protocol p WHERE "
-                "(SELECT count(DISTINCT c.method) FROM cell c WHERE c.protocol_id = p.protocol_id) > 1 "
-                "ORDER BY p.protocol_id");
+  Statement row(*database, "SELECT protocol_id FROM protocol ORDER BY protocol_id");
   while (row.step()) {
-    Protocol protocol =
-        parse_protocol(row.text(2), path.string() + ", protocol " + row.text(1), ProtocolUse::Stored);
-    if (!row.is_null(3)) override_trial_seconds(protocol, row.real(3));
+    const Protocol protocol = stored_protocol(*database, row.integer(0), path.string());
     TaskProtocol out = describe(protocol);
     out.sessions = Reader(*database, row.integer(0), protocol).sessions();
     study.protocols.push_back(std::move(out));

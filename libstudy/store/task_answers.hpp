@@ -1,6 +1,6 @@
 #pragma once
-/// The answers of Task 1 (single showings of methods) and Task 2 (pairs) as the analyses see them. Read-only:
-/// nothing in the database is changed.
+/// The answers of the pilot (frame rates), of Task 1 (single showings of methods) and of Task 2 (pairs) as
+/// the analyses see them. Read-only: nothing in the database is changed.
 
 #include <cstdint>
 #include <filesystem>
@@ -66,9 +66,10 @@ struct TaskSession {
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
+  std::string first_answer_utc;  ///< of any page or trial, by the station's clock; empty: none yet
 };
 
-/// A protocol that shows methods, with all its sessions by participant and visit.
+/// A protocol with all its sessions by participant and visit.
 struct TaskProtocol {
   std::string name, version, sha256;
   bool pairs = false;                                 ///< a trial shows two methods (Task 2)
@@ -76,11 +77,14 @@ struct TaskProtocol {
   std::vector<std::string> scenes, methods, n_stars;  ///< in the order of the file
   std::vector<Question> questions;                    ///< on scales and choices, asked about trials
   std::vector<TaskSession> sessions;
+
+  /// One method under several frame rates, shown one by one.
+  bool pilot() const { return methods.size() < 2; }
 };
 
 struct TaskStudy {
-  std::vector<TaskProtocol> protocols;  ///< a pilot of frame rates is none of them
-  int withdrawn = 0;                    ///< participants who withdrew, from whatever protocol
+  std::vector<TaskProtocol> protocols;
+  int withdrawn = 0;  ///< participants who withdrew, from whatever protocol
 };
 
 /// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error as

@@ -1,9 +1,11 @@
 /// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
+#include <regex>
 #include <set>
 
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -110,6 +112,14 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
 }
 
 }  // namespace
+
+void check_participant_code(const std::string& code) {
+  static const std::regex pattern("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
+  if (code.size() > 32 || !std::regex_match(code, pattern)) {
+    throw base::Error("participant '" + base::shortened(code) + "'", "is not a participant code",
+                      "use 1 to 32 letters, digits, _ or -, a letter or digit first, and never a name");
+  }
+}
 
 std::int64_t Store::add_run(const RunPlan& run) {
   Transaction transaction(*database_);

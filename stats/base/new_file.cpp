@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "stats/base/error.hpp"
 
@@ -20,10 +21,12 @@ namespace {
 
 constexpr const char* mend = "free space, or write to a folder that you may write to";
 
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+
 /// A rename is sure to stand after a power cut only once the folder was synced. File systems that cannot do
 /// that have nothing to be told, and the file is in place.
 void sync_folder_of(const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(path);
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
   ::fsync(fd);
@@ -40,11 +43,55 @@ fs::path draft_name(const fs::path& path) {
   return path.string() + ".tmp" + text.data();
 }
 
-NewFile::NewFile(const fs::path& path) : path_(path) {
-  const fs::path draft = draft_name(path);
-  fd_ = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+bool is_draft_name(const std::string& name, const std::string& target) {
+  const std::string start = target + ".tmp";
+  return name.starts_with(start) && name.size() > start.size() &&
+         name.find_first_not_of("0123456789abcdef", start.size()) == std::string::npos;
+}
+
+void remove_stale_drafts(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path folder = folder_of(path);
+  const std::size_t length = draft_name(path.filename()).string().size();
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() != length || !is_draft_name(name, path.filename().string())) continue;
+    const int fd = ::open(entry.path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) continue;
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(fd);
+  }
+}
+
+void check_output(const fs::path& path) {
+  struct stat standing {};
+  if (::stat(path.c_str(), &standing) == 0 && !S_ISREG(standing.st_mode))
+    throw Error(path.string(), "is a folder, a device or a pipe, which no file is written over",
+                "name a file");
+  const fs::path folder = folder_of(path);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error(path.string(), std::string("cannot be created: ") + std::strerror(errno), mend);
+}
+
+NewFile::NewFile(const fs::path& path, Readers readers) : path_(path), readers_(readers) {
+  check_output(path);
+  while (!make_draft()) {
+  }
+}
+
+/// False where remove_stale_drafts() took it before it was locked.
+bool NewFile::make_draft() {
+  const fs::path draft = draft_name(path_);
+  const mode_t rights = readers_ == Readers::Owner ? 0600 : 0666;
+  fd_ = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, rights);
   if (fd_ < 0) fail("cannot be created");
   draft_ = draft;
+  struct stat made {};
+  // A file system without locks has no stale drafts removed either.
+  const bool taken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (!taken && ::fstat(fd_, &made) == 0 && made.st_nlink > 0) return true;
+  ::close(std::exchange(fd_, -1));
+  return false;
 }
 
 NewFile::~NewFile() {
@@ -63,7 +110,8 @@ void NewFile::write(std::string_view bytes) {
 
 void NewFile::put_in_place() {
   struct stat standing {};
-  if (::lstat(path_.c_str(), &standing) == 0 && S_ISREG(standing.st_mode))
+  const bool replaces = ::lstat(path_.c_str(), &standing) == 0 && S_ISREG(standing.st_mode);
+  if (replaces && readers_ == Readers::AsUmask)
     if (::fchmod(fd_, standing.st_mode & 07777) != 0) fail("cannot be given the rights of the file there");
   if (::fsync(fd_) != 0) fail("cannot be written");
   const int closing = fd_;

@@ -7,30 +7,45 @@
 
 namespace base {
 
+/// Who may read a file: its owner alone (0600), or whoever the umask lets.
+enum class Readers { Owner, AsUmask };
+
 /// `path` + ".tmp" + 16 random hexadecimal digits: beside `path`, and not to be guessed by others who may
 /// write there.
 std::filesystem::path draft_name(const std::filesystem::path& path);
 
+/// Whether `name` is `target` + ".tmp" + hexadecimal digits.
+bool is_draft_name(const std::string& name, const std::string& target);
+
+/// Deletes drafts of `path` that a kill left: those that no NewFile holds.
+void remove_stale_drafts(const std::filesystem::path& path);
+
+/// base::Error unless a file can be put at `path`: a file stands there or nothing, and no device or the like,
+/// which the file would replace; in a folder that one may write to.
+void check_output(const std::filesystem::path& path);
+
 /// A new file beside `path`. It is made for this object alone: a file or link that is already there is never
-/// written through. It goes with the object unless it was put in place. Errors are base::Error and name
-/// `path`.
+/// written through. It goes with the object unless it was put in place, and is locked (flock) as long as the
+/// object lives. Errors are base::Error and name `path`; check_output() is asked first.
 class NewFile {
  public:
-  explicit NewFile(const std::filesystem::path& path);
+  explicit NewFile(const std::filesystem::path& path, Readers readers = Readers::AsUmask);
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
   void write(std::string_view bytes);
 
-  /// Syncs the file, renames it over `path` and syncs the folder. The rights are those of the file that stood
-  /// there, else what the umask leaves.
+  /// Syncs the file, renames it over `path` and syncs the folder. The rights are 0600 for Readers::Owner,
+  /// else those of the file that stood there, else what the umask leaves.
   void put_in_place();
 
  private:
+  bool make_draft();
   [[noreturn]] void fail(const std::string& step) const;
 
   std::filesystem::path path_, draft_;
+  Readers readers_;
   int fd_ = -1;
 };
 

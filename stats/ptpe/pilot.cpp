@@ -101,6 +101,15 @@ ScoreGrid PilotTable::grid(PilotMean mean, std::span<const double> weights) cons
   return grid;
 }
 
+std::vector<double> PilotTable::scores(std::size_t node) const {
+  std::vector<double> out;
+  for (int p = 0; p < participants_; ++p) {
+    const auto& e = entry(p, node);
+    if (e.n > 0) out.push_back(e.score / e.n);
+  }
+  return out;
+}
+
 std::vector<PilotObservation> PilotTable::observations(PilotMean mean) const {
   std::vector<PilotObservation> out;
   for (int p = 0; p < participants_; ++p) {

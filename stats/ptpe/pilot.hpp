@@ -49,6 +49,8 @@ class PilotTable {
 
   /// Mean scores and places, participant i counted weights[i] times (empty = once each).
   ScoreGrid grid(PilotMean mean, std::span<const double> weights = {}) const;
+  /// Mean score of each participant who rated the setting of a node of grid(), by its index.
+  std::vector<double> scores(std::size_t node) const;
   /// One for each setting that each participant rated.
   std::vector<PilotObservation> observations(PilotMean mean) const;
 

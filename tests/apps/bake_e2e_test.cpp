@@ -41,12 +41,11 @@ class BakeE2e : public ::testing::Test {
     out.insert(out.end(), more.begin(), more.end());
     return out;
   }
-  /// The scene file is the only one in the folder.
-  bool left_nothing() const {
-    std::size_t files = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path())) ++files;
-    return files == 1;
+  std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(folder_.path()), {});
   }
+  /// The scene file is the only one in the folder.
+  bool left_nothing() const { return files() == 1; }
 
   bake_test::Folder folder_;
   std::filesystem::path scene_ = folder_ / "dam.toml";
@@ -187,6 +186,7 @@ TEST_F(BakeE2e, AKilledBakeIsNoBakeAndTheSameCommandMakesOne) {
   EXPECT_FALSE(std::filesystem::exists(target_));
   EXPECT_EQ(apps::test::run_program(command({"--frames", "3"})).exit_code, 0);
   EXPECT_EQ(sim::BakeReader(target_).header().frame_count, 3);
+  EXPECT_EQ(files(), 2) << "the killed one's draft";
 }
 
 TEST_F(BakeE2e, TruncatedFileIsRefusedByName) {

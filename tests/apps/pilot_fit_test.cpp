@@ -4,36 +4,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/stats/contour_lines.hpp"
 #include "apps/stats/heat_map.hpp"
-#include "apps/stats/pilot_data.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace {
 
+using apps::TaskKind;
+using apps::TaskSelection;
 using nlohmann::ordered_json;
-using study::RatingRow;
+using study::TaskProtocol;
+using study::TaskTrial;
+using study::Verdict;
 using testing_pilot::simulated_pilot;
 
-apps::PilotFit fit_rows(const std::vector<RatingRow>& rows, double level = 4,
-                        const apps::PilotSelection& selection = {}) {
-  return apps::fit_pilot(*apps::select_pilot(rows, selection), level, {200, 1, 0.95});
+stats::Result<apps::TaskData> select(const TaskProtocol& pilot,
+                                     const TaskSelection& selection = {TaskKind::Pilot, {}, {}}) {
+  return apps::select_task({{pilot}, 0}, selection);
 }
 
-apps::PilotSelection choice(const std::string& protocol, apps::ExcludedVerdicts exclude) {
-  return {protocol, "", exclude};
+apps::PilotFit fit_of(const TaskProtocol& pilot, double level = 4) {
+  return apps::fit_pilot(*apps::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), level, {200, 1, 0.95});
 }
+
+TaskSelection with_timing(stats::TimingRule rule) {
+  TaskSelection out{TaskKind::Pilot, {}, {}};
+  out.plan.exclusions.timing = rule;
+  return out;
+}
+
+/// How often each rule left a trial or a visit out.
+std::map<std::string, int> rules_of(const apps::TaskData& data) {
+  std::map<std::string, int> out;
+  for (const auto& one : data.exclusions) ++out[one.rule];
+  return out;
+}
+
+using Rules = std::map<std::string, int>;
 
 bool has_flag(const apps::PilotFit& fit, const std::string& code) {
   return std::any_of(fit.flags.begin(), fit.flags.end(), [&](const auto& flag) { return flag.code == code; });
 }
 
 TEST(PilotFit, WritesEveryPromisedField) {
-  const auto fit = fit_rows(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
+  const auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
   ASSERT_TRUE(fit.ok()) << fit.reason;
   const auto json = apps::fit_json(fit);
   EXPECT_EQ(json.at("status"), "ok");
@@ -45,7 +64,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_GT(json.at("b_ci")[1], json.at("b"));
   EXPECT_TRUE(json.at("level5").at("a").is_number());
   EXPECT_EQ(json.at("means").at("arithmetic").size(), 2u);
-  EXPECT_EQ(json.at("protocol").at("sha256"), std::string(64, '1'));
+  EXPECT_EQ(json.at("protocol").at("sha256"), std::string(64, '3'));
   EXPECT_TRUE(has_flag(fit, "simulated"));
   const auto file = sim::parse_ptpe_file(sim::format_ptpe_file(apps::ptpe_file(fit)), "ptpe.toml");
   EXPECT_EQ(file.model.a, fit.main().fit->a);
@@ -54,81 +73,124 @@ TEST(PilotFit, WritesEveryPromisedField) {
 }
 
 TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
-  rows[0].timing->verdict = study::Verdict::Fail;
-  rows[1].timing->verdict = study::Verdict::Degraded;
-  rows[2].rating.reset();
-  rows[3].practice = true;
-  rows[4].timing.reset();
-  const auto usual = *apps::select_pilot(rows, {});
-  EXPECT_EQ(usual.ratings.size(), rows.size() - 4);
-  EXPECT_EQ(usual.excluded_by_verdict.at("fail"), 1);
-  EXPECT_EQ(usual.used_by_verdict.at("degraded"), 1);
-  EXPECT_EQ(usual.unanswered, 1);
-  EXPECT_EQ(usual.practice, 1);
-  EXPECT_EQ(usual.without_timing, 1);
-  EXPECT_EQ(apps::select_pilot(rows, choice("", apps::ExcludedVerdicts::None))->ratings.size(),
-            rows.size() - 3);
-  EXPECT_EQ(apps::select_pilot(rows, choice("", apps::ExcludedVerdicts::Degraded))->ratings.size(),
-            rows.size() - 5);
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
+  auto& trials = pilot.sessions[0].trials;
+  trials[0].first.verdict = Verdict::Fail;
+  trials[1].first.verdict = Verdict::Degraded;
+  trials[2].answers[0].score.reset();
+  trials[3].kind = "practice";
+  trials[4].first.realised = {};
+  const std::size_t all = 6 * 21;
+  const auto usual = *select(pilot);
+  EXPECT_EQ(usual.ratings.size(), all - 4);
+  EXPECT_EQ(rules_of(usual), (Rules{{"timing", 2}}));
+  EXPECT_EQ(usual.exclusions[1].reason, "no frame of the showing is recorded");
+  EXPECT_EQ(usual.flow.practice, 1);
+  EXPECT_EQ(usual.flow.trials_planned - usual.flow.trials_answered, 1);
+  EXPECT_EQ(select(pilot, with_timing(stats::TimingRule::None))->ratings.size(), all - 3);
+  EXPECT_EQ(select(pilot, with_timing(stats::TimingRule::Degraded))->ratings.size(), all - 5);
+  const auto json = apps::fit_json(fit_of(pilot));
+  EXPECT_EQ(json.at("used").at("by_verdict"), (ordered_json{{"degraded", 1}, {"pass", all - 5}}));
+  EXPECT_EQ(json.at("excluded").at("answers_by_rule"), (ordered_json{{"timing", 2}}));
 }
 
 TEST(PilotFit, LeavesOutRepeatsAndWhatTheExperimenterExcluded) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
-  rows[0].repeat = true;
-  rows[1].excluded = true;
-  const auto data = *apps::select_pilot(rows, {});
-  EXPECT_EQ(data.ratings.size(), rows.size() - 2);
-  EXPECT_EQ(data.repeat, 1);
-  EXPECT_EQ(data.excluded, 1);
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
+  pilot.sessions[0].trials[0].kind = "repeat";
+  pilot.sessions[0].trials[1].excluded = "the phone rang";
+  const auto data = *select(pilot);
+  EXPECT_EQ(data.ratings.size(), 2 * 21u - 2);
+  EXPECT_EQ(data.flow.repeat, 1);
+  ASSERT_EQ(data.exclusions.size(), 1u);
+  EXPECT_EQ(data.exclusions[0].reason, "the phone rang");
+}
+
+// The same rules as for the tasks, person by person.
+TEST(PilotFit, ObeysThePlansRulesOfExclusion) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 8, 3);
+  for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;
+  pilot.sessions[1].catches = {{"attention", 2, 5}};
+  auto repeat = pilot.sessions[2].trials[0];
+  repeat.kind = "repeat";
+  repeat.position = 21;
+  repeat.repeats = 0;
+  repeat.answers[0].score = *repeat.answers[0].score > 4 ? 1 : 7;
+  pilot.sessions[2].trials.push_back(repeat);
+  for (int i = 3; i < 21; ++i) pilot.sessions[3].trials[static_cast<std::size_t>(i)].answers[0].score.reset();
+  auto selection = with_timing(stats::TimingRule::Fail);
+  selection.plan.exclusions.max_repeat_difference = 2;
+  selection.plan.exclusions.min_answered = 0.5;
+  const auto data = *select(pilot, selection);
+  EXPECT_EQ(rules_of(data), (Rules{{"straight_lining", 1}, {"catch", 1}, {"repeat", 1}, {"incomplete", 1}}));
+  EXPECT_EQ(data.flow.analysed, 4);
+  EXPECT_EQ(data.flow.excluded_participants, 4);
+  EXPECT_EQ(data.ratings.size(), 4 * 21u);
+  selection.plan.exclusions = {stats::TimingRule::None, {}, {}, {}, 0, 0};
+  EXPECT_EQ(select(pilot, selection)->flow.analysed, 8);
 }
 
 TEST(PilotFit, NeverPoolsQuestions) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
-  for (auto& row : rows) row.question = "satisfaction";
-  rows[0].question = "realism";
-  EXPECT_NE(apps::select_pilot(rows, {}).reason().find("--question"), std::string::npos);
-  apps::PilotSelection selection;
-  selection.question = "satisfaction";
-  EXPECT_EQ(apps::select_pilot(rows, selection)->ratings.size(), rows.size() - 1);
-  selection.question = "speed";
-  EXPECT_NE(apps::select_pilot(rows, selection).reason().find("'speed'"), std::string::npos);
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 2, 3);
+  pilot.questions.push_back(pilot.questions[0]);
+  pilot.questions[1].id = "realism";
+  pilot.sessions[0].trials[0].answers[0].question = "realism";
+  EXPECT_NE(select(pilot).reason().find("--question"), std::string::npos);
+  EXPECT_EQ(select(pilot, {TaskKind::Pilot, {}, {}, "satisfaction"})->ratings.size(), 2 * 21u - 1);
+  EXPECT_NE(select(pilot, {TaskKind::Pilot, {}, {}, "speed"}).reason().find("'speed'"), std::string::npos);
 }
 
 TEST(PilotFit, NeverPoolsTestDataOrProtocols) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 4, 3);
-  for (auto& row : rows) row.test_data = true;
-  EXPECT_TRUE(apps::select_pilot(rows, {})->test_data);
-  rows[0].test_data = false;
-  const auto real = *apps::select_pilot(rows, {});
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 4, 3);
+  for (auto& session : pilot.sessions) session.test_data = true;
+  EXPECT_TRUE(select(pilot)->test_data);
+  pilot.sessions[0].test_data = false;
+  const auto real = *select(pilot);
   EXPECT_FALSE(real.test_data);
-  EXPECT_EQ(real.ratings.size(), 1u);
-  EXPECT_EQ(real.test_left_out, static_cast<int>(rows.size()) - 1);
-  rows[1].protocol_sha256 = std::string(64, '2');
-  EXPECT_NE(apps::select_pilot(rows, {}).reason().find("several protocols"), std::string::npos);
-  EXPECT_EQ(apps::select_pilot(rows, choice("2", apps::ExcludedVerdicts::Fail))->ratings.size(), 1u);
-  EXPECT_FALSE(apps::select_pilot(rows, choice("3", apps::ExcludedVerdicts::Fail)));
-  EXPECT_FALSE(apps::select_pilot({}, {}));
+  EXPECT_EQ(real.ratings.size(), 21u);
+  EXPECT_EQ(real.flow.test_left_out, 3);
+  auto other = pilot;
+  other.sha256 = std::string(64, '2');
+  const study::TaskStudy both{{pilot, other}, 0};
+  const auto from_both = [&](const std::string& sha256) {
+    return apps::select_task(both, {TaskKind::Pilot, sha256, {}});
+  };
+  EXPECT_NE(from_both("").reason().find("several protocols"), std::string::npos);
+  EXPECT_EQ(from_both("2")->ratings.size(), 21u);
+  EXPECT_FALSE(from_both("9"));
+  EXPECT_FALSE(apps::select_task({}, {TaskKind::Pilot, "", {}}));
 }
 
 TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
-  EXPECT_EQ(apps::select_pilot(rows, {})->simulated_participants, 6);
-  for (auto& row : rows) {
-    if (row.participant == "p0" || row.participant == "p1") row.observer.clear();
-  }
-  const auto people = *apps::select_pilot(rows, {});
-  EXPECT_EQ(people.simulated_participants, 0);
-  EXPECT_EQ(people.simulated_left_out, 4 * 21);
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
+  EXPECT_EQ(select(pilot)->simulated.size(), 6u);
+  for (std::size_t i : {0u, 1u}) pilot.sessions[i].observer.clear();
+  const auto people = *select(pilot);
+  EXPECT_TRUE(people.simulated.empty());
+  EXPECT_EQ(people.flow.simulated_left_out, 4);
   EXPECT_EQ(people.ratings.size(), 2u * 21);
   EXPECT_TRUE(has_flag(apps::fit_pilot(people, 4, {200, 1, 0.95}), "simulated_left_out"));
   // People whose data are only test data do not push the others out.
-  for (auto& row : rows) row.test_data = row.observer.empty();
-  EXPECT_EQ(apps::select_pilot(rows, {})->simulated_participants, 4);
+  for (auto& session : pilot.sessions) session.test_data = session.observer.empty();
+  EXPECT_EQ(select(pilot)->simulated.size(), 4u);
+}
+
+// n, mean, standard deviation and t interval of one setting, worked out by hand.
+TEST(PilotFit, DescribesEachSettingOverItsParticipants) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 5, 3);
+  const std::vector<int> scores{2, 3, 3, 5, 7};
+  for (std::size_t i = 0; i < 5; ++i) pilot.sessions[i].trials[8].answers[0].score = scores[i];
+  pilot.sessions[4].trials[8].excluded = "looked away";
+  const auto cell = apps::fit_json(fit_of(pilot)).at("cells").at(8);
+  EXPECT_EQ(cell.at("n"), 4);
+  EXPECT_NEAR(cell.at("score").get<double>(), 3.25, 1e-12);
+  const double sd = std::sqrt((1.5625 + 2 * 0.0625 + 3.0625) / 3), t975_of_3 = 3.182446305284263;
+  EXPECT_NEAR(cell.at("sd").get<double>(), sd, 1e-12);
+  EXPECT_NEAR(cell.at("ci")[0].get<double>(), 3.25 - t975_of_3 * sd / 2, 1e-9);
+  EXPECT_NEAR(cell.at("ci")[1].get<double>(), 3.25 + t975_of_3 * sd / 2, 1e-9);
 }
 
 TEST(PilotFit, FlagsAContourThatLeavesTheGrid) {
-  const auto fit = fit_rows(simulated_pilot("ptpe:a=31,b=0.035", 16, 7));
+  const auto fit = fit_of(simulated_pilot("ptpe:a=31,b=0.035", 16, 7));
   ASSERT_TRUE(fit.ok()) << fit.reason;
   EXPECT_TRUE(has_flag(fit, "leaves_grid_above"));
   EXPECT_FALSE(has_flag(fit, "leaves_grid_below"));
@@ -136,29 +198,35 @@ TEST(PilotFit, FlagsAContourThatLeavesTheGrid) {
 }
 
 TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
-  const auto rows = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
-  auto equal = rows, unanswered = rows, alone = rows, satisfied = rows;
-  for (auto& row : equal) row.rating = 4;
-  for (auto& row : unanswered) row.rating.reset();
-  std::erase_if(alone, [](const RatingRow& row) { return row.participant != "p0"; });
-  for (auto& row : satisfied) row.rating = row.nominal.mean > 25 ? 7 : 6;
-  const std::vector<std::pair<std::vector<RatingRow>, std::string>> cases{{equal, "all ratings are equal"},
-                                                                          {unanswered, "no answered trial"},
-                                                                          {alone, "at least 4"},
-                                                                          {satisfied, "no contour"}};
+  const auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
+  const auto rated = [&](auto score) {
+    auto out = pilot;
+    for (auto& session : out.sessions)
+      for (auto& trial : session.trials) trial.answers[0].score = score(trial);
+    return out;
+  };
+  auto alone = pilot, equal = rated([](const TaskTrial&) { return 4; });
+  alone.sessions.resize(1);
+  for (auto& session : equal.sessions) session.trials.resize(7);  // too few for the rule of straight-lining
+  const std::vector<std::pair<TaskProtocol, std::string>> cases{
+      {equal, "all ratings are equal"},
+      {rated([](const TaskTrial&) { return 4; }), "no answered trial"},
+      {rated([](const TaskTrial&) { return std::optional<int>(); }), "no answered trial"},
+      {alone, "at least 4"},
+      {rated([](const TaskTrial& trial) { return trial.first.nominal.mean > 25 ? 7 : 6; }), "no contour"}};
   for (const auto& [data, words] : cases) {
-    const auto fit = fit_rows(data);
+    const auto fit = fit_of(data);
     EXPECT_NE(fit.reason.find(words), std::string::npos) << fit.reason;
     const auto json = apps::fit_json(fit);
     EXPECT_EQ(json.at("status"), "failed");
     EXPECT_TRUE(json.at("a_ci").is_null());
   }
-  EXPECT_NE(fit_rows(rows, 9).reason.find("rating scale"), std::string::npos);
+  EXPECT_NE(fit_of(pilot, 9).reason.find("rating scale"), std::string::npos);
 }
 
 TEST(PilotFit, KeepsNoNumberThatIsNone) {
   // A NaN would be written as null: no null may stand where the status says ok.
-  const auto json = apps::fit_json(fit_rows(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
+  const auto json = apps::fit_json(fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
   const auto flat = json.flatten();
   for (const auto& [key, ignored] : flat.items()) {
     static_cast<void>(ignored);
@@ -171,9 +239,9 @@ TEST(PilotFit, KeepsNoNumberThatIsNone) {
 }
 
 TEST(PilotFit, ToleratesIncompleteParticipants) {
-  auto rows = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
-  std::erase_if(rows, [](const RatingRow& row) { return row.participant == "p3" && row.position > 4; });
-  const auto fit = fit_rows(rows);
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
+  pilot.sessions[3].trials.resize(5);
+  const auto fit = fit_of(pilot);
   EXPECT_TRUE(fit.ok()) << fit.reason;
   EXPECT_TRUE(has_flag(fit, "incomplete_participants"));
 }
@@ -226,7 +294,7 @@ bool balanced(const std::string& xml) {
 }
 
 TEST(HeatMap, ShowsEveryCellBothContoursAndTheCurve) {
-  const auto fit = fit_rows(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
+  const auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
   const auto svg = apps::heat_map_svg(fit);
   EXPECT_TRUE(balanced(svg));
   for (const auto& node : fit.grid.nodes) {

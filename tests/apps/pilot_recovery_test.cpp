@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/pilot_data.hpp"
+#include "apps/stats/tasks/task_data.hpp"
 #include "stats/ptpe/pilot.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
@@ -33,9 +33,9 @@ std::string observer(const Truth& truth) {
 Recovered recover(const Truth& truth, int studies, int resamples) {
   Recovered r{studies};
   for (int study = 0; study < studies; ++study) {
-    const auto rows =
+    const auto pilot =
         testing_pilot::simulated_pilot(observer(truth), 16, static_cast<std::uint64_t>(study) + 1);
-    const auto data = apps::select_pilot(rows, {});
+    const auto data = apps::select_task({{pilot}, 0}, {apps::TaskKind::Pilot, {}, {}});
     const auto estimate = stats::estimate_pilot(stats::PilotTable(data->ratings), stats::PilotMean::Harmonic,
                                                 4, {resamples, static_cast<std::uint64_t>(study) + 1, 0.95});
     if (!estimate.spread) {

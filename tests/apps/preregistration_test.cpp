@@ -114,6 +114,69 @@ TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
   EXPECT_TRUE(check.at("holds").get<bool>());
 }
 
+/// The first answer of Task 1 at the time given, of Task 2 long after the bundle.
+Json check_with_first_answer(const report::Bundle& bundle, const std::string& first) {
+  auto one = made_study::task1(12), two = made_study::task2(12);
+  const auto task1 = protocol("task1.toml"), task2 = protocol("task2.toml");
+  one.sha256 = task1.sha256;
+  two.sha256 = task2.sha256;
+  for (auto& session : one.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
+  one.sessions[7].first_answer_utc = first;
+  for (auto& session : two.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
+  const auto results =
+      make_results({{one, two}, 0}, {"study.db", {TaskKind::Task1, TaskKind::Task2}, "", bundle.plan}).json;
+  return report::compare_with_bundle(bundle, {row_of(task1), row_of(task2)}, results);
+}
+
+TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  const std::string frozen = bundle.about.at("frozen_utc");
+  const auto before = check_with_first_answer(bundle, "2999-01-01T00:00:00Z");
+  EXPECT_TRUE(before.at("holds").get<bool>()) << before.dump(2);
+  EXPECT_EQ(before.at("times")[0].at("text"),
+            "The bundle was frozen before the first answer of Task 1, given 2999-01-01T00:00:00Z.");
+  // Of the same second nobody can say which was first.
+  for (const std::string& first : {std::string("2001-01-01T00:00:00Z"), frozen}) {
+    const auto after = check_with_first_answer(bundle, first);
+    EXPECT_EQ(after.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+    EXPECT_EQ(after.at("times")[0].at("frozen_before"), false);
+    EXPECT_EQ(after.at("times")[1].at("frozen_before"), true);
+    EXPECT_THAT(
+        after.at("differences"),
+        Contains("The bundle was not frozen before the first answer of Task 1, given " + first + "."));
+    EXPECT_THAT(after.at("summary").dump(), HasSubstr("differs"));
+  }
+}
+
+// A rehearsal or an observer model that is set aside does not make a bundle late.
+TEST(Preregistration, OnlySessionsThatAreAnalysedHaveAFirstAnswer) {
+  auto task = made_study::task1(6);
+  for (auto& session : task.sessions) session.first_answer_utc = "2026-05-01T00:00:00Z";
+  task.sessions[0].test_data = true;
+  task.sessions[1].observer = "random";
+  for (std::size_t i : {0u, 1u}) task.sessions[i].first_answer_utc = "2026-01-01T00:00:00Z";
+  EXPECT_EQ(select_task({{task}, 0}, {TaskKind::Task1, "", {}})->first_answer_utc, "2026-05-01T00:00:00Z");
+}
+
+// The pilot beside the tasks is exploratory: a bundle of the tasks need not hold it.
+TEST(Preregistration, APilotBesideTheTasksIsNoDifference) {
+  const TemporaryFolder folder;
+  report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto pilot = protocol("ptpe_pilot.toml");
+  study.rows.push_back(row_of(pilot));
+  study.results["study"]["protocols"].push_back({{"task", "pilot"},
+                                                 {"title", "Pilot"},
+                                                 {"sha256", pilot.sha256},
+                                                 {"first_answer_utc", "2001-01-01T00:00:00Z"}});
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), Json::array());
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", true}, {"pilot", false}}));
+}
+
 TEST(Preregistration, AChangedProtocolIsNamedLineByLine) {
   const TemporaryFolder folder;
   report::freeze_bundle(both_tasks(), folder / "bundle");

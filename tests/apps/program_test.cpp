@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <stdexcept>
+
+#include "apps/common/program.hpp"
+#include "stats/base/error.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -31,6 +35,29 @@ TEST(ProgramE2e, OpenMpThreadsDoNotSpin) {
 TEST(ProgramE2e, AChoiceOfTheUsersStays) {
   EXPECT_THAT(openmp_settings("OMP_WAIT_POLICY", "active"), Not(HasSubstr("GOMP_SPINCOUNT = '0'")));
   EXPECT_THAT(openmp_settings("GOMP_SPINCOUNT", "77"), HasSubstr("GOMP_SPINCOUNT = '77'"));
+}
+
+/// What a program says on stderr, and ends with, when its command throws this.
+void expect_said(const std::function<void()>& thrower, const std::string& pattern) {
+  const auto run = [&] {
+    ::setenv("OMP_WAIT_POLICY", "passive", 1);  // the program does not start over
+    CLI::App app("", "vip-some");
+    app.add_subcommand("thing", "")->callback(thrower);
+    char name[] = "vip-some", command[] = "thing";
+    char* arguments[] = {name, command, nullptr};
+    std::exit(apps::run_program(app, 2, arguments));
+  };
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(1), pattern);
+}
+
+TEST(ProgramDeathTest, ErrorsOfOtherLibrariesHavePlaceAndMendToo) {
+  expect_said([] { throw std::out_of_range("vector::at"); },
+              "vip-some: error: vip-some thing: unexpected: vector::at\n  mend: .*report");
+  expect_said([] { std::filesystem::create_directory("/none/such"); },
+              "error: /none/such: unexpected: No such file or directory\n  mend: ");
+  expect_said([] { throw std::bad_alloc(); }, "error: vip-some thing: out of memory\n  mend: ");
+  expect_said([] { throw base::Error("here", "is wrong", "mend it"); },
+              "error: here: is wrong\n  mend: mend it\n");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/stats/pilot_fit.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "apps/stats/tasks/sickness_json.hpp"
@@ -33,12 +32,12 @@ const OrderedJson& made() {
   static const OrderedJson json = [] {
     PlanInForce plan;
     plan.plan.resamples = 200;
-    auto out = make_results({{made_study::task1(26), made_study::task2(26)}, 1},
-                            {"folder/study.db", {TaskKind::Task1, TaskKind::Task2}, "", plan})
-                   .json;
-    const auto rows = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
+    const auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
+    auto out =
+        make_results({{pilot, made_study::task1(26), made_study::task2(26)}, 1},
+                     {"folder/study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+            .json;
     out["sickness"] = sickness_json(made_study::sickness(26), plan.plan);
-    out["pilot"] = fit_json(fit_pilot(*select_pilot(rows, {}), 4, {500, 3, 0.95}));
     return out;
   }();
   return json;
@@ -131,7 +130,7 @@ TEST(ReportPage, NoOtherNumberIsPrinted) {
   for (const auto* json : {&example(), &made()}) {
     for (const auto& text : page_of(*json).texts) {
       if (!text.attribute("data-field").empty() || text.within("style") || text.within("svg")) continue;
-      if (text.within("title")) continue;
+      if (text.within("title") || text.attribute("class") == "ordinal") continue;
       if (!text.attribute("data-count").empty()) {
         EXPECT_EQ(text.words,
                   std::to_string(json->at(OrderedJson::json_pointer(text.attribute("data-count"))).size()));
@@ -221,7 +220,18 @@ TEST(ReportPage, TablesAndFiguresCanBeReadAloud) {
   EXPECT_EQ(n["svg"], n["figure"]);
   EXPECT_EQ(n["desc"], n["svg"]);
   EXPECT_EQ(n["title"], n["svg"] + 1);  // and the page's own
-  EXPECT_GE(n["svg"], 8) << "two flows, two timings, heat map, two box plots, preferences";
+  EXPECT_GE(n["svg"], 10) << "three flows, three timings, heat map, two box plots, preferences";
+}
+
+TEST(ReportPage, TablesAndFiguresAreNumberedInTheirOrder) {
+  std::map<std::string, int> n;
+  for (const auto& text : page_of(made()).texts) {
+    if (text.attribute("class") != "ordinal") continue;
+    const std::string name = text.within("caption") ? "Table" : "Figure";
+    EXPECT_EQ(text.words, name + " " + std::to_string(++n[name]) + ".");
+  }
+  EXPECT_GT(n["Table"], 10);
+  EXPECT_GE(n["Figure"], 10);
 }
 
 TEST(ReportPage, ShowsWhyWhatIsNotGivenIsNotGiven) {
@@ -268,8 +278,8 @@ TEST(ReportPage, WordsOfTheStudyCannotBreakIt) {
 }
 
 TEST(ReportPage, SimulatedAndTestDataAreNamedFirst) {
-  auto json = example();
-  json["study"]["test_data"] = true;
+  auto json = made();
+  json["study"]["protocols"][1]["test_data"] = true;
   const std::string html = report::results_page(json);
   EXPECT_LT(html.find("Simulated participants"), html.find("<h2"));
   EXPECT_LT(html.find("Test data."), html.find("<h2"));

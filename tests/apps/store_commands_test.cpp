@@ -72,11 +72,16 @@ TEST(StoreCommandsE2e, AWithdrawalReachesEveryReport) {
         folder / "csv"});
   call({stats, "task2", database, "--json", folder / "t.json", "--csv", folder / "t"});
   Process({stats, "fit-ptpe", database, "--json", folder / "fit.json"}).wait();  // of random answers
+  EXPECT_THAT(files_with(folder.path(), "QZ7"), ::testing::Not(::testing::Contains("fit.json")));
+  // They hold codes; the fit holds none.
+  for (const char* made : {"r.html", "r.json", "t.json", "csv", "t", "csv/task2_choices.csv", "t/timing.csv"})
+    EXPECT_EQ(fs::status(folder / made).permissions() & fs::perms(0077), fs::perms::none) << made;
   ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("task2_choices.csv"));
   ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("t.json"));
   call({vip_study, "withdraw", "QZ7", "--db", database, "--yes"});
   EXPECT_THAT(files_with(folder.path(), "QZ7"), ::testing::IsEmpty());
   EXPECT_TRUE(fs::exists(folder / "fit.json"));  // of all, and of nobody alone
+  EXPECT_FALSE(fs::exists(folder / "csv") || fs::exists(folder / "t"));
   EXPECT_EQ(count_in(database, "SELECT count(*) FROM export"), 0);
   call({stats, "report", database, "--html", folder / "r.html"});
 }

@@ -144,8 +144,8 @@ TEST(TaskCsv, FlattensQuotesAndLeavesMissingEmpty) {
 
 TEST(TaskCsv, EveryNumberIsTheJsons) {
   const TemporaryFolder folder;
-  write_csv_folder(whole_study(), folder / "csv", base::write_file_atomically);
-  std::istringstream text(base::read_file(folder / "csv" / "task2_pairs.csv", 1 << 20));
+  write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
+  std::istringstream text(base::read_file(folder / "task2_pairs.csv", 1 << 20));
   std::string header, line;
   std::getline(text, header);
   EXPECT_THAT(header, HasSubstr("a,b,n,participants,k,share,p,stars"));
@@ -158,16 +158,16 @@ TEST(TaskCsv, EveryNumberIsTheJsons) {
   for (const char* file :
        {"task1_participant_means", "task1_cells", "task1_comparisons", "task1_omnibus", "task1_ordinal",
         "task2_choices", "hypotheses", "exclusions", "timing", "sensitivity"})
-    EXPECT_TRUE(std::filesystem::exists(folder / "csv" / (std::string(file) + ".csv"))) << file;
+    EXPECT_TRUE(std::filesystem::exists(folder / (std::string(file) + ".csv"))) << file;
 }
 
 TEST(TaskCsv, AnEmptyListOfExclusionsHasItsColumns) {
   const TemporaryFolder folder;
   ASSERT_THAT(whole_study().at("exclusions"), IsEmpty());
-  write_csv_folder(whole_study(), folder / "csv", base::write_file_atomically);
-  EXPECT_EQ(base::read_file(folder / "csv" / "exclusions.csv", 1 << 20),
+  write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
+  EXPECT_EQ(base::read_file(folder / "exclusions.csv", 1 << 20),
             "task,participant,visit,position,rule,reason,actor,answers\r\n");
-  EXPECT_FALSE(std::filesystem::exists(folder / "csv" / "task1_retest.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "task1_retest.csv"));
 }
 
 TEST(AnalysisPlan, ReadsBackWhatItWrites) {

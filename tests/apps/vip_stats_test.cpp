@@ -16,9 +16,9 @@
 
 #include "apps/stats/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/sqlite.hpp"
 #include "libstudy/store/store.hpp"
+#include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -89,8 +89,9 @@ TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
   const auto outcome = vip_stats("fit-ptpe " + at("study.db") + " --level 4 --out " + at("fitted.toml") +
                                  " --json " + at("fit.json") + " --svg " + at("heat.svg") + " --seed 3");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
-  const auto fit =
-      apps::fit_pilot(*apps::select_pilot(study::read_ratings(folder / "study.db"), {}), 4, {2000, 3, 0.95});
+  const auto data =
+      apps::select_task(study::read_tasks(folder / "study.db"), {apps::TaskKind::Pilot, {}, {}});
+  const auto fit = apps::fit_pilot(*data, 4, {2000, 3, 0.95});
   const auto json = read_json(folder / "fit.json");
   EXPECT_EQ(json.at("status"), "ok");
   EXPECT_EQ(json.at("n_participants"), 6);
@@ -235,7 +236,7 @@ TEST(VipStatsE2e, SaysPlainlyThatThereIsNoFitAndKeepsOldFiles) {
                                  (folder / "fitted.toml").string() + " --json " +
                                  (folder / "fit.json").string() + " --svg " + (folder / "heat.svg").string());
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.out.find("all ratings are equal"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no answer counts"), std::string::npos) << outcome.out;
   const auto json = read_json(folder / "fit.json");
   EXPECT_EQ(json.at("status"), "failed");
   EXPECT_EQ(json.at("converged"), false);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "libstudy/store/database.hpp"
@@ -13,6 +15,7 @@
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
+#include "tests/libstudy/fault_vfs.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
@@ -174,6 +177,78 @@ TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   add("P02");
   export_csv(path, csv);
   EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
+}
+
+// Registering takes no lock of writers, so it falls between any two calls of a merge; not between too many,
+// or SQLite gives up to read what is changed all the time.
+TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
+  Store(folder / "south.db", Open::Create).add_run(test::run_plan(test::pairs(), {"P02"}));
+  test::FaultVfs vfs;
+  std::vector<std::string> entered;
+  int refused = 0;
+  long next = 0;
+  vfs.before_each([&] {
+    if (vfs.calls() < next) return;
+    const std::string name = "'/e" + std::to_string(vfs.calls()) + "'";
+    try {
+      Connection now(path, Open::Write);
+      now.execute("PRAGMA busy_timeout = 0");
+      now.execute("INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES ('csv', " + name +
+                  ", 'here', '', '2026-01-01T00:00:00Z', 0)");
+      entered.push_back(name);
+    } catch (const sqlite::LockedOut&) {
+      ++refused;
+    }
+    next = vfs.calls() + 20;
+  });
+  merge({folder / "south.db"}, path);
+  vfs.before_each({});
+  EXPECT_GT(refused, 0);  // by the merge's own commits
+  ASSERT_GT(entered.size(), 10u);
+  for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;
+}
+
+TEST_F(Exports, OfSingleFilesAreForTheOwnerAloneWithTheFoldersMadeForThem) {
+  const auto rights = [](const fs::path& file) {
+    return static_cast<unsigned>(fs::status(file).permissions());
+  };
+  const fs::path tables = folder / "a" / "tables";
+  base::write_file_atomically(folder / "report.json", "");
+  fs::permissions(folder / "report.json", fs::perms(0644));
+  const mode_t before = ::umask(0);
+  const RegisteredFiles files(path);
+  files.make_folder(tables / "");
+  files.write("vip-stats report", tables / "cells.csv", "P01");
+  files.write("vip-stats report", folder / "report.json", "{}");
+  ::umask(before);
+  for (const fs::path& made : {tables, folder / "a"}) EXPECT_EQ(rights(made), 0700u) << made;
+  for (const fs::path& made : {tables / "cells.csv", folder / "report.json"})
+    EXPECT_EQ(rights(made), 0600u) << made;
+}
+
+TEST_F(Exports, FoldersMadeForFilesGoWhenNothingIsLeftInThem) {
+  fs::create_directory(folder / "theirs");
+  const RegisteredFiles files(path);
+  for (const fs::path& made : {folder / "a" / "b", folder / "c", folder / "theirs"}) {
+    files.make_folder(made);
+    files.write("vip-stats report", made / "cells.csv", "P01");
+  }
+  std::ofstream(folder / "c" / "my notes.txt") << "mine";
+  add("P02");
+  RegisteredFiles(path).make_folder(folder / "c");  // is there
+  EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  EXPECT_TRUE(fs::is_empty(folder / "theirs"));
+  EXPECT_TRUE(fs::exists(folder / "c" / "my notes.txt"));
+  EXPECT_EQ(count("export"), 1);  // "c", which goes with a later withdrawal
+}
+
+TEST_F(Exports, ThatFailWriteNothingIntoTheRegister) {
+  EXPECT_THAT([&] { RegisteredFiles(path).write("vip-stats report", "/dev/full", "{}"); },
+              ThrowsMessage<base::Error>(HasSubstr("/dev/full")));
+  EXPECT_THROW(RegisteredFiles(path).write("vip-stats report", folder / "none" / "a.json", "{}"),
+               base::Error);
+  EXPECT_EQ(count("export"), 0);
 }
 
 TEST_F(Exports, OfEarlierVersionsAreNamed) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace study::test {
@@ -31,6 +32,8 @@ struct State {
   VfsFault fault;
   long calls = 0;
   bool done = false;
+  std::function<void()> before_each;
+  bool between = false;  ///< before_each runs
   std::map<std::string, std::vector<Undo>> unsynced;
 };
 State state;
@@ -71,6 +74,10 @@ void take_back(int fd, const Undo& undo, bool torn, std::mt19937& random) {
 /// What the call is to fail with; SQLITE_OK: it goes on.
 int count(int error, bool writes = false) {
   ++state.calls;
+  if (state.before_each && !std::exchange(state.between, true)) {
+    state.before_each();
+    state.between = false;
+  }
   const auto [kind, at] = state.fault;
   if (kind == Kind::None || state.calls < at) return SQLITE_OK;
   if (kind == Kind::Stop) ::_exit(stopped_status);
@@ -231,5 +238,7 @@ void FaultVfs::arm(const VfsFault& fault) {
 }
 
 long FaultVfs::calls() const { return state.calls; }
+
+void FaultVfs::before_each(std::function<void()> work) { state.before_each = std::move(work); }
 
 }  // namespace study::test

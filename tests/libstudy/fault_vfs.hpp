@@ -3,6 +3,7 @@
 /// be the last, as SQLite's own tests do. While it lives it serves every connection of this process.
 
 #include <cstdint>
+#include <functional>
 
 struct sqlite3_vfs;
 
@@ -44,6 +45,8 @@ class FaultVfs {
   void disarm() { arm({}); }
   /// Calls since arm().
   long calls() const;
+  /// What is done before each call from now on, but those that it makes itself. Without: nothing.
+  void before_each(std::function<void()> work);
 
  private:
   sqlite3_vfs* vfs_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 using sqlite::Open;
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr const char* lab = "protocols/task1_lab.toml";
@@ -212,17 +212,34 @@ TEST_F(LabSession, ExclusionsCarryTheExperimentersReason) {
   EXPECT_FALSE(session.trials.at(4).excluded.has_value());
 }
 
-TEST(TaskAnswers, APilotOfFrameRatesIsNoTask) {
+TEST(TaskAnswers, APilotShowsOneMethodAtManySettings) {
   const test::TemporaryFolder folder;
   Store(folder / "study.db", Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
-  EXPECT_THAT(read_tasks(folder / "study.db").protocols, IsEmpty());
+  const auto study = read_tasks(folder / "study.db");
+  ASSERT_THAT(study.protocols, SizeIs(1));
+  EXPECT_TRUE(study.protocols[0].pilot());
+  std::set<std::pair<double, double>> settings;
+  for (const auto& trial : study.protocols[0].sessions.at(0).trials)
+    settings.emplace(trial.first.nominal.mean, trial.first.nominal.sd);
+  EXPECT_THAT(settings, SizeIs(21));
   EXPECT_THROW(read_tasks(folder / "none.db"), base::Error);
 }
 
-TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsNone) {
+TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   const test::TemporaryFolder folder;
   test::write_version_1(folder / "old.db");
-  EXPECT_THAT(read_tasks(folder / "old.db").protocols, IsEmpty());
+  const auto study = read_tasks(folder / "old.db");
+  ASSERT_THAT(study.protocols, SizeIs(1));
+  EXPECT_TRUE(study.protocols[0].pilot());
+  EXPECT_EQ(study.protocols[0].name, "pilot");
+  ASSERT_THAT(study.protocols[0].questions, SizeIs(1));
+  EXPECT_EQ(study.protocols[0].questions[0].id, "satisfaction");
+  const auto& trials = study.protocols[0].sessions.at(0).trials;
+  ASSERT_THAT(trials, SizeIs(2));
+  EXPECT_EQ(trials[0].first.nominal.mean, 20);
+  EXPECT_EQ(trials[0].first.nominal.sd, 5);
+  EXPECT_EQ(trials[0].answers.at(0).score, 5);
+  EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
 }
 
 }  // namespace

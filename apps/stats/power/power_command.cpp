@@ -268,9 +268,10 @@ void add_power_command(CLI::App& app) {
       ->check(CLI::Range(2, 1000000));
   sub->add_option("--seed", request.seed, "Seed")->capture_default_str();
   sub->add_option("--plan", command->plan, "Analysis plan (TOML): margins, level; without: the defaults");
-  sub->add_option("--json", command->json, "File for every number (docs/statistics.md)");
-  sub->add_option("--csv", command->csv, "File for the same numbers as a table");
-  sub->add_option("--svg", command->svg, "File for the curves");
+  sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
+      ->check(output_file());
+  sub->add_option("--csv", command->csv, "File for the same numbers as a table")->check(output_file());
+  sub->add_option("--svg", command->svg, "File for the curves")->check(output_file());
   sub->callback([command, sub] { run(*command, *sub); });
 }
 

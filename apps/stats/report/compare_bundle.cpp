@@ -94,12 +94,14 @@ std::string name_of(const Json& about, const std::string& sha256) {
 }
 
 /// Whether the study's protocol is one of the bundle's; adds what differs.
-bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, Json& differences) {
+bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
     return name_of(bundle.about, entry.first) == used.name;
   });
   if (planned == bundle.protocols.end()) {
+    // A pilot beside the tasks is exploratory and need not be in their bundle.
+    if (pilot) return false;
     differences.push_back("protocol " + used.name + " was not preregistered");
     return false;
   }
@@ -177,6 +179,22 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
+/// Whether the bundle is older than the first answer of a part, by the clocks of both; an entry of "times".
+Json time_json(const std::string& frozen, const Json& used) {
+  const std::string title = used.at("title");
+  if (!used.at("first_answer_utc").is_string())
+    return {{"task", used.at("task")},
+            {"frozen_before", nullptr},
+            {"text", "No time of an answer of " + title + " is recorded."}};
+  const std::string first = used.at("first_answer_utc");
+  const bool before = frozen < first;
+  return {{"task", used.at("task")},
+          {"first_answer_utc", first},
+          {"frozen_before", before},
+          {"text", "The bundle was " + std::string(before ? "" : "not ") +
+                       "frozen before the first answer of " + title + ", given " + first + "."}};
+}
+
 }  // namespace
 
 Bundle read_bundle(const fs::path& folder) {
@@ -205,25 +223,35 @@ Bundle read_bundle(const fs::path& folder) {
 
 Json compare_with_bundle(const Bundle& bundle, const std::vector<study::ProtocolRow>& protocols,
                          const Json& results) {
-  Json differences = Json::array(), tasks = Json::object();
+  Json differences = Json::array(), tasks = Json::object(), times = Json::array();
+  const std::string frozen = bundle.about.value("frozen_utc", "");
   for (const auto& name : bundle.altered)
     differences.push_back(name + " was changed or removed after the bundle was frozen");
   for (const Json& used : results.at("study").value("protocols", Json::array())) {
     const std::string task = used.at("task"), sha256 = used.at("sha256");
     const auto row = std::find_if(protocols.begin(), protocols.end(),
                                   [&](const auto& protocol) { return protocol.sha256 == sha256; });
-    const bool protocol_holds = row != protocols.end() && same_protocol(bundle, *row, differences);
+    const bool protocol_holds =
+        row != protocols.end() && same_protocol(bundle, *row, task == "pilot", differences);
     const bool hypotheses_hold = same_hypotheses(bundle, task, results, differences);
-    tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty();
+    const Json time = time_json(frozen, used);
+    const bool late = time.at("frozen_before") == false;
+    const bool covered = protocol_holds || task != "pilot";
+    if (covered) times.push_back(time);
+    if (covered && late) differences.push_back(time.at("text"));
+    tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty() && !late;
   }
   const bool holds = differences.empty();
   return {{"sha256", bundle.sha256},
-          {"frozen_utc", bundle.about.value("frozen_utc", "")},
+          {"frozen_utc", frozen},
           {"vip_lab", bundle.about.value("vip_lab", "")},
           {"holds", holds},
-          {"summary", holds ? "Protocols, hypotheses, margins and rules are those of the bundle."
-                            : "The study or its analysis differs from the bundle."},
+          {"summary",
+           holds ? "Protocols, hypotheses, margins and rules are those of the bundle, which is older than "
+                   "the answers."
+                 : "The study or its analysis differs from the bundle."},
           {"tasks", tasks},
+          {"times", times},
           {"differences", differences}};
 }
 

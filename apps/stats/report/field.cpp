@@ -138,6 +138,16 @@ std::string yes_no(const Field& field) {
   return field.json().is_boolean() ? span(field, field.yes() ? "yes" : "no") : dash(field);
 }
 
+std::string counts(const Field& object) {
+  std::string out;
+  for (const auto& [name, n] : object.members()) {
+    if (n.number() <= 0) continue;
+    const std::string shown = name.empty() ? "not said" : svg::escaped(name);
+    out += (out.empty() ? "" : ", ") + shown + ": " + count(n);
+  }
+  return out.empty() ? "none" : out;
+}
+
 std::string why_not(const Field& field) {
   if (field.there()) return "";
   const std::string reason = field.reason();

@@ -61,6 +61,8 @@ std::string interval(const Field& field, int decimals);
 std::string words(const Field& field);
 /// "yes" or "no".
 std::string yes_no(const Field& field);
+/// "tracked: 26, mouse: 3" of an object with counts; an empty name is "not said". "none" of no count.
+std::string counts(const Field& object);
 /// The reason why `field` is not there, as a sentence; "" when it is.
 std::string why_not(const Field& field);
 

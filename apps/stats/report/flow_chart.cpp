@@ -62,7 +62,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
   picture.title = "Flow of participants, " + task;
   picture.description =
       "Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
-      "those who left in between, with the reason, and those set aside.";
+      "those who left in between, with the reason, and what is counted apart.";
   const std::vector<std::pair<std::vector<Entry>, std::vector<Entry>>> steps{
       {{{"sessions started", flow["started"]}},
        those_with_some({{"not eligible", flow["not_eligible"]},
@@ -70,15 +70,15 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
                         {"did not come back", flow["dropped_out"]},
                         {"still open", flow["open"]}})},
       {{{"sessions completed", flow["done"]}},
-       those_with_some({{"left out by rule or by hand", flow["excluded_participants"]},
-                        {"test data, set aside", flow["set_aside"]["test_data"]},
-                        {"simulated, set aside", flow["set_aside"]["simulated"]}})},
+       those_with_some({{"people left out by rule or hand", flow["excluded_participants"]}})},
       {{{"participants analysed", flow["analysed"]},
         {"trials planned", flow["trials_planned"]},
         {"trials answered", flow["trials_answered"]},
         {"trials left out", flow["trials_excluded"]},
         {"trials analysed", flow["trials_analysed"]}},
-       those_with_some({{"withdrew, data deleted", flow["withdrawn"]},
+       those_with_some({{"people withdrew from the study", flow["withdrawn"]},
+                        {"sessions of test data, set aside", flow["set_aside"]["test_data"]},
+                        {"simulated sessions, set aside", flow["set_aside"]["simulated"]},
                         {"practice trials, not analysed", flow["practice"]},
                         {"repeated trials, for retest", flow["repeat"]}})}};
   double y = 40;

@@ -32,8 +32,14 @@ figcaption, .note { font-size: .88rem; }
 .warning { border-left: .4rem solid #d55e00; background: #fff4ea; padding: .5rem .8rem; margin: .8rem 0; }
 .refused { border-left: .4rem solid #666; background: #f3f3f3; padding: .4rem .8rem; margin: .6rem 0; }
 .apa li { margin: .15rem 0; }
-.number { white-space: nowrap; }
+.number, .ordinal { white-space: nowrap; }
 .hash { font-family: "DejaVu Sans Mono", monospace; font-size: .8rem; overflow-wrap: anywhere; }
+@media screen and (max-width: 640px) {
+  body { padding: .5rem .7rem 3rem; }
+  nav ul { columns: 1; }
+  .wide table { width: max-content; }
+  .wide th, .wide td { max-width: 15rem; }
+}
 @media print {
   html { font-size: 9.5pt; }
   @page { size: A4; margin: 15mm 13mm; }

@@ -7,10 +7,16 @@ namespace {
 
 const std::string minus = "\xE2\x88\x92";
 
-/// "0.46 [0.06, 1.25]" of a difference, or of a share.
+/// "90 % CI [0.06, 1.25]": the intervals of one page do not all hold the same share.
+std::string interval_of(const Field& test) {
+  return (test["ci"].entries().empty() ? "" : percent(test["ci_confidence"]) + " ") + "CI " +
+         interval(test["ci"], 2);
+}
+
+/// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
-  return fixed(test["estimate"], 2) + " " + interval(test["ci"], 2);
+  return fixed(test["estimate"], 2) + ", " + interval_of(test);
 }
 
 /// What the test did not give, behind its label.
@@ -22,7 +28,7 @@ std::string label(const Field& test) {
 Table tests_table(const Field& hypothesis) {
   const bool preference = hypothesis["kind"].words() == "preference";
   Table table(words(hypothesis["id"]) + ": tests of the family",
-              {"Test", "<i>n</i>", preference ? "Share [CI]" : "Difference [CI]", "Margin", "<i>p</i>", "",
+              {"Test", "<i>n</i>", preference ? "Share" : "Difference", "Margin", "<i>p</i>", "",
                "<i>p</i><sub>Holm</sub>", "", "Holds", "<i>p</i> as in the paper", "Holds as in the paper"});
   for (const Field& test : hypothesis["tests"].entries()) {
     table.row({label(test), count(test["n"]), estimate(test), fixed(test["margin"], 2), p_bare(test["p"]),
@@ -45,7 +51,7 @@ std::string apa(const Field& test, bool preference) {
   } else {
     out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
   }
-  out += ", CI " + interval(test["ci"], 2);
+  out += ", " + interval_of(test);
   if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
   if (test["t"].is_number()) out += ", <i>t</i>(" + fixed(test["df"], 0) + ") = " + fixed(test["t"], 2);
   if (test["d_z"].is_number()) out += ", <i>d<sub>z</sub></i> = " + fixed(test["d_z"], 2);
@@ -88,10 +94,6 @@ std::string one(const Field& hypothesis, bool registered) {
 }
 
 }  // namespace
-
-bool preregistered(const Field& root, const std::string& task) {
-  return root["preregistration"]["tasks"][task].yes();
-}
 
 std::string decisions_section(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
@@ -140,7 +142,10 @@ std::string sensitivity_section(const Field& root) {
     if (variant["hypotheses"].entries().empty() && !variant.reason().empty())
       decisions = svg::escaped(variant.reason());
     overview.row({words(variant["label"]), words(variant["task"]), count(variant["participants"]),
-                  count(variant["answers"]), decisions, changed.empty() ? "none" : changed});
+                  count(variant["answers"]), decisions,
+                  !variant["changed"].there() ? ""
+                  : changed.empty()           ? "none"
+                                              : changed});
   }
   return section(
       "sensitivity", "Sensitivity",

@@ -8,13 +8,13 @@ namespace apps::report {
 
 namespace {
 
-struct Part {
+struct Section {
   const char* id;
   const char* title;
   std::string (*render)(const Field&);
 };
 
-constexpr Part parts[] = {
+constexpr Section sections[] = {
     {"decisions", "Decisions", decisions_section},
     {"methods", "Methods", methods_section},
     {"participants", "Participants and exclusions", participants_section},
@@ -29,6 +29,16 @@ constexpr Part parts[] = {
     {"provenance", "Provenance", provenance_section},
 };
 
+/// Writes "Table 3. " or "Figure 2. " behind each start tag, in the order of the page.
+std::string numbered(std::string body, const std::string& tag, const std::string& name) {
+  int n = 0;
+  for (auto at = body.find(tag); at != std::string::npos; at = body.find(tag, at)) {
+    at += tag.size();
+    body.insert(at, "<span class=\"ordinal\">" + name + " " + std::to_string(++n) + ".</span> ");
+  }
+  return body;
+}
+
 }  // namespace
 
 std::string results_page(const Json& results) {
@@ -37,12 +47,13 @@ std::string results_page(const Json& results) {
     throw base::Error("results", "schema is \"" + root["schema"].words() + "\", not \"vip-results/1\"",
                       "compute the results anew with this version of vip-stats");
   std::string contents, body;
-  for (const Part& part : parts) {
+  for (const Section& part : sections) {
     const std::string rendered = part.render(root);
     if (rendered.empty()) continue;
     contents += "<li><a href=\"#" + std::string(part.id) + "\">" + part.title + "</a></li>\n";
     body += rendered;
   }
+  body = numbered(numbered(std::move(body), "<caption>", "Table"), "<figcaption>", "Figure");
   return whole_page("Results of " + root["study"]["database"].words(),
                     "<main id=\"main\">\n" + head_section(root) + "<nav aria-label=\"Contents\">\n<ul>\n" +
                         contents + "</ul>\n</nav>\n" + body + "</main>\n");

@@ -76,11 +76,13 @@ std::string bands(const Field& pilot) {
 }
 
 std::string cells(const Field& pilot) {
-  Table table("Mean scores of the settings",
-              {"Setting: mean, frames/s", "SD, frames/s", "Realised mean", "Realised SD", "Mean score"});
+  Table table("Scores of the settings, over participants",
+              {"Setting: mean, frames/s", "SD, frames/s", "Realised mean", "Realised SD", "<i>n</i>",
+               "Mean score", "<i>SD</i>", "CI (<i>t</i>)"});
   for (const Field& c : pilot["cells"].entries())
     table.row({fixed(c["fps_mean"], 0), fixed(c["fps_sd"], 0), fixed(c["realised_mean"], 2),
-               fixed(c["realised_sd"], 2), fixed(c["score"], 2)});
+               fixed(c["realised_sd"], 2), count(c["n"]), fixed(c["score"], 2), fixed(c["sd"], 2),
+               interval(c["ci"], 2)});
   return table.empty() ? "" : table.html();
 }
 
@@ -132,11 +134,7 @@ std::string pilot_section(const Field& root) {
                "the fitted curve, as the paper's Fig.&nbsp;6.");
   body += estimates(pilot);
   if (pilot["lack_of_fit"].there())
-    body +=
-        paragraph("Lack of fit: " +
-                  (pilot["lack_of_fit"]["text"].words().empty() ? "<i>p</i> " + p(pilot["lack_of_fit"]["p"])
-                                                                : words(pilot["lack_of_fit"]["text"])) +
-                  ".");
+    body += paragraph("Shape of the scores: " + words(pilot["lack_of_fit"]["text"]) + ".");
   body += bands(pilot);
   const Field resampling = pilot["bootstrap"].there() ? pilot["bootstrap"] : pilot["interval"];
   body += paragraph(words(pilot["estimator"]) + ". " + words(pilot["interval"]["method"]) +

@@ -1,14 +1,27 @@
 #pragma once
 /// The page's sections, each "" when the results lack what it shows.
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "apps/stats/report/field.hpp"
 
 namespace apps::report {
 
+/// What a study may hold, by its name in the results.
+struct Part {
+  const char* key;
+  const char* title;
+};
+inline constexpr std::array<Part, 3> all_parts{
+    {{"pilot", "Pilot"}, {"task1", "Task 1"}, {"task2", "Task 2"}}};
+
+/// "Pilot, Task 1 and Task 2"; "" of none.
+std::string enumerated(const std::vector<std::string>& names);
+
 /// Whether the hypotheses of a task ("task1", "task2") were fixed beforehand: a bundle was given, is whole,
-/// and holds the study's protocol and the tests as they were made.
+/// holds the study's protocol and the tests as they were made, and is older than the first answer.
 bool preregistered(const Field& root, const std::string& task);
 
 std::string head_section(const Field& root);

@@ -70,30 +70,37 @@ std::string other_tests(const Field& task1, const Field& score) {
               {"Pair", "Wilcoxon <i>V</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>", "Hodges-Lehmann [CI]",
                "Welch <i>t</i> (<i>df</i>)", "<i>p</i>", "Equivalence within", "CI of equivalence",
                "<i>p</i>", "Equivalent", "BCa interval of the difference", "Shapiro-Wilk <i>p</i>"});
-  return by_n_star(
-      std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
-        const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
-        const auto why = [](const Field& part, const std::string& shown) {
-          return part.there() ? shown : svg::escaped(part.reason());
-        };
-        t.row({pair_name(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
-               fixed(w["location"], 2) + " " + interval(w["ci"], 2),
-               why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"), p_bare(welch["p"]),
-               why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)), interval(tost["ci"], 2), p_bare(tost["p"]),
-               yes_no(tost["equivalent"]), interval(c["bca"], 2), p_bare(c["normality"]["p"])});
-      });
+  return by_n_star(std::move(table), task1, "comparisons", score["code"].words(),
+                   [](Table& t, const Field& c) {
+                     const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
+                     const auto why = [](const Field& part, const std::string& shown) {
+                       return part.there() ? shown : svg::escaped(part.reason());
+                     };
+                     t.row({pair_name(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
+                            fixed(w["location"], 2) + " " + interval(w["ci"], 2),
+                            why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"),
+                            p_bare(welch["p"]), why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)),
+                            tost.there() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
+                                         : interval(tost["ci"], 2),
+                            p_bare(tost["p"]), yes_no(tost["equivalent"]), interval(c["bca"], 2),
+                            p_bare(c["normality"]["p"])});
+                   });
 }
 
 /// t tests as sentences, of those below .05 without correction.
 std::string apa_lines(const Field& task1, const std::string& score) {
   std::vector<std::string> lines;
+  bool any_tested = false;
   for (const Field& c : task1["comparisons"].entries()) {
-    if (c["score"].words() != score || c["stars"].words().empty()) continue;
+    if (c["score"].words() != score) continue;
+    any_tested = any_tested || c["p"].is_number();
+    if (c["stars"].words().empty()) continue;
     lines.push_back(words(c["n_star"]) + ", " + pair_name(c) + ": <i>t</i>(" + fixed(c["df"], 0) +
                     ") = " + fixed(c["t"], 2) + ", <i>p</i> " + p(c["p"]) + ", <i>p</i><sub>Holm</sub> " +
                     p(c["p_holm"]) + ", <i>d<sub>z</sub></i> = " + fixed(c["d_z"], 2) + ", CI " +
                     interval(c["d_z_ci"], 2));
   }
+  if (!any_tested) return paragraph("No pair could be tested.");
   if (lines.empty()) return paragraph("No pair differs below .05, even without correction.");
   return paragraph("Pairs below .05 without correction, in APA style:") + list(lines);
 }
@@ -206,8 +213,8 @@ std::string task1_section(const Field& root) {
   if (!task1.there()) return section("task1", "Task 1: realism and cybersickness", why_not(task1));
   std::string body = paragraph(
       badge(false) + " " + count(task1["participants"]) + " participants, " + count(task1["reports"]) +
-      " reports. All pairwise and omnibus tests of this section describe the data; the decisions stand under "
-      "Hypotheses.");
+      " reports. All pairwise and omnibus tests of this section describe the data" +
+      (root["hypotheses"].entries().empty() ? "." : "; the decisions stand under Hypotheses."));
   std::vector<std::string> rules;
   for (const auto& [name, rule] : task1["rules"].members()) rules.push_back(words(rule));
   body += list(rules);

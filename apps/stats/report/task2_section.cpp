@@ -63,14 +63,16 @@ std::string interval_bias(const Field& bias) {
 std::string bradley_terry(const Field& model) {
   if (model.json().is_null()) return "";
   if (!model.there()) return subsection("Bradley-Terry model", why_not(model));
-  Table table("Abilities on the log-odds scale against " + words(model["reference"]),
+  Table table("Abilities on the log-odds scale, their mean at nought",
               {"Method", "Estimate", "<i>SE</i>", "CI", "Worth (sums to one)"});
   for (const Field& ability : model["abilities"].entries())
     table.row({words(ability["method"]), fixed(ability["estimate"], 2), fixed(ability["se"], 2),
                interval(ability["ci"], 2), fixed(ability["worth"], 3)});
   std::string body = table.html();
   if (model["penalised"].yes())
-    body += paragraph("Some method was always or never chosen: the estimates are Firth's, penalised.");
+    body += paragraph(
+        "A method or a group of methods was always or never chosen over all others: the estimates are "
+        "Firth's, penalised.");
   const auto test = [](const std::string& name, const Field& part) {
     if (!part.there()) return part.reason().empty() ? "" : name + ": " + svg::escaped(part.reason());
     return name + ": \xCF\x87\xC2\xB2(" + count(part["df"]) + ") = " + fixed(part["chi2"], 2) +
@@ -124,8 +126,8 @@ std::string task2_section(const Field& root) {
   return section(
       "task2", "Task 2: preference",
       paragraph(badge(false) + " " + count(task2["participants"]) + " participants, " +
-                count(task2["answers"]) +
-                " answers. The tests of all pairs describe the data; the decisions stand under Hypotheses.") +
+                count(task2["answers"]) + " answers. The tests of all pairs describe the data" +
+                (root["hypotheses"].entries().empty() ? "." : "; the decisions stand under Hypotheses.")) +
           list(rules) +
           figure(preference_bars(pairs),
                  "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10; line: Wilson "

@@ -43,7 +43,14 @@ std::string fill_of(const Verdict& verdict, const std::string& id) {
          " stroke=\"#000000\"";
 }
 
-/// Showings of a method at one n_*, over scenes.
+/// "50, SD 20" of a pilot's setting, "Ours, 32k" of a method.
+std::string name_of(const Field& cell) {
+  if (cell["task"].words() != "pilot") return cell["method"].words() + ", " + cell["n_star"].words();
+  return svg::number(cell["nominal_mean_fps"].number(), 0) + ", SD " +
+         svg::number(cell["nominal_sd_fps"].number(), 0);
+}
+
+/// Showings of a method at one n_*, over scenes, or of a setting.
 struct Line {
   std::array<double, 4> n{};
   double all() const { return n[0] + n[1] + n[2] + n[3]; }
@@ -79,7 +86,7 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
   std::map<std::string, Line> lines;
   for (const Field& cell : timing.entries()) {
     if (cell["task"].words() != task) continue;
-    const std::string name = cell["method"].words() + ", " + cell["n_star"].words();
+    const std::string name = name_of(cell);
     const auto [at, fresh] = lines.try_emplace(name);
     if (fresh) order.push_back(name);
     for (std::size_t i = 0; i < verdicts.size(); ++i) at->second.n[i] += cell[verdicts[i].key].number();
@@ -87,8 +94,10 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
   svg::Picture picture{.width = left + width + 20, .id = "timing-" + task};
   picture.title = "Verdicts on the timing of the showings";
   picture.description =
-      "A bar for each method and n*: the shares of its showings, over scenes, whose timing passed, was "
-      "degraded, failed or could not be judged. The table below holds the counts of each cell.";
+      std::string("A bar for each ") +
+      (task == "pilot" ? "setting, mean and SD in frames/s" : "method and n*, over scenes") +
+      ": the shares of its showings whose timing passed, was degraded, failed or could not be judged. The "
+      "table below holds the counts of each cell.";
   picture.definitions = patterns(picture.id);
   double y = top;
   for (const auto& name : order) {

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/common/program.hpp"
 #include "libstudy/store/export_folder.hpp"
 #include "stats/base/file.hpp"
 
@@ -189,7 +188,6 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
                                       {"participants", "/scores"}})
       lists.emplace_back(std::string("sickness_") + name, sickness_lines(parts, Json::json_pointer(place)));
   }
-  make_folder(folder);
   write(folder / "exclusions.csv", csv_text(results.at("exclusions"), exclusion_columns));
   for (const auto& [name, list] : lists) {
     if (!list.empty()) write(folder / (name + ".csv"), csv_text(list));

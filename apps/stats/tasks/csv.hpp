@@ -16,7 +16,7 @@ namespace apps {
 /// that any line has, in the order of first appearance; `if_empty` are those of an empty list.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
-/// Writes every list of the results into a folder, which is made: task1_cells.csv and the like. Lists that
+/// Writes every list of the results into a folder, which is there: task1_cells.csv and the like. Lists that
 /// are empty or absent make no file; exclusions.csv is always there.
 using WriteFile = std::function<void(const std::filesystem::path&, const std::string& bytes)>;
 void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write);

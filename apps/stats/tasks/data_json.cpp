@@ -15,27 +15,39 @@ std::string counted(std::size_t n, const std::string& thing) {
 }
 
 Json protocol_json(const TaskData& data) {
-  return {{"task", task_name(data.task)},
-          {"name", data.protocol.name},
-          {"version", data.protocol.version},
-          {"sha256", data.protocol.sha256},
-          {"participants_planned", data.protocol.participants}};
+  return {
+      {"task", task_name(data.task)},
+      {"title", task_title(data.task)},
+      {"name", data.protocol.name},
+      {"version", data.protocol.version},
+      {"sha256", data.protocol.sha256},
+      {"participants_planned", data.protocol.participants > 0 ? Json(data.protocol.participants) : Json()},
+      {"first_answer_utc", data.first_answer_utc.empty() ? Json() : Json(data.first_answer_utc)},
+      {"test_data", data.test_data},
+      {"simulated", data.simulated.size()},
+      {"observers", data.observers},
+      {"gaze", data.gaze},
+      {"stations", data.stations},
+      {"displays", data.displays}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
-  const std::string task = data.task == TaskKind::Task1 ? "Task 1: " : "Task 2: ";
+  const std::string task = std::string(task_title(data.task)) + ": ";
   std::vector<std::string> notes;
   if (data.test_data) notes.push_back(task + "these are test data, not a study.");
   if (!data.simulated.empty())
     notes.push_back(task + counted(data.simulated.size(), "participant") +
                     " simulated by an observer model.");
+  for (const std::string& protocol : data.set_aside)
+    notes.push_back(task + "protocol " + protocol + " left out: it holds no real answers.");
   if (data.flow.test_left_out > 0)
     notes.push_back(task + counted(static_cast<std::size_t>(data.flow.test_left_out), "session") +
                     " of test data left out.");
   if (data.flow.simulated_left_out > 0)
     notes.push_back(task + counted(static_cast<std::size_t>(data.flow.simulated_left_out), "session") +
                     " of simulated observers left out beside those of people.");
-  const std::string gaze = data.gaze_problem();
+  // The pilot shows one method, which refines nothing by gaze.
+  const std::string gaze = data.task == TaskKind::Pilot ? "" : data.gaze_problem();
   if (!gaze.empty()) notes.push_back(task + gaze + ".");
   return notes;
 }
@@ -116,7 +128,7 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
     for (const auto& [station, n] : data->stations) stations[station] += n;
     for (const auto& [display, n] : data->displays) displays[display] += n;
     test_data = test_data && data->test_data;
-    tracked = tracked && data->gaze_problem().empty();
+    tracked = tracked && (data->task == TaskKind::Pilot || data->gaze_problem().empty());
     protocols.push_back(protocol_json(*data));
     for (const std::string& note : notes_of(*data)) notes.push_back(note);
   }
@@ -172,18 +184,17 @@ Json exclusions_json(const TaskData& data) {
 }
 
 Json timing_json(const TaskData& data) {
-  std::map<std::tuple<int, int, int>, TimedCell> cells;
+  std::map<std::tuple<int, int, int, double, double>, TimedCell> cells;
   const auto& protocol = data.protocol;
   for (const TimedShowing& one : data.showings) {
-    if (!one.shown.played) continue;
     const auto& what = one.shown.what;
     cells[{place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
-           place(protocol.methods, what.method)}]
+           place(protocol.methods, what.method), one.shown.nominal.mean, one.shown.nominal.sd}]
         .add(one.shown);
   }
   Json list = Json::array();
   for (const auto& [key, cell] : cells) {
-    const auto& [scene, n_star, method] = key;
+    const auto scene = std::get<0>(key), n_star = std::get<1>(key), method = std::get<2>(key);
     Json json{{"task", task_name(data.task)},
               {"scene", data.scenes[static_cast<std::size_t>(scene)]},
               {"n_star", protocol.n_stars[static_cast<std::size_t>(n_star)]},

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <utility>
 
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/toml.hpp"
 
@@ -43,9 +44,8 @@ std::size_t index_in(const List& names, const std::string& name) {
 
 void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules) {
   constexpr base::Range share{0, 1};
-  const auto timing = table.choice_or("timing", timing_names[static_cast<std::size_t>(rules.timing)],
-                                      {timing_names.begin(), timing_names.end()});
-  rules.timing = static_cast<stats::TimingRule>(index_in(timing_names, timing));
+  rules.timing = timing_rule_of(
+      table.choice_or("timing", timing_rule_name(rules.timing), {timing_names.begin(), timing_names.end()}));
   rules.min_catch_correct = optional_number(table, "min_catch_correct", rules.min_catch_correct, share);
   rules.max_repeat_difference =
       optional_number(table, "max_repeat_difference", rules.max_repeat_difference, base::non_negative);
@@ -80,6 +80,15 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
 
 }  // namespace
 
+const char* timing_rule_name(stats::TimingRule rule) { return timing_names[static_cast<std::size_t>(rule)]; }
+
+stats::TimingRule timing_rule_of(const std::string& name) {
+  const auto at = index_in(timing_names, name);
+  if (at == timing_names.size())
+    throw base::Error("timing rule", "\"" + name + "\" is none", "use none, fail or degraded");
+  return static_cast<stats::TimingRule>(at);
+}
+
 PlanInForce read_plan(const std::filesystem::path& file) {
   const std::string text = base::read_file(file, largest_plan);
   const auto root = base::parse_toml(text, file.string());
@@ -105,7 +114,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "     # points on "
          "the scale\nrealism = " +
          shortest(plan.margin_realism) + "\nsickness = " + shortest(plan.margin_sickness) +
-         "\n\n[exclusions]\ntiming = \"" + timing_names[static_cast<std::size_t>(rules.timing)] +
+         "\n\n[exclusions]\ntiming = \"" + timing_rule_name(rules.timing) +
          "\"                 # verdicts that exclude a trial: none, fail or degraded (and "
          "fail)\nmin_catch_correct = " +
          number_or_none(rules.min_catch_correct) +
@@ -134,7 +143,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
           {"confidence", plan.confidence},
           {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
           {"exclusions",
-           {{"timing", timing_names[static_cast<std::size_t>(rules.timing)]},
+           {{"timing", timing_rule_name(rules.timing)},
             {"min_catch_correct", number_or_null(rules.min_catch_correct)},
             {"max_repeat_difference", number_or_null(rules.max_repeat_difference)},
             {"min_repeat_agreement", number_or_null(rules.min_repeat_agreement)},

@@ -22,6 +22,10 @@ struct PlanInForce {
 /// key, a wrong type or a value out of range.
 PlanInForce read_plan(const std::filesystem::path& file);
 
+/// "none", "fail" or "degraded", and back; base::Error for another name.
+const char* timing_rule_name(stats::TimingRule rule);
+stats::TimingRule timing_rule_of(const std::string& name);
+
 /// The file that read_plan() reads back as the same plan, every key written out.
 std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::string>& protocols);
 

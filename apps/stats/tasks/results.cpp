@@ -1,5 +1,6 @@
 #include "apps/stats/tasks/results.hpp"
 
+#include "apps/stats/pilot_fit.hpp"
 #include "apps/stats/tasks/data_json.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"
@@ -12,31 +13,50 @@ namespace apps {
 
 namespace {
 
+/// The pilot's level for the solver, the middle of the paper's scale.
+constexpr double pilot_level = 4;
+
 /// One task's parts of the document.
 struct TaskPart {
   TaskData data;
-  Json results;
+  Json results;  ///< refused when no answer counts
   std::vector<stats::Hypothesis> hypotheses;
-  Json sensitivity;
+  Json sensitivity = Json::array();
 };
 
-stats::Result<TaskPart> analyse(const study::TaskStudy& study, const TaskSelection& selection) {
-  const auto data = select_task(study, selection);
-  if (!data) return stats::Refusal{data.reason()};
-  TaskPart part{*data, {}, {}, {}};
-  if (selection.task == TaskKind::Task1) {
-    const auto results = analyse_task1(*data, selection.plan);
-    if (!results) return stats::Refusal{results.reason()};
-    part.results = task1_json(*data, *results, selection.plan);
-    part.hypotheses = results->hypotheses;
-  } else {
-    const auto methods = static_cast<int>(data->protocol.methods.size());
-    const auto analysis = stats::analyse_preferences(data->choices, methods, selection.plan);
-    part.results = task2_json(*data, analysis, selection.plan);
-    part.hypotheses =
-        stats::task2_hypotheses(analysis.pairs, data->protocol.methods, selection.plan, data->gaze_problem());
+/// What stands under the task's own name, and its hypotheses. Refused with the reason.
+stats::Result<Json> results_of(TaskPart& part, const stats::AnalysisPlan& plan) {
+  const TaskData& data = part.data;
+  if (const std::string nothing = nothing_counts(data); !nothing.empty()) return stats::Refusal{nothing};
+  if (data.task == TaskKind::Pilot) {
+    stats::BootstrapOptions bootstrap;
+    bootstrap.seed = plan.seed;
+    bootstrap.confidence = plan.confidence;
+    return fit_json(fit_pilot(data, pilot_level, bootstrap));
   }
-  part.sensitivity = sensitivity_json(study, selection, *data, part.hypotheses);
+  if (data.task == TaskKind::Task1) {
+    const auto results = analyse_task1(data, plan);
+    if (!results) return stats::Refusal{results.reason()};
+    part.hypotheses = results->hypotheses;
+    return task1_json(data, *results, plan);
+  }
+  const auto methods = static_cast<int>(data.protocol.methods.size());
+  const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
+  part.hypotheses = stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem());
+  return task2_json(data, analysis, plan);
+}
+
+/// Refused without a protocol that is analysed; without an answer that counts, who left and why still stands.
+stats::Result<TaskPart> analyse(const study::TaskStudy& study, const TaskSelection& selection,
+                                std::vector<MissingTask>& missing) {
+  const auto data = collect_task(study, selection);
+  if (!data) return stats::Refusal{data.reason()};
+  TaskPart part{*data, {}, {}};
+  const auto results = results_of(part, selection.plan);
+  part.results = results ? *results : json_refused(results.reason());
+  if (!results) missing.push_back({selection.task, results.reason()});
+  if (results && selection.task != TaskKind::Pilot)
+    part.sensitivity = sensitivity_json(study, selection, *data, part.hypotheses);
   return part;
 }
 
@@ -84,7 +104,7 @@ Results make_results(const study::TaskStudy& study, const ResultsRequest& reques
   Results out;
   std::vector<TaskPart> parts;
   for (const TaskKind task : request.tasks) {
-    const auto part = analyse(study, {task, request.protocol, request.plan.plan});
+    const auto part = analyse(study, {task, request.protocol, request.plan.plan}, out.missing);
     if (part) {
       parts.push_back(*part);
     } else {

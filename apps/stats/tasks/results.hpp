@@ -26,7 +26,7 @@ struct MissingTask {
 };
 
 struct Results {
-  Json json;  ///< complete but for "pilot"
+  Json json;
   std::vector<MissingTask> missing;
 };
 

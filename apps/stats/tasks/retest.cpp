@@ -45,7 +45,7 @@ Json rating_retest_json(const TaskData& data) {
 }
 
 Json choice_retest_json(const TaskData& data) {
-  const auto found = data.repeats.find(data.question);
+  const auto found = data.repeats.find(data.question.id);
   if (found == data.repeats.end()) return {};
   return {{"pairs", found->second.size()}, {"same", share_of_equals(found->second)}};
 }

@@ -81,8 +81,11 @@ Json wilcoxon_json(const stats::MethodComparison& comparison) {
 
 Json equivalence_json(const stats::Result<stats::EquivalenceTest>& test, double margin, double alpha) {
   return json_result(test, [&](const stats::EquivalenceTest& one) {
-    return Json{
-        {"margin", margin}, {"p", one.p}, {"ci", json_interval(one.ci)}, {"equivalent", one.p < alpha}};
+    return Json{{"margin", margin},
+                {"p", one.p},
+                {"ci", json_interval(one.ci)},
+                {"ci_confidence", 1 - 2 * alpha},
+                {"equivalent", one.p < alpha}};
   });
 }
 

@@ -207,7 +207,7 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
   for (const auto& pair : analysis.pairs) pairs.push_back(pair_json(pair, methods));
   return {{"participants", data.participants.size()},
           {"answers", data.choices.size()},
-          {"question", data.question},
+          {"question", data.question.id},
           {"methods", methods},
           {"n_stars", data.protocol.n_stars},
           {"scenes", data.scenes},

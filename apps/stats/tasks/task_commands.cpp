@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
@@ -123,7 +124,10 @@ void run(const TaskCommand& command) {
                       "collect answers, or choose another --protocol or --plan; nothing was written");
   }
   if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
-  if (!command.csv.empty()) write_csv_folder(results.json, command.csv, write);
+  if (!command.csv.empty()) {
+    files->make_folder(command.csv);
+    write_csv_folder(results.json, command.csv, write);
+  }
   print_results(results.json, command.task);
 }
 
@@ -133,15 +137,16 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   auto* sub = app.add_subcommand(task_name(task), what);
   auto* positional = sub->add_option("database", command->database, "The study's database");
   sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
-  sub->add_option("--json", command->json, "File for every number (docs/results.md)");
+  sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
   sub->add_option("--plan", command->plan,
                   "Analysis plan (TOML): margins, level, exclusion rules, seed; without: the defaults");
   sub->add_option("--protocol", command->protocol, "First digits of the protocol's SHA-256");
   sub->footer(
-      "Files hold values of single participants, so they are registered in the database, which must be "
-      "writable\n"
-      "for that: when one of them withdraws, the files are deleted, to be made again.");
+      "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
+      "registered in the database, which must be writable for that: when one of them withdraws, the files "
+      "are\n"
+      "deleted, to be made again.");
   sub->callback([command] {
     if (command->database.empty()) throw CLI::RequiredError("database or --db");
     run(*command);

@@ -4,113 +4,23 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/stats/tasks/trial_record.hpp"
+
 namespace apps {
 
 namespace {
 
-using study::TaskProtocol;
 using study::TaskSession;
 using study::TaskTrial;
-
-bool has_answers(const TaskSession& session) {
-  return std::any_of(session.trials.begin(), session.trials.end(), [](const TaskTrial& trial) {
-    return std::any_of(trial.answers.begin(), trial.answers.end(),
-                       [](const study::TaskAnswer& answer) { return answer.score.has_value(); });
-  });
-}
-
-bool has_real_answers(const TaskProtocol& protocol) {
-  return std::any_of(protocol.sessions.begin(), protocol.sessions.end(),
-                     [](const TaskSession& session) { return !session.test_data && has_answers(session); });
-}
-
-/// The one protocol asked for. Test data step back behind real ones.
-stats::Result<TaskProtocol> choose_protocol(const study::TaskStudy& study, const TaskSelection& selection) {
-  std::vector<const TaskProtocol*> fit;
-  for (const TaskProtocol& protocol : study.protocols) {
-    if (protocol.pairs == (selection.task == TaskKind::Task2) &&
-        protocol.sha256.starts_with(selection.protocol))
-      fit.push_back(&protocol);
-  }
-  const std::string wanted =
-      selection.task == TaskKind::Task2 ? "that shows pairs of methods" : "that shows methods one by one";
-  if (fit.empty()) {
-    return stats::Refusal{
-        "the database holds no protocol " + wanted +
-        (selection.protocol.empty() ? "" : " and whose SHA-256 begins with " + selection.protocol)};
-  }
-  if (fit.size() > 1) {
-    std::vector<const TaskProtocol*> real;
-    std::copy_if(fit.begin(), fit.end(), std::back_inserter(real),
-                 [](const TaskProtocol* protocol) { return has_real_answers(*protocol); });
-    if (real.size() == 1) fit = real;
-  }
-  if (fit.size() == 1) return *fit.front();
-  std::string list;
-  for (const TaskProtocol* one : fit)
-    list += (list.empty() ? "" : ", ") + one->name + " " + one->version + " " + one->sha256.substr(0, 12);
-  return stats::Refusal{"several protocols are never pooled; choose one with --protocol: " + list};
-}
-
-/// Realism of Task 1, the choice of Task 2; nullptr when nothing of the kind is asked.
-const study::Question* main_question(const TaskProtocol& protocol) {
-  const auto fits = [&](const study::Question& question) {
-    if (protocol.pairs) return question.kind == study::AnswerKind::Choice && question.anchors.size() == 2;
-    return question.kind == study::AnswerKind::Scale && question.id == "realism";
-  };
-  const auto found = std::find_if(protocol.questions.begin(), protocol.questions.end(), fits);
-  return found == protocol.questions.end() ? nullptr : &*found;
-}
-
-/// The answer to a question; for a choice 1 or 2, the interval. NaN: none.
-double answer_to(const TaskTrial& trial, const study::Question& question) {
-  for (const study::TaskAnswer& answer : trial.answers) {
-    if (answer.question != question.id || !answer.score) continue;
-    if (question.kind != study::AnswerKind::Choice) return *answer.score;
-    return *answer.score == question.anchors.front().first ? 1 : 2;
-  }
-  return stats::TrialRecord::unanswered;
-}
-
-stats::TrialTiming timing_of(const study::TaskShowing& shown) {
-  if (!shown.verdict) return stats::TrialTiming::Unjudged;
-  if (*shown.verdict == study::Verdict::Pass) return stats::TrialTiming::Pass;
-  return *shown.verdict == study::Verdict::Degraded ? stats::TrialTiming::Degraded : stats::TrialTiming::Fail;
-}
-
-stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial,
-                             const study::Question& question) {
-  stats::TrialRecord out;
-  out.participant = session.participant;
-  out.visit = session.visit;
-  out.position = trial.position;
-  out.timing = timing_of(trial.first);
-  out.timing_reason = trial.first.reason;
-  if (trial.second && timing_of(*trial.second) > out.timing) {
-    out.timing = timing_of(*trial.second);
-    out.timing_reason = trial.second->reason;
-  }
-  out.interrupted = trial.excluded == study::interrupted_reason;
-  if (trial.excluded && !out.interrupted)
-    out.by_experimenter = trial.excluded->empty() ? "no reason given" : *trial.excluded;
-  out.answer = answer_to(trial, question);
-  out.answers =
-      static_cast<int>(std::count_if(trial.answers.begin(), trial.answers.end(),
-                                     [](const study::TaskAnswer& one) { return one.score.has_value(); }));
-  // A repeat without an original compares with nothing.
-  if (trial.kind == "repeat") out.repeats = trial.repeats.value_or(trial.position);
-  return out;
-}
 
 /// Fills a TaskData from the sessions that may be pooled.
 class Collector {
  public:
-  Collector(TaskData& data, const study::Question& question, const stats::AnalysisPlan& plan)
-      : data_(data), question_(question), plan_(plan) {}
+  explicit Collector(TaskData& data) : data_(data) {}
 
-  void collect() {
+  void collect(const stats::ExclusionRules& rules) {
     leave_out_sessions();
-    find_exclusions();
+    data_.exclusions = find_exclusions(data_.protocol, data_.question, rules);
     for (const TaskSession& session : data_.protocol.sessions) add_session(session);
     count_excluded_people();
     data_.flow.analysed = static_cast<int>(data_.participants.size());
@@ -130,24 +40,13 @@ class Collector {
     });
     data_.flow.simulated_left_out = static_cast<int>(
         std::erase_if(sessions, [&](const TaskSession& one) { return people && !one.observer.empty(); }));
-    for (const TaskSession& session : sessions) ++data_.flow.by_state[session.state];
-    data_.flow.started = static_cast<int>(sessions.size());
-  }
-
-  void find_exclusions() {
-    std::vector<stats::TrialRecord> trials;
-    std::vector<stats::CatchRecord> catches;
-    for (const TaskSession& session : data_.protocol.sessions) {
-      if (!has_answers(session)) continue;
-      for (const TaskTrial& trial : session.trials) {
-        if (trial.kind != "practice") trials.push_back(record_of(session, trial, question_));
-      }
-      for (const study::CatchAnswer& page : session.catches) {
-        if (page.score) catches.push_back({session.participant, session.visit, *page.score == page.expected});
-      }
+    for (const TaskSession& session : sessions) {
+      ++data_.flow.by_state[session.state];
+      const std::string& utc = session.first_answer_utc;
+      if (!utc.empty() && (data_.first_answer_utc.empty() || utc < data_.first_answer_utc))
+        data_.first_answer_utc = utc;
     }
-    data_.exclusions =
-        stats::find_exclusions(trials, catches, plan_.exclusions, data_.task == TaskKind::Task2);
+    data_.flow.started = static_cast<int>(sessions.size());
   }
 
   void add_session(const TaskSession& session) {
@@ -168,25 +67,30 @@ class Collector {
       ++data_.flow.practice;
       return false;
     }
+    const bool repeat = trial.kind == "repeat";
     const bool excluded =
         stats::is_excluded(data_.exclusions, session.participant, session.visit, trial.position);
-    if (trial.kind == "repeat") {
+    const auto record = record_of(session, trial, data_.question);
+    const bool analysed = !repeat && record.answers > 0 && !excluded;
+    add_showings(trial, analysed);
+    if (repeat) {
       ++data_.flow.repeat;
       if (!excluded) add_repeat(session, trial);
       return false;
     }
-    const auto record = record_of(session, trial, question_);
     ++data_.flow.trials_planned;
     if (record.answers == 0) return false;
+    answered_.insert(session.participant);
     ++data_.flow.trials_answered;
-    if (excluded) {
-      ++data_.flow.trials_excluded;
-      return false;
-    }
-    ++data_.flow.trials_analysed;
-    add_showings(trial);
-    return data_.task == TaskKind::Task1 ? add_report(session, trial)
-                                         : add_choice(session, trial, record.answer);
+    ++(excluded ? data_.flow.trials_excluded : data_.flow.trials_analysed);
+    return analysed && add_answer(session, trial, record.answer);
+  }
+
+  bool add_answer(const TaskSession& session, const TaskTrial& trial, double answer) {
+    if (data_.task == TaskKind::Task1) return add_report(session, trial);
+    if (answer != answer) return false;
+    data_.task == TaskKind::Task2 ? add_choice(session, trial, answer) : add_rating(session, trial, answer);
+    return true;
   }
 
   void add_repeat(const TaskSession& session, const TaskTrial& repeat) {
@@ -202,10 +106,9 @@ class Collector {
     }
   }
 
-  void add_showings(const TaskTrial& trial) {
-    data_.showings.push_back({trials_, trial.first});
-    if (trial.second) data_.showings.push_back({trials_, *trial.second});
-    ++trials_;
+  void add_showings(const TaskTrial& trial, bool analysed) {
+    if (trial.first.played) data_.showings.push_back({trial.first, analysed});
+    if (trial.second && trial.second->played) data_.showings.push_back({*trial.second, analysed});
   }
 
   bool add_report(const TaskSession& session, const TaskTrial& trial) {
@@ -220,8 +123,7 @@ class Collector {
     return true;
   }
 
-  bool add_choice(const TaskSession& session, const TaskTrial& trial, double interval) {
-    if (interval != interval) return false;
+  void add_choice(const TaskSession& session, const TaskTrial& trial, double interval) {
     stats::PairChoice choice;
     choice.participant = person(session);
     choice.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
@@ -230,7 +132,13 @@ class Collector {
     choice.first_chosen = interval == 1;
     choice.position = trial.position;
     data_.choices.push_back(choice);
-    return true;
+  }
+
+  void add_rating(const TaskSession& session, const TaskTrial& trial, double score) {
+    const auto& nominal = trial.first.nominal;
+    const auto& shown = trial.first.realised;
+    data_.ratings.push_back(
+        {person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic, shown.sd, score});
   }
 
   int person(const TaskSession& session) {
@@ -248,24 +156,20 @@ class Collector {
   }
 
   void count_excluded_people() {
-    std::set<std::string> people;
-    for (const stats::Exclusion& one : data_.exclusions) {
-      if (one.position >= 0) continue;
-      ++data_.flow.excluded_visits;
-      if (index_of(data_.participants, one.participant) < 0) people.insert(one.participant);
-    }
-    data_.flow.excluded_participants = static_cast<int>(people.size());
+    data_.flow.excluded_visits =
+        static_cast<int>(std::count_if(data_.exclusions.begin(), data_.exclusions.end(),
+                                       [](const stats::Exclusion& one) { return one.position < 0; }));
+    data_.flow.excluded_participants =
+        static_cast<int>(std::count_if(answered_.begin(), answered_.end(), [&](const std::string& code) {
+          return index_of(data_.participants, code) < 0;
+        }));
   }
 
   TaskData& data_;
-  const study::Question& question_;
-  const stats::AnalysisPlan& plan_;
-  int trials_ = 0;
+  std::set<std::string> answered_;  ///< codes
 };
 
 }  // namespace
-
-const char* task_name(TaskKind task) { return task == TaskKind::Task1 ? "task1" : "task2"; }
 
 std::string TaskData::gaze_problem() const {
   int sessions = 0;
@@ -279,27 +183,34 @@ std::string TaskData::gaze_problem() const {
          "), and what the methods refine depends on it";
 }
 
-stats::Result<TaskData> select_task(const study::TaskStudy& study, const TaskSelection& selection) {
-  const auto protocol = choose_protocol(study, selection);
-  if (!protocol) return stats::Refusal{protocol.reason()};
-  const study::Question* question = main_question(*protocol);
-  if (!question) {
-    return stats::Refusal{"protocol " + protocol->name + " asks no " +
-                          (protocol->pairs ? "choice between two" : "question 'realism' on a scale")};
-  }
+stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection) {
+  const auto chosen = choose_protocol(study, selection);
+  if (!chosen) return stats::Refusal{chosen.reason()};
+  const auto question = main_question(chosen->protocol, selection);
+  if (!question) return stats::Refusal{question.reason()};
   TaskData data;
   data.task = selection.task;
-  data.protocol = *protocol;
-  data.question = question->id;
+  data.protocol = chosen->protocol;
+  data.set_aside = chosen->set_aside;
+  data.question = *question;
   for (const std::string& scene : data.protocol.scenes) data.scenes.push_back(scene_name(scene));
   data.flow.withdrawn = study.withdrawn;
-  Collector(data, *question, selection.plan).collect();
-  if (data.participants.empty()) {
-    return stats::Refusal{"no answer counts: " + std::to_string(data.flow.started) +
-                          " sessions of protocol " + data.protocol.name + ", " +
-                          std::to_string(data.flow.trials_answered) + " trials answered, " +
-                          std::to_string(data.flow.trials_excluded) + " excluded"};
-  }
+  Collector(data).collect(selection.plan.exclusions);
+  return data;
+}
+
+std::string nothing_counts(const TaskData& data) {
+  if (!data.participants.empty()) return {};
+  return "no answer counts: " + std::to_string(data.flow.started) + " sessions of protocol " +
+         data.protocol.name + ", " + std::to_string(data.flow.trials_answered) + " trials answered, " +
+         std::to_string(data.flow.trials_excluded) + " excluded";
+}
+
+stats::Result<TaskData> select_task(const study::TaskStudy& study, const TaskSelection& selection) {
+  const auto data = collect_task(study, selection);
+  if (!data) return stats::Refusal{data.reason()};
+  const std::string nothing = nothing_counts(*data);
+  if (!nothing.empty()) return stats::Refusal{nothing};
   return data;
 }
 

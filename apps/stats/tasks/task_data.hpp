@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/task_answers.hpp"
+#include "apps/stats/tasks/task_choice.hpp"
 #include "stats/analysis/exclusions.hpp"
-#include "stats/analysis/plan.hpp"
 #include "stats/analysis/score_table.hpp"
 #include "stats/analysis/task2.hpp"
-#include "stats/result.hpp"
+#include "stats/ptpe/pilot.hpp"
 
 namespace apps {
-
-enum class TaskKind { Task1, Task2 };
-/// "task1", "task2".
-const char* task_name(TaskKind task);
 
 /// What became of the sessions of one protocol, and of their trials.
 struct TaskFlow {
@@ -28,16 +23,16 @@ struct TaskFlow {
   int test_left_out = 0;       ///< sessions of test data beside real ones
   int simulated_left_out = 0;  ///< sessions of observer models beside those of people
   int excluded_visits = 0;
-  int excluded_participants = 0;  ///< without a visit left
+  int excluded_participants = 0;  ///< who answered, and of whom nothing is left
   int analysed = 0;               ///< participants with an answer that counts
   int trials_planned = 0, trials_answered = 0, trials_excluded = 0, trials_analysed = 0;
   int practice = 0, repeat = 0;
 };
 
-/// A showing of an analysed trial.
+/// A showing that was played, practice aside.
 struct TimedShowing {
-  int trial = 0;  ///< one of a pair has the same as the other
   study::TaskShowing shown;
+  bool analysed = false;  ///< its trial is: answered, not excluded, no repeat
 };
 
 /// Task 1: one answered page.
@@ -47,22 +42,25 @@ struct Report {
   std::map<std::string, double> answers;  ///< by question; those left out are absent
 };
 
-/// The answers of one task that count. Indices are of the lists here.
+/// The answers of one task, or of the pilot, that count. Indices are of the lists here.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
   study::TaskProtocol protocol;                         ///< its sessions are those analysed
+  std::vector<std::string> set_aside;                   ///< protocols with nothing but test data
   bool test_data = false;                               ///< there are no real data: test data are analysed
   std::vector<std::string> participants;                ///< codes
   std::vector<std::string> scenes;                      ///< short: "single_dam"
   std::vector<std::string> simulated;                   ///< participants answered by observer models
   std::vector<std::string> observers;                   ///< different models
   std::map<std::string, int> gaze, stations, displays;  ///< sessions
+  std::string first_answer_utc;                         ///< of the sessions analysed; empty: none
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;
-  std::vector<Report> reports;             ///< Task 1
-  std::vector<stats::PairChoice> choices;  ///< Task 2
-  std::string question;                    ///< id of the main one: realism, preference
+  std::vector<Report> reports;              ///< Task 1
+  std::vector<stats::PairChoice> choices;   ///< Task 2
+  std::vector<stats::PilotRating> ratings;  ///< pilot
+  study::Question question;                 ///< the main one: realism, preference, the pilot's scale
   /// Repeated showings: answers of the original and of the repeat, by question (Task 2: 1 / 2).
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
@@ -70,13 +68,14 @@ struct TaskData {
   std::string gaze_problem() const;
 };
 
-struct TaskSelection {
-  TaskKind task = TaskKind::Task1;
-  std::string protocol;  ///< leading digits of the SHA-256; empty when one protocol fits
-  stats::AnalysisPlan plan;
-};
+/// Refused with the reason: no protocol or question of this task, several and none chosen. Whether any answer
+/// counts is not asked.
+stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection);
 
-/// Refused with the reason: no protocol of this task, several and none chosen, no answer that counts.
+/// Why there is nothing to analyse; empty = there is.
+std::string nothing_counts(const TaskData& data);
+
+/// The same, refused without an answer that counts.
 stats::Result<TaskData> select_task(const study::TaskStudy& study, const TaskSelection& selection);
 
 /// "data/scenes/single_dam.toml" -> "single_dam".

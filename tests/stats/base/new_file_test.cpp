@@ -58,6 +58,45 @@ TEST(NewFile, KeepsTheRightsOfTheFileItReplacesAndElseFollowsTheUmask) {
   ::umask(before);
 }
 
+TEST(NewFile, ForItsOwnerAloneWhateverTheUmaskAndWhateverStoodThere) {
+  const test::TemporaryFolder folder;
+  const mode_t before = ::umask(0);
+  write_file_atomically(folder / "a", "1");
+  for (const char* name : {"a", "b"}) {
+    NewFile file(folder / name, Readers::Owner);
+    file.put_in_place();
+    EXPECT_EQ(rights(folder / name), 0600u) << name;
+  }
+  ::umask(before);
+}
+
+// Renamed over a device, the file would be the end of it.
+TEST(NewFile, ReplacesNothingButFiles) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "folder");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/null", folder / "device");
+  for (const char* name : {"folder", "pipe", "device"}) {
+    EXPECT_THROW(write_file_atomically(folder / name, "1"), Error) << name;
+    EXPECT_FALSE(fs::is_regular_file(fs::symlink_status(folder / name))) << name;
+  }
+  EXPECT_EQ(entries(folder.path()), 3u);
+}
+
+TEST(NewFile, DraftsThatAKillLeftGoAndThoseInHandStay) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"out.tmp0123456789abcdef", "out.tmp_mine", "other.tmp0123456789abcdef"})
+    write_file_atomically(folder / name, "1");
+  NewFile in_hand(folder / "out");
+  remove_stale_drafts(folder / "out");
+  EXPECT_FALSE(fs::exists(folder / "out.tmp0123456789abcdef"));
+  EXPECT_TRUE(fs::exists(folder / "out.tmp_mine"));
+  EXPECT_TRUE(fs::exists(folder / "other.tmp0123456789abcdef"));
+  in_hand.put_in_place();
+  EXPECT_TRUE(fs::exists(folder / "out"));
+  EXPECT_EQ(entries(folder.path()), 3u);
+}
+
 TEST(NewFile, LeavesNothingBehindWhenItIsNotPutInPlace) {
   const test::TemporaryFolder folder;
   {

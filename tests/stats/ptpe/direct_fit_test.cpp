@@ -221,4 +221,23 @@ TEST(LackOfFit, HoldsItsLevelAndFindsABend) {
   EXPECT_GT(found, 0.9 * studies);
 }
 
+// Scores rounded to the scale, 400 pilots each: an even rise is taken for uneven at the test's level, the
+// parametric observer's scores, which level off in log mu, nearly always.
+TEST(LackOfFit, AsksForAnEvenRiseOfTheScoresAlsoWhenTheyAreRounded) {
+  constexpr int studies = 400;
+  int even = 0, observer = 0;
+  for (int i = 0; i < studies; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i) + 1;
+    auto rounded = surface(model(24, 0.02, 2, 0, 0), 16, 0.5, 1, seed);
+    for (auto& o : rounded) o.score = std::clamp(std::round(o.score), 1.0, 7.0);
+    even += stats::estimate_direct(rounded, 4, {0}).lack_of_fit->p < 0.05;
+    const auto bent =
+        stats::PilotTable(simulated::pilot({24, 0.02}, 16, seed)).observations(stats::PilotMean::Harmonic);
+    observer += stats::estimate_direct(bent, 4, {0}).lack_of_fit->p < 0.05;
+  }
+  const double spread = std::sqrt(studies * 0.05 * 0.95);
+  EXPECT_NEAR(even, studies * 0.05, 3.5 * spread);
+  EXPECT_GT(observer, 0.95 * studies);
+}
+
 }  // namespace

@@ -1,0 +1,118 @@
+#include "apps/stats/report/html.hpp"
+#include "apps/stats/report/sections.hpp"
+
+namespace apps::report {
+
+namespace {
+
+std::string protocols_text(const Field& study) {
+  std::string out;
+  for (const Field& protocol : study["protocols"].entries()) {
+    const std::string title = words(protocol["title"]);
+    out += "The protocol of " + title + " was " + words(protocol["name"]) + " version " +
+           words(protocol["version"]) + " (SHA-256 <span class=\"hash\">" + words(protocol["sha256"]) +
+           "</span>)" +
+           (protocol["participants_planned"].is_number()
+                ? ", planned for " + count(protocol["participants_planned"]) + " participants. "
+                : ". ");
+    if (!protocol["gaze"].members().empty())
+      out += "Sessions of " + title +
+             " with analysed answers by source of gaze: " + counts(protocol["gaze"]) +
+             "; by display: " + counts(protocol["displays"]) + ". ";
+  }
+  return out;
+}
+
+std::string people(const Field& flow) {
+  std::string out;
+  for (const auto& [key, title] : all_parts) {
+    const Field part = flow[key];
+    if (!part.there()) continue;
+    out += std::string(title) + " was begun in " + count(part["started"]) + " sessions, of which " +
+           count(part["done"]) + " were completed; " + count(part["excluded_participants"]) +
+           " participants who had answered were left out and " + count(part["analysed"]) +
+           " analysed, with " + count(part["trials_analysed"]) + " of " + count(part["trials_planned"]) +
+           " planned trials (" + count(part["trials_excluded"]) + " answered ones left out). ";
+  }
+  return out;
+}
+
+/// The rules of exclusion in force, in words.
+std::string exclusion_rules(const Field& root) {
+  std::vector<std::string> parts;
+  for (const auto& [key, title] : all_parts)
+    if (root["flow"][key].there()) parts.push_back(title);
+  const Field rules = root["plan"]["exclusions"];
+  if (parts.empty() || !rules.there()) return "";
+  const std::string timing = rules["timing"].words();
+  std::string out = "The same rules of exclusion held for " + enumerated(parts) + ": " +
+                    (timing == "none" ? std::string("no trial was left out for its timing verdict")
+                                      : "trials whose timing verdict was " +
+                                            std::string(timing == "degraded" ? "degraded or fail" : "fail") +
+                                            " were left out");
+  if (rules["min_catch_correct"].is_number())
+    out += "; visits with fewer than " + percent(rules["min_catch_correct"]) +
+           " of the catch pages right were left out";
+  if (rules["max_repeat_difference"].is_number())
+    out += "; visits whose repeated ratings differed by more than " +
+           fixed(rules["max_repeat_difference"], 1) + " points on average were left out";
+  if (rules["min_repeat_agreement"].is_number())
+    out += "; visits with less than " + percent(rules["min_repeat_agreement"]) +
+           " of repeated pairs answered alike were left out";
+  if (rules["straight_lining_answers"].number() > 0)
+    out += "; visits with one and the same answer throughout (" + count(rules["straight_lining_answers"]) +
+           " answers or more) were left out";
+  if (rules["min_answered"].number() > 0)
+    out +=
+        "; visits with less than " + percent(rules["min_answered"]) + " of the trials answered were left out";
+  return out + ". The rules see neither method, scene nor frame rate. ";
+}
+
+std::string pilot_text(const Field& pilot) {
+  if (pilot["status"].words() != "ok") return "";
+  return "The pilot's curve \xCE\xBC = <i>a</i> exp(<i>b</i> \xCE\xB4) was estimated by " +
+         words(pilot["estimator"]) + "; its intervals by " + words(pilot["interval"]["method"]) + ". ";
+}
+
+std::string task1_text(const Field& root) {
+  if (!root["task1"].there()) return "";
+  const Field plan = root["plan"];
+  return "Answers of Task 1 were averaged over scenes within each participant, n* and method before any "
+         "paired test; methods were compared by paired <i>t</i> tests, with Wilcoxon's signed-rank and "
+         "Welch's tests beside them. Equivalence was tested by two one-sided tests with margins of " +
+         fixed(plan["margins"]["realism"], 2) + " points on realism and " +
+         fixed(plan["margins"]["sickness"], 2) + " on cybersickness. Bootstrap intervals of Task 1 use " +
+         count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". ";
+}
+
+std::string hypotheses_text(const Field& root) {
+  if (root["hypotheses"].entries().empty()) return "";
+  std::string out = "Within each hypothesis Holm's correction held the family-wise error rate at " +
+                    fixed(root["plan"]["alpha"], 2) + " (tests in each family: ";
+  bool first = true;
+  for (const Field& h : root["hypotheses"].entries()) {
+    out += (first ? "" : ", ") + words(h["id"]) + " " + count(h["family"]);
+    first = false;
+  }
+  return out + "). ";
+}
+
+}  // namespace
+
+std::string methods_section(const Field& root) {
+  std::string text = protocols_text(root["study"]) + people(root["flow"]) + exclusion_rules(root) +
+                     pilot_text(root["pilot"]) + task1_text(root);
+  if (root["task2"].there()) text += "Each pair of Task 2 was tested by an exact two-sided binomial test. ";
+  text += hypotheses_text(root);
+  if (root["plan"]["confidence"].is_number())
+    text += "Intervals hold " + percent(root["plan"]["confidence"]) +
+            " unless another share stands beside them. ";
+  if (root["versions"].there())
+    text += "The analysis was made with ViP-Lab " + words(root["versions"]["vip_lab"]) +
+            " and the GNU Scientific Library " + words(root["versions"]["gsl"]) + ".";
+  std::string body = paragraph(text);
+  for (const Field& note : root["study"]["notes"].entries()) body += paragraph("Note: " + words(note));
+  return section("methods", "Methods", body);
+}
+
+}  // namespace apps::report

@@ -1,0 +1,92 @@
+#include "apps/stats/report/figures.hpp"
+#include "apps/stats/report/html.hpp"
+#include "apps/stats/report/sections.hpp"
+
+namespace apps::report {
+
+namespace {
+
+std::string exclusions_table(const Field& root) {
+  Table table("All that was left out by rule or by hand",
+              {"Participant", "Part", "Visit", "Trial", "Rule", "Reason", "Decided by", "Answers lost"});
+  bool one_trial = false;
+  for (const Field& e : root["exclusions"].entries()) {
+    one_trial = one_trial || e["position"].is_number();
+    table.row({words(e["participant"]), words(e["task"]), count(e["visit"]),
+               e["position"].is_number() ? count(e["position"]) : "all", words(e["rule"]), words(e["reason"]),
+               words(e["actor"]), count(e["answers"])});
+  }
+  if (table.empty()) return "";
+  return table.html() +
+         (one_trial ? "<p class=\"note\">Trials are counted from nought, in the order of showing.</p>\n"
+                    : "");
+}
+
+/// Parts of which the results list no exclusion.
+std::string untouched(const Field& root) {
+  std::vector<std::string> parts;
+  for (const auto& [key, title] : all_parts) {
+    bool touched = !root["flow"][key].there();
+    for (const Field& e : root["exclusions"].entries()) touched = touched || e["task"].words() == key;
+    if (!touched) parts.push_back(title);
+  }
+  return parts.empty() ? ""
+                       : paragraph("Nothing of " + enumerated(parts) + " was left out by rule or by hand.");
+}
+
+bool any_judged(const Field& timing) {
+  for (const Field& c : timing.entries())
+    if (c["unjudged"].number() < c["showings"].number()) return true;
+  return false;
+}
+
+bool any_unjudged(const Field& timing) {
+  for (const Field& c : timing.entries())
+    if (c["unjudged"].number() > 0) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string participants_section(const Field& root) {
+  std::string body;
+  for (const auto& [key, title] : all_parts) {
+    const Field flow = root["flow"][key];
+    if (flow.there())
+      body += figure(flow_chart(flow, std::string("flow-") + key, title),
+                     std::string("What became of those who began: ") + title + ".");
+  }
+  body += exclusions_table(root) + untouched(root);
+  return body.empty() ? "" : section("participants", "Participants and exclusions", body);
+}
+
+std::string timing_section(const Field& root) {
+  const Field timing = root["timing"];
+  if (timing.entries().empty()) return "";
+  std::string body = paragraph(
+      "Every showing that was played is counted, practice aside, also those of trials left out. " +
+      std::string(any_judged(timing) ? "Its frames were judged against the protocol's tolerance. " : "") +
+      (any_unjudged(timing) ? "Without a schedule there is nothing to judge by. " : "") +
+      "Grades of evidence: A photodiode, B display feedback, C compositor, D submission by the program.");
+  for (const auto& [key, title] : all_parts) {
+    Table table(std::string("Timing certificate, ") + title,
+                {"Scene", "n*", "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass", "Degraded",
+                 "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)", "Longest (ms)",
+                 "Late frames", "Solved", "Tau (frames/s)"});
+    for (const Field& c : timing.entries()) {
+      if (c["task"].words() != key) continue;
+      table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
+                 fixed(c["nominal_sd_fps"], 2), count(c["showings"]), count(c["pass"]), count(c["degraded"]),
+                 count(c["fail"]), count(c["unjudged"]), counts(c["grades"]),
+                 fixed(c["realised_mean_fps"], 2), fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1),
+                 count(c["late_frames"]), percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
+    }
+    if (table.empty()) continue;
+    const std::string by = std::string(key) == "pilot" ? "setting" : "method and n*";
+    body +=
+        figure(timing_chart(timing, key), std::string(title) + ": verdicts by " + by + ".") + table.html();
+  }
+  return section("timing", "Timing", body);
+}
+
+}  // namespace apps::report

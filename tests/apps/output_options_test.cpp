@@ -1,0 +1,97 @@
+/// Every option that names an output: where that cannot be written, the command says so and leaves nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) names.push_back(entry.path().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// One database with a pilot and a task of pairs.
+class OutputOptionsE2e : public ::testing::Test {
+ protected:
+  OutputOptionsE2e() {
+    base::write_file_atomically(folder_ / "file", "mine");
+    fs::create_symlink("/dev/full", folder_ / "full");
+    for (const char* protocol : {"protocols/ptpe_pilot.toml", "protocols/task2.toml"}) {
+      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", "random",
+                                   "--participants", "2"})
+                              .wait();
+      EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    }
+  }
+
+  /// Commands with the option at their ends, by what is asked for there.
+  std::vector<std::string> file_options() const {
+    const std::string bench =
+        "vip-bench frame data/scenes/single_dam.toml --n-star 64 --frames 1 --no-render";
+    return {"vip-study check protocols/task2.toml --refresh 90 --json ",
+            "vip-study bake data/scenes/single_dam.toml --n-star 64 --frames 1 --force --out ",
+            "vip-study run protocols/task2.toml --observer random --participants 1 --db ",
+            "vip-study merge " + database_ + " --into ",
+            "vip-study salvage --db " + database_ + " --into ",
+            "vip-stats fit-ptpe " + database_ + " --json ",
+            "vip-stats fit-ptpe " + database_ + " --svg ",
+            "vip-stats fit-ptpe " + database_ + " --out ",
+            "vip-stats report " + database_ + " --html ",
+            "vip-stats report " + database_ + " --html " + page_ + " --json ",
+            "vip-stats task2 " + database_ + " --json ",
+            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --json ",
+            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --csv ",
+            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --svg ",
+            bench + " --json ",
+            "vip-bench table1 --scene SingleDam --n-star 64 --csv ",
+            "vip-bench table1 --scene SingleDam --n-star 64 --markdown ",
+            "vip-bench table2 --scene SingleDam --n-star 64 --csv ",
+            "vip-bench table2 --scene SingleDam --n-star 64 --markdown "};
+  }
+  std::vector<std::string> folder_options() const {
+    return {"vip-study export --db " + database_ + " --csv ",
+            "vip-study export --db " + database_ + " --bids ",
+            "vip-study export --db " + database_ + " --psych-ds ",
+            "vip-stats report " + database_ + " --html " + page_ + " --csv ",
+            "vip-stats task2 " + database_ + " --csv ",
+            "vip-stats preregister protocols/task2.toml --out "};
+  }
+
+  /// place: what is to be named.
+  void expect_refused(const std::string& line, const std::string& target, const std::string& place) {
+    const auto before = names_in(folder_.path());
+    const Ended ended = run_shell("timeout 60 " VIP_BIN_DIR "/" + line + target);
+    EXPECT_EQ(ended.exit_code, 1) << line << target << "\n" << ended.out;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("error: "), HasSubstr(place), HasSubstr("\n  mend: "))) << line;
+    EXPECT_EQ(names_in(folder_.path()), before) << line;
+    EXPECT_TRUE(fs::is_character_file(folder_ / "full")) << line;
+    EXPECT_EQ(count_in(database_, "SELECT count(*) FROM export"), 0) << line;
+  }
+
+  const TemporaryFolder folder_;
+  const std::string database_ = folder_ / "s.db", page_ = folder_ / "page.html";
+};
+
+TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
+  const std::string full = folder_ / "full", file = folder_ / "file", below = file + "/out";
+  for (const std::string& line : file_options()) {
+    expect_refused(line, full, "/full");
+    expect_refused(line, below, below);
+  }
+  for (const std::string& line : folder_options()) {
+    expect_refused(line, full, "/full");
+    expect_refused(line, below, file);  // a folder is made with those above it
+  }
+}
+
+}  // namespace
+}  // namespace apps::test

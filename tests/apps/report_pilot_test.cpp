@@ -1,0 +1,144 @@
+/// What the report says of a pilot: who was left out and why, where people looked, how showings ran.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "tests/apps/html_reader.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/simulated_pilot.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing_pilot::simulated_pilot;
+
+Json results_of(const std::vector<study::TaskProtocol>& protocols) {
+  PlanInForce plan;
+  plan.plan.resamples = 200;
+  return make_results({protocols, 0}, {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+      .json;
+}
+
+/// The page's words without its tags.
+std::string words_of(const Json& json) {
+  std::string out;
+  for (const auto& text : html_reader::read(report::results_page(json)).texts)
+    if (!text.within("style")) out += text.words;
+  return out;
+}
+
+study::TaskProtocol pilot_of_people(int participants = 8) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", participants, 3);
+  for (auto& session : pilot.sessions) session.observer.clear();
+  return pilot;
+}
+
+// The case that a new user met: a trial excluded by hand, one whose showing was cut.
+TEST(ReportPilot, WhatWasLeftOutByHandAndByRuleIsListed) {
+  auto pilot = pilot_of_people();
+  EXPECT_THAT(words_of(results_of({pilot})), HasSubstr("Nothing of Pilot was left out by rule or by hand."));
+  auto& trials = pilot.sessions[2].trials;
+  trials[5].excluded = "the phone rang";
+  trials[9].first.verdict = study::Verdict::Fail;
+  trials[9].first.reason = "cut after 8 s";
+  const Json json = results_of({pilot});
+  EXPECT_EQ(json.at("flow").at("pilot").at("trials_excluded"), 2);
+  EXPECT_EQ(json.at("pilot").at("n_ratings"), 8 * 21 - 2);
+  const auto page = words_of(json);
+  EXPECT_THAT(page, AllOf(HasSubstr("the phone rang"), HasSubstr("timing verdict fail: cut after 8 s"),
+                          Not(HasSubstr("Nothing of Pilot"))));
+  EXPECT_THAT(page, HasSubstr("8 analysed, with 166 of 168 planned trials (2 answered ones left out)"));
+}
+
+TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
+  auto pilot = pilot_of_people();
+  pilot.sessions[1].gaze_source = "tracked";
+  pilot.sessions[2].trials[9].first.verdict = study::Verdict::Fail;
+  pilot.sessions[3].state = "stopped";
+  const Json json = results_of({pilot, made_study::task1(6)});
+  const auto html = report::results_page(json);
+  const auto page = words_of(json);
+  EXPECT_THAT(page,
+              HasSubstr("Sessions of Pilot with analysed answers by source of gaze: mouse: 7, tracked: 1; "
+                        "by display: window: 8."));
+  EXPECT_THAT(page, HasSubstr("Pilot was begun in 8 sessions, of which 7 were completed;"));
+  EXPECT_NE(html.find("id=\"flow-pilot-title\""), std::string::npos);
+  EXPECT_NE(html.find("id=\"timing-pilot-title\""), std::string::npos);
+  int showings = 0, failed = 0;
+  for (const auto& cell : json.at("timing")) {
+    if (cell.at("task") != "pilot") continue;
+    showings += cell.at("showings").get<int>();
+    failed += cell.at("fail").get<int>();
+  }
+  EXPECT_EQ(showings, 8 * 21);
+  EXPECT_EQ(failed, 1) << "a showing that was left out is still part of the certificate";
+  // The pilot's one method refines nothing by gaze.
+  EXPECT_EQ(json.at("study").at("tracked_gaze"), true);
+}
+
+TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
+  auto pilot = pilot_of_people();
+  for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;
+  pilot.sessions[1].catches = {{"attention", 2, 5}};
+  const Json json = results_of({pilot, made_study::task2(6)});
+  EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
+  EXPECT_EQ(json.at("exclusions").at(0).at("rule"), "straight_lining");
+  EXPECT_EQ(json.at("exclusions").at(1).at("rule"), "catch");
+  EXPECT_THAT(words_of(json), AllOf(HasSubstr("The same rules of exclusion held for Pilot and Task 2:"),
+                                    HasSubstr("2 participants who had answered were left out")));
+}
+
+// Before, nothing stood of a part of which no answer counts, and "nothing was left out" with it.
+TEST(ReportPilot, APartOfWhichNothingIsLeftStillSaysWhy) {
+  auto pilot = pilot_of_people(3);
+  for (auto& session : pilot.sessions)
+    for (auto& trial : session.trials) trial.excluded = "the screen was off";
+  auto task = made_study::task1(4);
+  for (auto& session : task.sessions) session.catches = {{"attention", 2, 5}};
+  const Json json = results_of({pilot, task});
+  EXPECT_EQ(json.at("exclusions").size(), 3 * 21 + 4u);
+  EXPECT_EQ(json.at("flow").at("task1").at("excluded_participants"), 4);
+  EXPECT_EQ(json.at("flow").at("pilot").at("excluded_participants"), 3);
+  EXPECT_THAT(words_of(json),
+              AllOf(HasSubstr("No fit: no answer counts"), HasSubstr("Not given: no answer counts"),
+                    HasSubstr("the screen was off"), Not(HasSubstr("Nothing of"))));
+}
+
+TEST(ReportPilot, TheBannerNamesEveryObserverAndCountsEachPersonOnce) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 8, 3);
+  pilot.sessions[7].observer = "random";
+  auto task = made_study::task1(6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    task.sessions[i].participant = "p" + std::to_string(i + 4);  // p4 to p7 took part in the pilot
+    task.sessions[i].observer = "frames:grain=4";
+  }
+  const Json json = results_of({pilot, task});
+  EXPECT_EQ(json.at("study").at("simulated"), 10);
+  EXPECT_THAT(
+      words_of(json),
+      HasSubstr("Simulated participants: 10 (frames:grain=4, ptpe:a=24,b=0.02, random). All answers of "
+                "Pilot and Task 1 come from a model: they say nothing about people."));
+  for (auto& session : task.sessions) session.observer.clear();
+  EXPECT_THAT(words_of(results_of({pilot, task})),
+              HasSubstr("Simulated participants: 8 (ptpe:a=24,b=0.02, random). All answers of Pilot come"));
+}
+
+TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
+  auto test = pilot_of_people();
+  test.sha256 = std::string(64, 'f');
+  test.name = "rehearsal";
+  for (auto& session : test.sessions) session.test_data = true;
+  const Json json = results_of({test, pilot_of_people()});
+  EXPECT_EQ(json.at("pilot").at("n_participants"), 8);
+  EXPECT_THAT(words_of(json), HasSubstr("Pilot: protocol rehearsal 1.0 left out: it holds no real answers."));
+}
+
+}  // namespace
+}  // namespace apps

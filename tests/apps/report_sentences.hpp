@@ -1,0 +1,375 @@
+#pragma once
+/// The sentences of the report, "#" for what they quote and "*" for any words, each with results in which it
+/// is true and such in which it is false.
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace report_sentences {
+
+using Json = nlohmann::ordered_json;
+using Change = std::function<void(Json&)>;
+
+struct Case {
+  std::string pattern;  ///< as fnmatch() takes it
+  Change make_false;
+  Change make_true = [](Json&) {};  ///< of a study with a pilot and both tasks, which comes first
+};
+
+inline Change set(const std::string& pointer, Json value) {
+  return [=](Json& json) { json[Json::json_pointer(pointer)] = value; };
+}
+inline Change refused(const std::string& part) { return set(part, {{"refused", "no answer counts"}}); }
+inline Change all(std::vector<Change> changes) {
+  return [=](Json& json) {
+    for (const auto& change : changes) change(json);
+  };
+}
+inline Change in_each(const std::string& list, const std::string& key, Json value) {
+  return [=](Json& json) {
+    for (auto& one : json[Json::json_pointer(list)]) one[key] = value;
+  };
+}
+
+inline Json bundle() {
+  return {{"sha256", "ab"},
+          {"frozen_utc", "2026-01-01T00:00:00Z"},
+          {"vip_lab", "0.1.0"},
+          {"summary", "Everything is as it was fixed."},
+          {"tasks", {{"task1", true}, {"task2", false}}},
+          {"times", {{{"task", "task1"}, {"text", "Frozen first."}}}},
+          {"differences", {"protocol task2 was not preregistered"}}};
+}
+
+inline std::vector<Case> head_and_methods() {
+  const Change no_protocols = set("/study/protocols", Json::array()), no_flow = set("/flow", Json::object());
+  const std::string rules = "/plan/exclusions/";
+  return {
+      {"Protocols: #, #, #.", no_protocols},
+      {"Computed #.", set("/date_utc", nullptr)},
+      {"Test data.", in_each("/study/protocols", "test_data", false),
+       set("/study/protocols/0/test_data", true)},
+      {"There are no other data of #: these results say nothing about people.",
+       in_each("/study/protocols", "test_data", false), set("/study/protocols/0/test_data", true)},
+      {"Simulated participants: # (#).", in_each("/study/protocols", "simulated", 0)},
+      {"All answers of # come from a model: they say nothing about people.",
+       in_each("/study/protocols", "simulated", 0)},
+      {"The protocol of # was # version # (SHA-256 #), planned for # participants.",
+       in_each("/study/protocols", "participants_planned", nullptr)},
+      {"The protocol of # was # version # (SHA-256 #).", no_protocols,
+       in_each("/study/protocols", "participants_planned", nullptr)},
+      {"Sessions of # with analysed answers by source of gaze: *#; by display: *#.",
+       in_each("/study/protocols", "gaze", Json::object())},
+      {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
+       "out "
+       "and # analysed, with # of # planned trials (# answered ones left out).",
+       no_flow},
+      {"Task [12] was begun in # sessions, of which # were completed; # participants who had answered were "
+       "left "
+       "out and # analysed, with # of # planned trials (# answered ones left out).",
+       no_flow},
+      {"The same rules of exclusion held for Pilot, Task 1 and Task 2: trials whose timing verdict was fail "
+       "were "
+       "left out;*",
+       set(rules + "timing", "none")},
+      {"*: trials whose timing verdict was degraded or fail were left out;*", set(rules + "timing", "fail"),
+       set(rules + "timing", "degraded")},
+      {"*: no trial was left out for its timing verdict;*", set(rules + "timing", "fail"),
+       set(rules + "timing", "none")},
+      {"*; visits with fewer than # of the catch pages right were left out*",
+       set(rules + "min_catch_correct", nullptr)},
+      {"*; visits whose repeated ratings differed by more than # points on average were left out*",
+       set(rules + "max_repeat_difference", nullptr)},
+      {"*; visits with less than # of repeated pairs answered alike were left out*",
+       set(rules + "min_repeat_agreement", nullptr), set(rules + "min_repeat_agreement", 0.5)},
+      {"*; visits with one and the same answer throughout (# answers or more) were left out*",
+       set(rules + "straight_lining_answers", 0)},
+      {"*; visits with less than # of the trials answered were left out*", set(rules + "min_answered", 0),
+       set(rules + "min_answered", 0.5)},
+      {"The rules see neither method, scene nor frame rate.", no_flow},
+      {"The pilot's curve * was estimated by #; its intervals by #.", set("/pilot/status", "failed")},
+      {"Answers of Task 1 were averaged over scenes within each participant, n[*] and method before any "
+       "paired "
+       "test; methods were compared by paired t tests, with Wilcoxon's signed-rank and Welch's tests beside "
+       "them.",
+       refused("/task1")},
+      {"Equivalence was tested by two one-sided tests with margins of # points on realism and # on "
+       "cybersickness.",
+       refused("/task1")},
+      {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
+      {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
+      {"Within each hypothesis Holm's correction held the family-wise error rate at # (tests in each family: "
+       "*).",
+       set("/hypotheses", Json::array())},
+      {"Intervals hold # unless another share stands beside them.", set("/plan/confidence", nullptr)},
+      {"The analysis was made with ViP-Lab # and the GNU Scientific Library #.", set("/versions", nullptr)},
+      {"Note: #", set("/study/notes", Json::array())},
+  };
+}
+
+inline std::vector<Case> participants_and_timing() {
+  const Change nothing_excluded = set("/exclusions", Json::array()),
+               no_timing = set("/timing", Json::array());
+  return {
+      {"# What became of those who began: Pilot.", set("/flow/pilot", nullptr)},
+      {"# What became of those who began: Task [12].", set("/flow", Json::object())},
+      {"Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
+       "those "
+       "who left in between, with the reason, and what is counted apart.",
+       set("/flow", Json::object())},
+      {"# All that was left out by rule or by hand", nothing_excluded},
+      {"Nothing of Pilot and Task 2 was left out by rule or by hand.", set("/exclusions/0/task", "pilot")},
+      {"Nothing of Pilot* was left out by rule or by hand.",
+       set("/exclusions", {{{"task", "task1"}}, {{"task", "pilot"}}})},
+      {"Nothing of Pilot, Task 1 and Task 2 was left out by rule or by hand.",
+       set("/exclusions", {{{"task", "task1"}}}), nothing_excluded},
+      {"Nothing of Task [12]* was left out by rule or by hand.",
+       set("/exclusions", {{{"task", "task1"}}, {{"task", "task2"}}}),
+       set("/exclusions", {{{"task", "pilot"}}})},
+      {"Trials are counted from nought, in the order of showing.", set("/exclusions/0/position", nullptr)},
+      {"Every showing that was played is counted, practice aside, also those of trials left out.", no_timing},
+      {"Its frames were judged against the protocol's tolerance.",
+       all({in_each("/timing", "unjudged", 5), in_each("/timing", "showings", 5)})},
+      {"Without a schedule there is nothing to judge by.", in_each("/timing", "unjudged", 0),
+       set("/timing/0/unjudged", 1)},
+      {"Grades of evidence: A photodiode, B display feedback, C compositor, D submission by the program.",
+       no_timing},
+      {"# Timing certificate, *", no_timing},
+      {"# Pilot: verdicts by setting.", no_timing},
+      {"# Task [12]: verdicts by method and n[*].", no_timing},
+      {"A bar for each setting, mean and SD in frames/s: the shares of its showings whose timing passed, was "
+       "degraded, failed or could not be judged.",
+       no_timing},
+      {"A bar for each method and n[*], over scenes: the shares of its showings whose timing passed, was "
+       "degraded, failed or could not be judged.",
+       no_timing},
+      {"The table below holds the counts of each cell.", no_timing},
+  };
+}
+
+inline std::vector<Case> pilot() {
+  const Change failed = all({set("/pilot/status", "failed"), set("/pilot/reason", "no contour")});
+  return {
+      {"# participants gave # ratings of # settings.", failed},
+      {"For the solver, at level #: a = # [[]#, #] frames/s, b = # [[]#, #] s/frame.", failed},
+      {"No fit: *.", set("/pilot/status", "ok"), failed},
+      {"# Mean scores over the standard deviation and the mean of the frame rate, with contours and the "
+       "fitted "
+       "curve, as the paper's Fig._6.",
+       set("/pilot/cells", Json::array())},
+      {"Heat map of mean scores over the standard deviation and the mean of the frame rate, with contours of "
+       "the "
+       "scores and the fitted curve.",
+       set("/pilot/cells", Json::array())},
+      {"# \u03bc = a exp(b \u03b4), intervals over participants",
+       all({set("/pilot/estimators", Json::array()), set("/pilot/means", Json::object())})},
+      {"Shape of the scores: #.", refused("/pilot/lack_of_fit")},
+      {"# The curve \u03bc(\u03b4) with its bands, frames/s", set("/pilot/bands", Json::array())},
+      {"# (bootstrap: # resamples, seed #).", failed},
+      {"# Scores of the settings, over participants", set("/pilot/cells", Json::array())},
+  };
+}
+
+inline std::vector<Case> task1() {
+  const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
+  const Change secondary = in_each("/task1/scores", "primary", false);
+  const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
+  return {
+      {"Exploratory # participants, # reports.", no_task},
+      {"All pairwise and omnibus tests of this section describe the data; the decisions stand under "
+       "Hypotheses.",
+       set("/hypotheses", Json::array())},
+      {"All pairwise and omnibus tests of this section describe the data.", no_task,
+       set("/hypotheses", Json::array())},
+      {"Not given: *.", set("/task1", nullptr), no_task},
+      {"# # of each participant, averaged over scenes, as the paper's Fig._9.", secondary},
+      {"Box: quartiles and median; whiskers: last values within one and a half interquartile ranges; "
+       "circles: "
+       "values beyond; X and number: mean.",
+       secondary},
+      {"Brackets: paired t tests, uncorrected, [*] p < .05, [*][*] p < .01, [*][*][*] p < .001; solid: still "
+       "below .05 after Holm over the pairs within n[*], dashed: not.",
+       secondary},
+      {"A box for each method within each n[*]: median, quartiles, whiskers to the last values within one "
+       "and a "
+       "half times the interquartile range, circles beyond them, an X at the mean.",
+       secondary},
+      {"Brackets with stars join methods that differ.", secondary},
+      {"The tables below hold the same numbers.", secondary},
+      {"# Participant means by method, #", set("/task1/cells", Json::array())},
+      {"# Paired t tests between methods, #", no_pairs},
+      {"# The same pairs by other tests, #", no_pairs},
+      {"Pairs below .05 without correction, in APA style:", stars("")},
+      {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
+      {"No pair differs below .05, even without correction.", stars("*"), stars("")},
+      {"No pair could be tested.", in_each("/task1/comparisons", "p", 0.5),
+       in_each("/task1/comparisons", "p", nullptr)},
+      {"# All methods at once", set("/task1/omnibus", Json::array())},
+      {"#, #: F(#, #) = #, pGG *, \u03b5 = #, generalised \u03b7\u00b2 = #; \u03c7\u00b2F(#) = #, p *",
+       set("/task1/omnibus", Json::array())},
+      {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
+       set("/task1/ordinal", Json::array())},
+      {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
+      {"# Repeated showings", set("/task1/retest", Json::array()),
+       set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
+  };
+}
+
+inline std::vector<Case> task2() {
+  const Change no_task = refused("/task2");
+  const std::string bias = "/task2/interval_bias", model = "/task2/bradley_terry";
+  return {
+      {"Exploratory # participants, # answers.", no_task},
+      {"The tests of all pairs describe the data; the decisions stand under Hypotheses.",
+       set("/hypotheses", Json::array())},
+      {"The tests of all pairs describe the data.", no_task, set("/hypotheses", Json::array())},
+      {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: Wilson interval.",
+       no_task},
+      {"Stars: exact binomial test, uncorrected / after Holm over all pairs.", no_task},
+      {"A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
+       "method "
+       "named on the left, the hatched part the other's.",
+       no_task},
+      {"The line across the bar is the share's Wilson interval, the dotted line no preference.", no_task},
+      {"The table below holds the same numbers.", no_task},
+      {"# How often each of a pair was chosen: exact binomial tests, two-sided", no_task},
+      {"# over #: # of # (#), CI [[]#, #], exact binomial p *, pHolm *",
+       in_each("/task2/pairs", "p", nullptr)},
+      {"The first of a pair was chosen in # of # answers (#, CI [[]#, #], exact binomial p *).",
+       refused(bias)},
+      {"Note: #.", set(bias + "/warning", ""), set(bias + "/warning", "one answered all pairs alike")},
+      {"Over participants: mean share # [[]#, #], t(#) = #, p *.", refused(bias + "/by_participant")},
+      {"# Abilities on the log-odds scale, their mean at nought", refused(model)},
+      {"A method or a group of methods was always or never chosen over all others: the estimates are "
+       "Firth's, "
+       "penalised.",
+       set(model + "/penalised", false), set(model + "/penalised", true)},
+      {"All methods equal: \u03c7\u00b2(#) = #, p *", set(model + "/overall", nullptr)},
+      {"Lack of fit over the pairs: \u03c7\u00b2(#) = #, p *", set(model + "/fit", nullptr)},
+      {"Effect of the order (log odds of the first interval): # [[]#, #], z = #, p *",
+       set(model + "/order", nullptr)},
+      {"Participants who judged all pairs: # (without: #).", refused("/task2/triads")},
+      {"Mean number of circular triads # (random answers: #), mean consistency (Kendall's \u03b6) #; as few "
+       "or "
+       "fewer by chance: p *.",
+       refused("/task2/triads")},
+      {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
+      {"Of # pairs shown again, # were answered alike.", set("/task2/retest", nullptr),
+       set("/task2/retest", {{"pairs", 4}, {"same", 0.5}})},
+  };
+}
+
+inline std::vector<Case> sickness() {
+  const std::string ssq = "/sickness/0/ssq";
+  const Change none = set("/sickness", Json::array()), no_ssq = set(ssq, nullptr),
+               no_fms = set("/sickness/0/fms", nullptr);
+  return {
+      {"Exploratory # participants.", none},
+      {"Exploratory # participants, test data.", set("/sickness/0/test_data", false),
+       set("/sickness/0/test_data", true)},
+      {"Exploratory # participants, all answered by a model.", set("/sickness/0/simulated", 0),
+       set("/sickness/0/simulated", 3)},
+      {"Sessions that ended early and those left out elsewhere count here.", none},
+      {"Simulator Sickness Questionnaire with the weights of Kennedy et al.", no_ssq},
+      {"(1993): before is the last page ahead of the first trial, after the last page behind it.", no_ssq},
+      {"A missing item empties its scale and the total: # of # pages lack some.", set(ssq + "/incomplete", 0),
+       set(ssq + "/incomplete", 2)},
+      {"Changes are of the participants with both; signed-rank tests are two-sided and not corrected.",
+       no_ssq},
+      {"# SSQ scores before and after", no_ssq},
+      {"# Changes of the SSQ scores, after less before", no_ssq},
+      {"# Fast Motion Sickness scale at each asking.", no_fms},
+      {"Band: quartiles; line: median; X: mean; circle: largest.", no_fms},
+      {"Sessions that ended early are missing from later askings.", no_fms},
+      {"Quartiles, median, mean and largest score of all sessions at each asking.", no_fms},
+      {"The table below holds the numbers.", no_fms},
+      {"# FMS: mean and peak of each participant", no_fms},
+      {"# FMS over the session", no_fms},
+      {"# Change of the FMS from the first answer to the last", no_fms},
+  };
+}
+
+inline std::vector<Case> hypotheses() {
+  const Change none = set("/hypotheses", Json::array());
+  const Change untestable = all(
+      {set("/hypotheses/0/status", "not testable"), set("/hypotheses/0/status_if_testable", "supported")});
+  return {
+      {"# Decisions on the hypotheses", none},
+      {"Exploratory #.", all({set("/preregistration", bundle()), set("/preregistration/tasks/task2", true)})},
+      {"Preregistered #.", set("/preregistration", nullptr), set("/preregistration", bundle())},
+      {"Each hypothesis is a family of its own; Holm's step-down correction holds the family's error rate.",
+       none},
+      {"Stars: [*] p < .05, [*][*] p < .01, [*][*][*] p < .001.", none},
+      {"Were it testable, the tests below would read: #.", set("/hypotheses/0/status", "supported"),
+       untestable},
+      {"Rule: # (tests in the family: #, \u03b1 = #).", none},
+      {"# #: tests of the family", none},
+      {"# The same p in larger families", none},
+      {"#: Mdiff = #, # CI [[]#, #]*, p *, pHolm *", none},
+      {"#: *share = #, # CI [[]#, #], p *, pHolm *", none},
+      {"#: no test, #", in_each("/hypotheses/0/tests", "p", 0.5),
+       all({in_each("/hypotheses/0/tests", "p", nullptr),
+            in_each("/hypotheses/0/tests", "reason", "too few")})},
+      {"The paper's own procedure on these data (#): #.", none},
+      {"# Of its own data the paper said: #.", none},
+      {"Exploratory The hypotheses again under other rules of exclusion and averaging.",
+       set("/sensitivity", Json::array())},
+      {"None of these replaces a decision above.", set("/sensitivity", Json::array())},
+      {"# The decisions under other rules", set("/sensitivity", Json::array())},
+      {"# Every test under other rules", set("/sensitivity", Json::array())},
+  };
+}
+
+inline std::vector<Case> bundle_and_provenance() {
+  const Change with = set("/preregistration", bundle()), without = set("/preregistration", nullptr);
+  return {
+      {"No preregistration was given: every analysis of this page is exploratory.", with},
+      {"Rules in force: #.", with},
+      {"Bundle, SHA-256 #, frozen # by ViP-Lab #.", without, with},
+      {"# These dates are what the clocks of the computers said: only a hash that was deposited elsewhere "
+       "proves "
+       "its date.",
+       set("/preregistration/times", Json::array()), with},
+      {"What differs from the preregistration", set("/preregistration/differences", Json::array()), with},
+      {"Preregistered Hypotheses of Task 1: the tests of each family with their margins, corrections and "
+       "exclusions.",
+       set("/preregistration/tasks/task1", false), with},
+      {"Exploratory Hypotheses of Task 2: the tests of each family with their margins, corrections and "
+       "exclusions.",
+       set("/preregistration/tasks/task2", true), with},
+      {"Exploratory Hypotheses of Task 1: *", with},
+      {"Preregistered Hypotheses of Task 2: *", set("/preregistration/tasks/task2", false),
+       all({with, set("/preregistration/tasks/task2", true)})},
+      {"Exploratory All else: tables and tests of Pilot, tables and tests of Task 1, tables and tests of "
+       "Task 2, "
+       "ordinal models, the Bradley-Terry model and sensitivity.",
+       set("/task1/ordinal", Json::array())},
+      {"Exploratory All else: *",
+       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/sensitivity", Json::array())})},
+      {"# Where the numbers come from",
+       [](Json& json) {
+         json = {{"schema", "none"}};
+       }},
+      {"Every number of this page is read from the results' JSON, schema #; the attribute data-field names "
+       "its "
+       "place there.",
+       [](Json& json) {
+         json = {{"schema", "none"}};
+       }},
+  };
+}
+
+inline const std::vector<Case>& cases() {
+  static const std::vector<Case> list = [] {
+    std::vector<Case> out;
+    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), sickness(),
+                      hypotheses(), bundle_and_provenance()})
+      out.insert(out.end(), part.begin(), part.end());
+    return out;
+  }();
+  return list;
+}
+
+}  // namespace report_sentences

@@ -1,0 +1,162 @@
+/// Each sentence that the report prints, with results in which it would be false: there it is not printed.
+
+#include <fnmatch.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/stats/tasks/results.hpp"
+#include "apps/stats/tasks/sickness_json.hpp"
+#include "libstudy/display/stimulus.hpp"
+#include "stats/base/error.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_blocks.hpp"
+#include "tests/apps/report_sentences.hpp"
+#include "tests/apps/simulated_pilot.hpp"
+
+namespace apps {
+namespace {
+
+using report_blocks::Block;
+using report_blocks::blocks_of;
+using report_blocks::sentences_of;
+using report_sentences::Case;
+using report_sentences::cases;
+
+/// A study with a pilot and both tasks, and something excluded of Task 1.
+const Json& whole_study() {
+  static const Json json = [] {
+    PlanInForce plan;
+    plan.plan.resamples = 200;
+    auto task1 = made_study::task1(16);
+    task1.sessions[0].trials[2].excluded = "looked away";
+    auto out =
+        make_results(
+            {{testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 12, 7), task1, made_study::task2(16)}, 1},
+            {"study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+            .json;
+    out["sickness"] = sickness_json(made_study::sickness(16), plan.plan);
+    return out;
+  }();
+  return json;
+}
+
+/// A page that is refused prints nothing.
+std::vector<Block> page_of(const Json& json) {
+  try {
+    return blocks_of(json);
+  } catch (const base::Error&) {
+    return {};
+  }
+}
+
+bool prints(const Json& json, const std::string& pattern) {
+  for (const auto& block : page_of(json))
+    for (const auto& sentence : sentences_of(block.form))
+      if (fnmatch(pattern.c_str(), sentence.c_str(), 0) == 0) return true;
+  return false;
+}
+
+TEST(ReportSentences, NoneIsPrintedWhereItWouldBeFalse) {
+  for (const Case& one : cases()) {
+    Json json = whole_study();
+    one.make_true(json);
+    EXPECT_TRUE(prints(json, one.pattern)) << "never printed: " << one.pattern;
+    one.make_false(json);
+    EXPECT_FALSE(prints(json, one.pattern)) << "printed though false: " << one.pattern;
+  }
+}
+
+TEST(ReportSentences, EverySentenceHasSuchACase) {
+  std::vector<Json> pages{whole_study()};
+  for (const Case& one : cases()) {
+    pages.push_back(whole_study());
+    one.make_true(pages.back());
+    pages.push_back(pages.back());
+    one.make_false(pages.back());
+  }
+  std::set<std::string> unknown;
+  for (const Json& json : pages) {
+    for (const auto& block : page_of(json)) {
+      for (const auto& sentence : sentences_of(block.form)) {
+        if (sentence.find_first_not_of("#. ") == std::string::npos) continue;  // a value of the results
+        const bool known = std::any_of(cases().begin(), cases().end(), [&](const Case& one) {
+          return fnmatch(one.pattern.c_str(), sentence.c_str(), 0) == 0;
+        });
+        if (!known) unknown.insert(sentence);
+      }
+    }
+  }
+  EXPECT_THAT(unknown, ::testing::IsEmpty());
+}
+
+/// Another value of the same type.
+void change(Json& value) {
+  if (value.is_boolean()) {
+    value = !value.get<bool>();
+  } else if (value.is_number()) {
+    const double number = value.get<double>();
+    value = number > 0.5 && number <= 1 ? number - 0.5 : number + 2;  // p above .999 all look alike
+  } else {
+    value = value.get<std::string>() + " changed";
+  }
+}
+
+// Whatever a sentence quotes: where the results say otherwise, so does the sentence.
+TEST(ReportSentences, EveryValueQuotedIsTheResultsOwn) {
+  const auto all = blocks_of(whole_study());
+  std::set<std::string> seen;
+  for (const auto& block : all) {
+    if (block.fields.empty() || !seen.insert(block.form).second) continue;
+    for (const auto& field : block.fields) {
+      Json json = whole_study();
+      Json& value = json.at(Json::json_pointer(field));
+      if (field == "/schema" || value.is_array() || (value.is_string() && value.get<std::string>().empty()))
+        continue;
+      change(value);
+      const auto now = blocks_of(json);
+      const auto same = [&](const Block& other) { return other.words == block.words; };
+      EXPECT_LT(std::count_if(now.begin(), now.end(), same), std::count_if(all.begin(), all.end(), same))
+          << field << ": " << block.words;
+    }
+  }
+  EXPECT_GT(seen.size(), 40u);
+}
+
+// "unless another share stands beside them": intervals of equivalence and of H2 and H3 hold 90 %.
+TEST(ReportSentences, IntervalsOfAnotherShareSaySo) {
+  std::size_t quoted = 0;
+  const Json& json = whole_study();
+  const auto page = html_reader::read(report::results_page(json));
+  std::set<std::string> said;
+  for (const auto& text : page.texts) said.insert(text.attribute("data-field"));
+  for (std::size_t h = 0; h < json.at("hypotheses").size(); ++h) {
+    const Json& tests = json.at("hypotheses")[h].at("tests");
+    for (std::size_t t = 0; t < tests.size(); ++t) {
+      if (tests[t].at("ci_confidence") == json.at("plan").at("confidence")) continue;
+      ++quoted;
+      EXPECT_TRUE(said.contains("/hypotheses/" + std::to_string(h) + "/tests/" + std::to_string(t) +
+                                "/ci_confidence"));
+    }
+  }
+  for (std::size_t c = 0; c < json.at("task1").at("comparisons").size(); ++c) {
+    if (!json.at("task1").at("comparisons")[c].at("tost").contains("ci_confidence")) continue;
+    ++quoted;
+    EXPECT_TRUE(said.contains("/task1/comparisons/" + std::to_string(c) + "/tost/ci_confidence"));
+  }
+  EXPECT_GT(quoted, 20u);
+}
+
+// "Grades of evidence: A photodiode, B display feedback, C compositor, D submission by the program."
+TEST(ReportSentences, GradesMeanWhatTheStoreMeans) {
+  EXPECT_EQ(static_cast<char>(study::TimingGrade::Photodiode), 'A');
+  EXPECT_EQ(static_cast<char>(study::TimingGrade::DisplayFeedback), 'B');
+  EXPECT_EQ(static_cast<char>(study::TimingGrade::Compositor), 'C');
+  EXPECT_EQ(static_cast<char>(study::TimingGrade::CpuSubmit), 'D');
+}
+
+}  // namespace
+}  // namespace apps
