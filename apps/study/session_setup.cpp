@@ -91,6 +91,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
       setup.gaze = std::move(window.mouse);
     }
     setup.wish = std::move(window.wish);
+    setup.idle = std::move(window.idle);
     setup.screen = window.screen;
     size = window.size;
   } else {

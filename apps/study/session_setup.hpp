@@ -22,10 +22,11 @@ struct SessionSetup {
   std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::unique_ptr<study::GazeSource> gaze;  ///< what is recorded of it; none: nothing is measured
-  WindowWish wish;                          ///< the window's, or empty
-  std::optional<ScreenFacts> screen;        ///< likewise
-  std::vector<FramedScene> scenes;          ///< as the display frames them; none: nothing is drawn
+  std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
+  WindowWish wish;                              ///< the window's, or empty
+  std::function<std::optional<double>()> idle;  ///< likewise
+  std::optional<ScreenFacts> screen;            ///< likewise
+  std::vector<FramedScene> scenes;              ///< as the display frames them; none: nothing is drawn
 
   /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
   /// test data.

@@ -27,6 +27,8 @@ struct WindowParts {
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
   std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
   WindowWish wish;
+  /// Seconds since the last key, button or movement of the mouse at the window.
+  std::function<std::optional<double>()> idle;
   ScreenFacts screen;
   PictureSize size;  ///< of the window
 };

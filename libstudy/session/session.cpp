@@ -112,6 +112,7 @@ std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& s
   check_personal(running);
   SessionRun run(running);
   const std::optional<Ending> ending = run.go();
+  if (ending && hooks.ends) hooks.ends(*ending);
   if (ending) run.say_farewell(*ending);
   return ending;
 }

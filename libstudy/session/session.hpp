@@ -61,6 +61,7 @@ struct SessionHooks {
   std::function<void(const OpenUnit&)> begins;
   std::function<void(const FrameRecord&)> shown;
   std::function<void(const UnitDone&)> done;
+  std::function<void(const Ending&)> ends;  ///< early; committed, and say_farewell() comes next
   std::function<Wish()> wish;
 };
 
