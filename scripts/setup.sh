@@ -17,6 +17,9 @@ packages=(
   sqlite3 util-linux xvfb xauth xdotool imagemagick
 )
 
+# The BIDS validator's (scripts/validate_bids.sh); whoever has npm from elsewhere keeps it.
+command -v npm >/dev/null || packages+=(nodejs npm)
+
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "setup: this script knows Debian 12 and its relatives (no apt-get here)." >&2
   echo "       Install the counterparts of: ${packages[*]}" >&2

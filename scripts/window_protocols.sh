@@ -134,6 +134,7 @@ while alive; do
     position=$at kind=$now_kind block=$now_block page=0 pages=1 wanted=0 moved=$SECONDS
     trial=$(ask "select trial_id is not null from unit where position = $position")
     [ "$trial" = 0 ] || pages=${#asks[@]}
+    [ "$trial" = 0 ] || ! grep -q '^pairs = true' "$out/$protocol.toml" || picture_once word
     if [ "$trial" = 0 ] && [ "$kind" = stimulus ]; then  # the pause between two groups, which asks nothing
       kind=break block=
       picture_once break_countdown

@@ -20,8 +20,10 @@ void FluidPicture::begin(const sim::GBuffer* seen) {
   drawn_frame_.reset();
 }
 
-void FluidPicture::look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze) {
+void FluidPicture::look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze,
+                        double visual_scale) {
   sim::EyeLook eye{gaze, view};
+  eye.visual_scale = visual_scale;
   if (!drawn_frame_ || !fluid.follows_picture()) {
     eye.seen = before_;
     fluid.look({{eye}});

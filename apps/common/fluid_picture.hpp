@@ -25,7 +25,8 @@ class FluidPicture {
   /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
   /// the last one. The picture stays on the device where the back end shares memory with GL, otherwise it
   /// takes a way through the host; it is the last one drawn either way.
-  void look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze);
+  /// visual_scale: sim::EyeLook's.
+  void look(sim::Simulation& fluid, const sim::View& view, const sim::Gaze& gaze, double visual_scale = 1);
   sim::FluidRenderer& renderer() { return renderer_; }
   const sim::FluidRenderer& renderer() const { return renderer_; }
   /// Whether the last particles went a way through the host.

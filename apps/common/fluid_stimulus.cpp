@@ -15,26 +15,6 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
 }
 
-/// The largest rectangle of the picture's shape in the middle of a framebuffer.
-struct Rectangle {
-  int x0, y0, x1, y1;
-};
-Rectangle fit(int width, int height, int into_width, int into_height) {
-  const double scale = std::min(double(into_width) / width, double(into_height) / height);
-  const int w = static_cast<int>(std::lround(width * scale));
-  const int h = static_cast<int>(std::lround(height * scale));
-  const int x = (into_width - w) / 2, y = (into_height - h) / 2;
-  return {x, y, x + w, y + h};
-}
-
-void draw_particles(std::unique_ptr<sim::FluidRenderer>& renderer, const sim::Scene& scene,
-                    const sim::RenderOptions& options, const sim::ParticleBuffer& particles,
-                    unsigned framebuffer, int width_px, int height_px) {
-  if (!renderer) renderer = std::make_unique<sim::FluidRenderer>(scene, options);
-  const sim::View view = sim::make_view(scene.view, width_px, height_px);
-  renderer->draw(particles, {&view, 1}, framebuffer);
-}
-
 }  // namespace
 
 study::FrameFacts to_facts(double simulation_time_s, const sim::FrameAccount& account) {
@@ -97,7 +77,7 @@ void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(texture_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, picture_->rgba.data());
-  const Rectangle to = fit(width, height, width_px, height_px);
+  const Rectangle to = fit_picture(width, height, width_px, height_px);
   if (to.x0 > 0 || to.y0 > 0) {
     const float black[4] = {0, 0, 0, 1};
     glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, black);
@@ -107,9 +87,11 @@ void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
                          GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
-BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, const sim::RenderOptions& options)
+BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing,
+                               const sim::RenderOptions& options)
     : bake_(std::move(bake)),
       scene_(sim::parse_scene(bake_->header().scene_text, bake_->header().scene_name)),
+      viewing_(std::move(viewing)),
       options_(options) {}
 
 std::string BakedParticles::description() const { return describe(*bake_, "particles"); }
@@ -121,11 +103,13 @@ study::FrameFacts BakedParticles::prepare(std::int64_t step) {
 
 void BakedParticles::draw(unsigned framebuffer, int width_px, int height_px) {
   particles_.upload(frame_.particles);
-  draw_particles(renderer_, scene_, options_, particles_, framebuffer, width_px, height_px);
+  if (!renderer_) renderer_ = std::make_unique<sim::FluidRenderer>(scene_, options_);
+  const sim::View view = framed_view(scene_.view, viewing_, width_px, height_px);
+  renderer_->draw(particles_, {&view, 1}, framebuffer);
 }
 
 LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-                     LiveViewing viewing, const sim::RenderOptions& options)
+                     Viewing viewing, const sim::RenderOptions& options)
     : scene_(scene),
       frame_dt_s_(frame_dt_s),
       description_(std::move(description)),
@@ -169,14 +153,13 @@ void LiveFluid::look() {
   if (viewing_.gaze) point = viewing_.gaze(width, height);
   sim::Gaze gaze;
   if (point) gaze = gaze_through(*view_, point->first, point->second);
-  picture_->look(*simulation_, *view_, gaze);
+  picture_->look(*simulation_, *view_, gaze, visual_scale_);
 }
 
 void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {
-  sim::Camera camera = scene_.view;
-  if (viewing_.vertical_fov_deg) camera.vertical_fov_deg = viewing_.vertical_fov_deg(width_px, height_px);
   if (!picture_) picture_ = std::make_unique<FluidPicture>(scene_, options_);
-  view_ = sim::make_view(camera, width_px, height_px);
+  view_ = framed_view(scene_.view, viewing_, width_px, height_px);
+  visual_scale_ = frame_picture(scene_.view, viewing_, width_px, height_px).visual_scale();
   picture_->draw(*simulation_, *view_, framebuffer);
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/framing.hpp"
 #include "libsim/bake/picture_ring.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/simulation.hpp"
@@ -47,7 +48,8 @@ class BakedPictures final : public study::Stimulus {
 /// The particle frames of a bake, drawn by the renderer.
 class BakedParticles final : public study::Stimulus {
  public:
-  explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, const sim::RenderOptions& options = {});
+  explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
+                          const sim::RenderOptions& options = {});
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
@@ -58,19 +60,11 @@ class BakedParticles final : public study::Stimulus {
  private:
   std::unique_ptr<sim::BakeReader> bake_;
   sim::Scene scene_;
+  Viewing viewing_;
   sim::RenderOptions options_;
   sim::BakeFrame frame_;
   std::unique_ptr<sim::FluidRenderer> renderer_;
   sim::ParticleBuffer particles_;
-};
-
-/// How a live fluid is watched. Empty functions: the gaze rests on the middle of the picture, and the camera
-/// is the scene's.
-struct LiveViewing {
-  /// Where one looks in a picture of this width and height, px from its lower left corner; none: not known.
-  std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  /// Vertical field of view of a picture of this width and height, degrees.
-  std::function<double(int, int)> vertical_fov_deg;
 };
 
 /// A simulation that advances one frame a content step, and sees what its viewer saw in the picture before.
@@ -80,7 +74,7 @@ class LiveFluid final : public study::Stimulus {
   using MakeSimulation = std::function<std::unique_ptr<sim::Simulation>()>;
 
   LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-            LiveViewing viewing = {}, const sim::RenderOptions& options = {});
+            Viewing viewing = {}, const sim::RenderOptions& options = {});
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
@@ -102,13 +96,14 @@ class LiveFluid final : public study::Stimulus {
   double frame_dt_s_;
   std::string description_;
   MakeSimulation make_;
-  LiveViewing viewing_;
+  Viewing viewing_;
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture
+  double visual_scale_ = 1;        ///< likewise, sim::EyeLook's
 };
 
 /// What `vip-study run` shows: a bake when one is named, otherwise a live simulation.
@@ -122,7 +117,7 @@ struct StimulusChoice {
   /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
   std::optional<sim::FrameRate> fixed_rate;
   stats::PtpeModel model;
-  LiveViewing viewing;  ///< live fluid only
+  Viewing viewing;  ///< of a bake with pictures: nothing
 };
 
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another

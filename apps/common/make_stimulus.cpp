@@ -20,7 +20,7 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake));
+  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "apps/common/streams.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -50,6 +51,8 @@ int run_commands(CLI::App& app, int argc, char** argv) {
   try {
     check_arguments(argc, argv);
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& ended) {  // a command's own exit status
+    return ended.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
@@ -113,7 +116,7 @@ Progress::~Progress() {
 
 void Progress::update(std::size_t done) {
   const double now = seconds_now();
-  if (now - started_s_ < 2) return;
+  if (now - started_s_ < 2 || done == 0) return;
   const int tenth = total_ ? static_cast<int>(10 * done / total_) : 0;
   if (terminal_ ? (now - drawn_s_ < 0.1 && done < total_) : tenth == drawn_tenth_) return;
   drawn_s_ = now;
@@ -128,8 +131,8 @@ void Progress::draw(std::size_t done) {
   constexpr int width = 30;
   std::string bar(width, '.');
   for (int i = 0; i < static_cast<int>(fraction * width); ++i) bar[static_cast<std::size_t>(i)] = '#';
-  std::fprintf(stderr, "%s%s [%s] %3.0f %%  %.0f s left%s", terminal_ ? "\r" : "", label_.c_str(),
-               bar.c_str(), 100 * fraction, left, terminal_ ? "   " : "\n");
+  std::fprintf(stderr, "%s%s [%s] %3.0f %%  %s left%s", terminal_ ? "\r" : "", label_.c_str(), bar.c_str(),
+               100 * fraction, base::duration_words(left).c_str(), terminal_ ? "   " : "\n");
   std::fflush(stderr);
 }
 

@@ -13,9 +13,9 @@ namespace apps {
 
 /// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr, such as
 /// output that could not be written (a reader that left a pipe is told nothing); 2 = the command line was
-/// wrong (a missing command shows the help). Call it first in main(): it opens /dev/null where a standard
-/// stream is closed, and unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, it starts the program over, once,
-/// with OMP_WAIT_POLICY=passive.
+/// wrong (a missing command shows the help); else what a command throws as CLI::RuntimeError. Call it first
+/// in main(): it opens /dev/null where a standard stream is closed, and unless OMP_WAIT_POLICY or
+/// GOMP_SPINCOUNT is set, it starts the program over, once, with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
 /// What an error says on stderr, with place and mend also where it comes from another library, which tells

@@ -62,7 +62,7 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
 }  // namespace
 
 CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& protocol,
-                         const stats::PtpeModel& model, LiveViewing viewing)
+                         const stats::PtpeModel& model, Viewing viewing)
     : options_(options) {
   choice_.bake = options.bake;
   choice_.content_step_s = protocol.content.content_step_s;

@@ -15,7 +15,7 @@ namespace apps {
 class CellStimuli final : public study::StimulusSource {
  public:
   CellStimuli(const RunOptions& options, const study::Protocol& protocol, const stats::PtpeModel& model,
-              LiveViewing viewing);
+              Viewing viewing);
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
   /// Of all cells, for the record; does not depend on which of them were shown.

@@ -7,6 +7,7 @@
 #include "apps/common/program.hpp"
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/preview.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/scene/scene.hpp"
 #include "stats/base/error.hpp"
@@ -26,6 +27,8 @@ struct CheckOptions {
   bool compare = false;
   bool measure = false;
   MeasureOptions measuring;
+  std::string size = "1920x1080", preview;
+  std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
 /// libstudy only passes scenes, methods and n_* on; here they are looked at.
@@ -53,7 +56,16 @@ std::vector<RefreshCheck> check_common(const study::Protocol& protocol) {
 
 CheckReport make_report(const CheckOptions& options, const study::Protocol& protocol) {
   CheckReport report{
-      protocol, outline_session(protocol), check_balance(protocol), checked_settings(protocol), {}, {}, {}};
+      protocol,
+      outline_session(protocol),
+      check_balance(protocol),
+      checked_settings(protocol),
+      {},
+      {},
+      {},
+      frame_scenes(protocol,
+                   screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle),
+                   parse_picture_size(options.size))};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
   std::int64_t frames = 0;
   for (const auto& one : report.settings) frames += study::frame_count(one.setting);
@@ -75,12 +87,14 @@ void check_protocol(const CheckOptions& options) {
   check_stimuli(protocol, path.string());
   const CheckReport report = make_report(options, protocol);
   print_report(report);
+  if (!options.preview.empty()) write_preview(options.preview, report.scenes);
   if (!options.json.empty()) base::write_file_atomically(options.json, report_json(report).dump(2) + "\n");
   if (report.measured && !report.measured->collapse.empty()) {
     throw base::Error(path.string() + ": timing = \"native\"",
                       "would compare equal stimuli on this machine: " + report.measured->collapse,
                       "use timing = \"table2\" or \"equal\", or larger n_*");
   }
+  check_visible(report.scenes);
 }
 
 }  // namespace
@@ -102,6 +116,11 @@ void add_check_command(CLI::App& app) {
   command->add_option("--backend", options->measuring.backend, "Computes the fluid")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
+  command->add_option("--size", options->size, "Pixels of the participant's picture")->capture_default_str();
+  command->add_option("--screen-width-mm", options->screen_width_mm, "Its width on the screen");
+  command->add_option("--viewing-distance-mm", options->viewing_distance_mm, "From the eye to the screen");
+  command->add_option("--preview", options->preview,
+                      "Folder for a page that shows each scene as the participant will see it");
   command->add_option("--json", options->json, "File for every number of the report")->check(output_file());
   command->callback([options] { check_protocol(*options); });
 }

@@ -74,7 +74,7 @@ void print_session(const CheckReport& report) {
 void print_settings(const CheckReport& report, const RefreshCheck& check) {
   std::printf("\non %g Hz, %s mean, timing = %s\n%-16s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
               mean_name(report.protocol), timing_name(report.protocol.design), "setting", "frames", "status",
-              "mean", "sd", "longest ms", "why not exact");
+              "mean", "sd", "longest ms", "what misses, and why");
   for (std::size_t i = 0; i < report.settings.size(); ++i) {
     const auto& verdict = check.verdicts[i];
     std::printf("%-16s %6lld  %-11s", study::setting_name(report.settings[i].setting).c_str(),
@@ -176,6 +176,20 @@ void print_stimuli(const CheckReport& report) {
   }
 }
 
+void print_framing(const CheckReport& report) {
+  std::printf("\nframing:\n");
+  for (const FramedScene& one : report.scenes) {
+    std::printf("  %s", describe_framing(one).c_str());
+    for (const std::string& name : one.cut) std::printf("; %s leaves the picture", name.c_str());
+    if (one.cut.empty())
+      std::printf(one.scene.visible.empty() ? "; the scene declares nothing that must stay visible"
+                                            : "; what must stay visible does");
+    std::printf("\n");
+  }
+  for (const std::string& note : framing_notes(report.protocol, report.scenes))
+    std::printf("  %s\n", note.c_str());
+}
+
 void print_measured(const MeasuredReport& measured) {
   std::printf("\nmeasured here:\n%-30s %9s %8s %8s %8s\n", "stimulus", "frames/s", "sd", "p95 ms", "tau min");
   for (const auto& one : measured.stimuli) {
@@ -229,6 +243,24 @@ void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
   }
 }
 
+void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
+  for (const FramedScene& one : report.scenes) {
+    const auto& drawn = one.view.viewport;
+    nlohmann::ordered_json framing{{"scene", one.file},
+                                   {"width_px", drawn.width},
+                                   {"height_px", drawn.height},
+                                   {"camera_angle_deg", one.framing.camera_deg},
+                                   {"visual_angle_deg", nullptr},
+                                   {"angle_ratio", nullptr},
+                                   {"cut", one.cut}};
+    if (one.framing.visual_deg) {
+      framing["visual_angle_deg"] = *one.framing.visual_deg;
+      framing["angle_ratio"] = *one.framing.ratio();
+    }
+    json["framing"].push_back(framing);
+  }
+}
+
 void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
   json["too_slow"] = measured.too_slow;
   json["collapse"] = measured.collapse;
@@ -256,6 +288,7 @@ void print_report(const CheckReport& report) {
     std::printf("\nother refresh rates: --compare looks at them, which takes minutes with so many frames\n");
   print_speed(report);
   print_stimuli(report);
+  print_framing(report);
   if (report.measured) print_measured(*report.measured);
 }
 
@@ -298,6 +331,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
                                {"live", one.adaptive || protocol.design.timing == TimingSource::Native},
                                {"bake_frames", one.frames}});
   }
+  add_framing(json, report);
   if (report.measured) add_measured(json, *report.measured);
   return json;
 }

@@ -8,6 +8,7 @@
 #include "apps/study/check/measured_check.hpp"
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/check/session_outline.hpp"
+#include "apps/study/session_framing.hpp"
 
 namespace apps {
 
@@ -19,6 +20,7 @@ struct CheckReport {
   std::optional<RefreshCheck> refresh;   ///< on the display's own rate, when it was given
   std::vector<RefreshCheck> common;      ///< on the common ones, where they were looked at
   std::optional<MeasuredReport> measured;
+  std::vector<FramedScene> scenes;
 };
 
 void print_report(const CheckReport& report);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/study/commands.hpp"
+#include "apps/study/withdrawal.hpp"
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
@@ -68,6 +69,7 @@ void add_export_command(CLI::App& app) {
       "how\n"
       "to take it away).");
   sub.callback([options] {
+    check_no_withdrawal_is_due(options->database);
     if (!options->csv.empty())
       print_files(study::export_csv(options->database, options->csv, {options->words, options->gaze}));
     if (!options->bids.empty()) {

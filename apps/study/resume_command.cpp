@@ -52,8 +52,7 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
   }
 }
 
-void resume(const PlayOptions& options) {
-  const StopSignals signals;
+Played play(const PlayOptions& options) {
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
@@ -63,16 +62,24 @@ void resume(const PlayOptions& options) {
     for (const auto& session : run.sessions) study::settle_interruption(store, protocol, session);
   }
   const auto runs = store.open_runs();
+  Played played;
   if (runs.empty()) std::printf("%s: nothing is left to do\n", place.c_str());
   for (const study::OpenRun& run : runs) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     SessionSetup setup = make_session_setup(parse_run_options(run.options, place), protocol,
                                             run.sessions.front().plan.ptpe, place);
     check_unchanged(store, run, setup, place);
-    play_run(store, run, protocol, setup, options);
+    played.end = std::max(played.end, play_run(store, run, protocol, setup, options));
     print_certificate(options.database, run, protocol);
   }
+  played.withdraw = store.wished_withdrawals();
   study::check_nothing_left(options.database, store.left_to_clean());
+  return played;
+}
+
+void resume(const PlayOptions& options) {
+  const StopSignals signals;
+  end_command(options.database, play(options));
 }
 
 }  // namespace
@@ -81,6 +88,7 @@ void add_resume_command(CLI::App& app) {
   auto options = std::make_shared<PlayOptions>();
   CLI::App& sub = *app.add_subcommand("resume", "Finish what was planned and not answered");
   add_play_options(sub, *options);
+  sub.footer(exit_status_help);
   sub.callback([options] { resume(*options); });
 }
 

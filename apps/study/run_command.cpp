@@ -82,7 +82,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data || !setup.stimuli->departure().empty();
+  session.test_data = protocol.test_data || !setup.departure().empty();
+  session.framing = framing_record(setup.scenes);
   session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;
   session.display = setup.display->description();
@@ -118,6 +119,24 @@ bool asks_gaze(const study::Protocol& protocol) {
                      [](const auto& entry) { return entry.second->id == study::gaze_question; });
 }
 
+Played play(const RunCommand& command, const study::Protocol& protocol, const study::SessionPlan& common,
+            const std::vector<std::string>& codes, SessionSetup& setup) {
+  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
+                     tell_of_locks(command.play.database));
+  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
+  const std::int64_t run_id =
+      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
+  Played played;
+  for (const study::OpenRun& open : store.open_runs()) {
+    if (open.id != run_id) continue;
+    played.end = play_run(store, open, protocol, setup, command.play);
+    print_certificate(command.play.database, open, protocol);
+  }
+  played.withdraw = store.wished_withdrawals();
+  study::check_nothing_left(command.play.database, store.left_to_clean());
+  return played;
+}
+
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   choose_defaults(command.run);
@@ -131,27 +150,19 @@ void run(RunCommand& command) {
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
-  if (!setup.stimuli->departure().empty()) {
+  if (!setup.departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
-                 setup.stimuli->departure().c_str());
+                 setup.departure().c_str());
   }
+  for (const std::string& note : framing_notes(protocol, setup.scenes))
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
     std::fprintf(stderr, "%s: does not ask %s; where the mouse is will not be recorded\n",
                  command.protocol.c_str(), study::gaze_question);
   }
 
   const StopSignals signals;
-  study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
-                     tell_of_locks(command.play.database));
-  print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
-  const std::int64_t run_id =
-      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
-  for (const study::OpenRun& open : store.open_runs()) {
-    if (open.id != run_id) continue;
-    play_run(store, open, protocol, setup, command.play);
-    print_certificate(command.play.database, open, protocol);
-  }
-  study::check_nothing_left(command.play.database, store.left_to_clean());
+  end_command(command.play.database, play(command, protocol, common, codes, setup));
 }
 
 }  // namespace
@@ -194,8 +205,9 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
       ->check(text_up_to(100));
-  sub.add_option("--screen-width-mm", command->run.screen_width_mm,
-                 "Width of the picture on the screen; gives the camera's angle");
+  sub.add_option(
+      "--screen-width-mm", command->run.screen_width_mm,
+      "Width of the participant's picture on the screen: with the distance it gives visual angles");
   sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");
   sub.add_option("--size", command->size,
                  "Pixels of the display (default: 640x360 without a window; a window fills the monitor)");
@@ -213,6 +225,7 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
       ->capture_default_str();
   sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
+  sub.footer(exit_status_help);
   sub.callback([command] { run(*command); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -14,10 +15,13 @@
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
+#include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/personal.hpp"
+#include "libstudy/store/session_counts.hpp"
 #include "libstudy/store/status.hpp"
+#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -90,10 +94,10 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
 class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-           const WindowWish& window, const PlayOptions& options)
-      : protocol_(protocol), window_(window), events_(options.events) {
+           const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
+      : protocol_(protocol), window_(setup.wish), events_(options.events), warnings_(std::move(warnings)) {
     if (options.console) {
-      console_.emplace(protocol, store, options.database);
+      console_.emplace(protocol, store, options.database, setup.idle);
       terminal_.emplace(*console_);
     } else {
       progress_.emplace("session steps", units_left(run));
@@ -102,11 +106,15 @@ class Steering {
 
   study::SessionHooks hooks(const study::OpenSession& session) {
     if (console_) console_->begin(session);
+    for (const std::string& warning : warnings_) {
+      if (console_) console_->warn(warning);
+    }
     study::SessionHooks hooks;
     hooks.begins = [this, &session](const study::OpenUnit& unit) {
       if (console_) console_->begins(unit);
       if (events_) print_begins(session, unit, protocol_);
     };
+    if (console_) hooks.ends = [this](const study::Ending& ending) { console_->ends(ending); };
     if (console_) hooks.shown = [this](const study::FrameRecord& frame) { console_->shown(frame); };
     hooks.done = [this](const study::UnitDone& unit) {
       if (progress_) progress_->update(++done_);
@@ -129,21 +137,38 @@ class Steering {
   const study::Protocol& protocol_;
   const WindowWish& window_;
   bool events_;
+  std::vector<std::string> warnings_;  ///< of the station, for the console
   std::size_t done_ = 0;
   std::optional<Progress> progress_;
   std::optional<Console> console_;
   std::optional<ConsoleTerminal> terminal_;
 };
 
-/// Before the first step at a window: what the screen and the computer are like, told and kept.
-void check_station(study::Store& store, const study::OpenSession& session, const study::Protocol& protocol,
-                   const SessionSetup& setup, const PlayOptions& options) {
-  if (!setup.screen) return;
+/// Before the first step at a window: what the screen and the computer are like, told and kept. Returns what
+/// is not as it should be.
+std::vector<std::string> check_station(study::Store& store, const study::OpenSession& session,
+                                       const study::Protocol& protocol, const SessionSetup& setup,
+                                       const PlayOptions& options) {
+  if (!setup.screen) return {};
   const auto bytes = expected_bytes(protocol, session.units);
-  const std::string lines =
-      format_preflight(judge_preflight(setup.screen, read_station(options.database), bytes));
+  const auto judged = judge_preflight(setup.screen, read_station(options.database), bytes);
+  const std::string lines = format_preflight(judged);
   std::fprintf(stderr, "%s", lines.c_str());
   store.log(session.id, "preflight", lines, setup.clock->now_ns());
+  std::vector<std::string> warnings;
+  for (const PreflightLine& line : judged) {
+    if (line.readiness == Readiness::Warn) warnings.push_back(line.what + ": " + line.finding);
+  }
+  return warnings;
+}
+
+/// On stderr, before the first step: how long what is left takes in real time.
+void tell_length(const study::OpenRun& run, const study::Protocol& protocol, bool person) {
+  double seconds = 0;
+  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person);
+  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", protocol.name.c_str(),
+               run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
+               base::duration_words(seconds).c_str());
 }
 
 /// The session as it stands in the store now; none when nothing is left of it.
@@ -156,33 +181,89 @@ std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t i
   return {};
 }
 
-}  // namespace
+/// A person's session that ended before its last step.
+struct EndedEarly {
+  std::string participant;
+  study::Ending ending;
+};
 
-void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-              SessionSetup& setup, const PlayOptions& options) {
+RunEnd tell_end(const EndedEarly& early) {
+  const bool refused = early.ending.how == study::EarlyEnd::Refused;
+  const bool turned_away = refused || early.ending.how == study::EarlyEnd::NotEligible;
+  std::printf("%s %s: the session is over, nothing is left to do of it\n", early.participant.c_str(),
+              refused       ? "did not consent"
+              : turned_away ? "is not eligible"
+                            : "stopped before the end");
+  return turned_away ? RunEnd::TurnedAway : RunEnd::Stopped;
+}
+
+/// When the console's screen is gone: which sessions are over, and what the database holds of each person's
+/// and of a single one.
+RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
+                 const std::filesystem::path& database) {
+  RunEnd end = RunEnd::Done;
+  for (const EndedEarly& early : all) end = std::max(end, tell_end(early));
+  for (const study::OpenSession& session : run.sessions) {
+    if (session.plan.observer && run.sessions.size() > 1) continue;
+    std::fputs(study::summary_of(study::count_session(database, session.id)).c_str(), stdout);
+  }
+  return end;
+}
+
+void play_sessions(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                   SessionSetup& setup, const PlayOptions& options, std::vector<EndedEarly>& early) {
   std::optional<study::RealTimeScheduling> real_time;
-  if (!setup.virtual_clock) real_time.emplace();
+  if (!setup.virtual_clock) {
+    real_time.emplace();
+    tell_length(run, protocol, !setup.participant->simulated());
+  }
   std::optional<study::PersonalFile> personal;
   if (asks_personal(protocol)) personal.emplace(options.database);
   study::SessionParts parts{*setup.clock,       *setup.display, *setup.stimuli,
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
   parts.gaze = setup.gaze.get();
-  for (const auto& session : run.sessions) check_station(store, session, protocol, setup, options);
-  Steering steering(store, run, protocol, setup.wish, options);
-  try {
-    for (const auto& session : run.sessions) {
-      if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
-      study::run_session(protocol, session, parts, steering.hooks(session));
-      while (steering.take_reopened()) {
-        const auto again = read_again(store, session.id);
-        if (again) study::run_session(protocol, *again, parts, steering.hooks(*again));
-      }
+  std::vector<std::string> warnings;
+  for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
+  Steering steering(store, run, protocol, setup, options, warnings);
+  const auto play = [&](const study::OpenSession& session) {
+    const auto ending = study::run_session(protocol, session, parts, steering.hooks(session));
+    if (ending && !session.plan.observer) early.push_back({session.plan.participant, *ending});
+  };
+  for (const auto& session : run.sessions) {
+    if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
+    play(session);
+    while (steering.take_reopened()) {
+      if (const auto again = read_again(store, session.id)) play(*again);
     }
+  }
+}
+
+}  // namespace
+
+void end_command(const std::filesystem::path& database, const Played& played) {
+  for (const std::string& participant : played.withdraw) withdraw_and_tell(database, participant);
+  if (played.end == RunEnd::Stopped) throw CLI::RuntimeError(3);
+  if (played.end == RunEnd::TurnedAway) throw CLI::RuntimeError(4);
+}
+
+const char* const exit_status_help =
+    "Exit status: 0 done; 1 an error; 2 a wrong command line; 3 a person's session was stopped before its "
+    "end;\n"
+    "4 a person did not consent or is not eligible.";
+
+RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                SessionSetup& setup, const PlayOptions& options) {
+  std::vector<EndedEarly> early;
+  const auto tell = [&] { return tell_ends(run, early, options.database); };
+  try {
+    play_sessions(store, run, protocol, setup, options, early);
   } catch (const study::Stopped&) {
+    tell();
     throw base::Error(options.database.string(), "stopped on request; all answers given are kept",
                       "continue with vip-study resume --db " + options.database.string());
   }
+  return tell();
 }
 
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,10 +38,29 @@ struct PlayOptions {
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
 };
 
-/// Plays all sessions of an open run with a progress bar, then prints its timing certificate. base::Error
-/// that names resume when it was stopped.
-void play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-              SessionSetup& setup, const PlayOptions& options);
+/// How a person's sessions ended, of several the last of these that fits one; those of observers are Done.
+enum class RunEnd {
+  Done,
+  TurnedAway,  ///< consent was refused, or an answer ruled the person out
+  Stopped      ///< by the participant, a stop rule or the experimenter
+};
+
+/// Plays all sessions of an open run with a progress bar, and says which ended early. base::Error that names
+/// resume when it was stopped on request.
+RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
+                SessionSetup& setup, const PlayOptions& options);
+
+/// What is left to do when a command has played and closed its database.
+struct Played {
+  RunEnd end = RunEnd::Done;
+  std::vector<std::string> withdraw;  ///< participants who wished it at the end
+};
+
+/// Carries out the withdrawals, then ends the command with the exit status of sessions that ended early: 3
+/// stopped, 4 turned away.
+void end_command(const std::filesystem::path& database, const Played& played);
+/// The same in words, for --help.
+extern const char* const exit_status_help;
 
 /// One line a setting; nothing where no schedule was played: nominal, realised mu and delta, late frames,
 /// verdicts, grade.

@@ -2,7 +2,6 @@
 
 #include "apps/common/headless_display.hpp"
 #include "apps/study/cell_features.hpp"
-#include "apps/study/desk/viewing.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/scene/settled_state.hpp"
 #include "libstudy/display/null.hpp"
@@ -38,9 +37,6 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
   if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
     throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
                       "use --clock real");
-  if (options.screen_width_mm.has_value() != options.viewing_distance_mm.has_value())
-    throw base::Error("--screen-width-mm and --viewing-distance-mm", "make an angle only together",
-                      "give both, or neither");
 }
 
 std::unique_ptr<study::Display> make_display(const RunOptions& options) {
@@ -48,18 +44,6 @@ std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   StimulusChoice choice;
   choice.bake = options.bake;
   return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
-}
-
-LiveViewing viewing_of(const RunOptions& options) {
-  LiveViewing viewing;
-  if (options.screen_width_mm) {
-    const double width_mm = *options.screen_width_mm, distance_mm = *options.viewing_distance_mm;
-    viewing.vertical_fov_deg = [=](int width_px, int height_px) {
-      return vertical_fov_deg(picture_height_mm(width_mm, width_px, height_px), distance_mm);
-    };
-    viewing.vertical_fov_deg(16, 9);  // fails now if it ever does
-  }
-  return viewing;
 }
 
 /// Live pictures are measured before the session; without any, the table stands in.
@@ -81,13 +65,23 @@ stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::str
 
 }  // namespace
 
+std::string SessionSetup::departure() const {
+  std::string out = stimuli->departure();
+  for (const FramedScene& one : scenes) {
+    if (!one.departure.empty()) out += (out.empty() ? "" : ", ") + one.departure;
+  }
+  return out;
+}
+
 SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
                                 const std::optional<std::string>& ptpe, const std::string& ptpe_place) {
   check_together(options, protocol);
   SessionSetup setup;
   setup.virtual_clock = options.clock == "virtual";
   setup.clock = make_clock(options.clock);
-  LiveViewing viewing = viewing_of(options);
+  Viewing viewing = screen_viewing(options.screen_width_mm, options.viewing_distance_mm,
+                                   protocol.true_angle && options.display != "none");
+  PictureSize size{options.width_px, options.height_px};
   if (options.display == "window") {
     WindowParts window = make_window_parts(options, protocol);
     setup.display = std::move(window.display);
@@ -97,10 +91,14 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
       setup.gaze = std::move(window.mouse);
     }
     setup.wish = std::move(window.wish);
+    setup.idle = std::move(window.idle);
     setup.screen = window.screen;
+    size = window.size;
   } else {
     setup.display = make_display(options);
   }
+  if (options.display != "none") setup.scenes = frame_scenes(protocol, viewing, size, options.bake);
+  check_visible(setup.scenes);
   setup.stimuli =
       std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place), std::move(viewing));
   if (!options.observer.empty()) {

@@ -5,6 +5,7 @@
 
 #include "apps/study/cell_stimuli.hpp"
 #include "apps/study/run_options.hpp"
+#include "apps/study/session_framing.hpp"
 #include "apps/study/window_parts.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/pacing/clock.hpp"
@@ -21,9 +22,15 @@ struct SessionSetup {
   std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::unique_ptr<study::GazeSource> gaze;  ///< what is recorded of it; none: nothing is measured
-  WindowWish wish;                          ///< the window's, or empty
-  std::optional<ScreenFacts> screen;        ///< likewise
+  std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
+  WindowWish wish;                              ///< the window's, or empty
+  std::function<std::optional<double>()> idle;  ///< likewise
+  std::optional<ScreenFacts> screen;            ///< likewise
+  std::vector<FramedScene> scenes;              ///< as the display frames them; none: nothing is drawn
+
+  /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
+  /// test data.
+  std::string departure() const;
 };
 
 /// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives

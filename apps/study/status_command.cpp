@@ -5,6 +5,7 @@
 
 #include "apps/study/commands.hpp"
 #include "libstudy/store/status.hpp"
+#include "libstudy/store/withdraw.hpp"
 
 namespace apps {
 
@@ -47,6 +48,9 @@ void status(const std::string& database) {
     }
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
+  for (const std::string& code : study::wished_withdrawals(database))
+    std::printf("%s wished that all be deleted: vip-study withdraw %s --db %s\n", code.c_str(), code.c_str(),
+                database.c_str());
   std::printf("%lld frames recorded, %lld samples of gaze\n", static_cast<long long>(found.frames),
               static_cast<long long>(found.gaze));
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/common/picture_size.hpp"
 #include "apps/study/desk/preflight.hpp"
 #include "apps/study/run_options.hpp"
 #include "libstudy/display/gaze.hpp"
@@ -22,11 +23,14 @@ using WindowWish = std::function<study::Wish(const std::function<study::Wish()>&
 struct WindowParts {
   std::unique_ptr<study::Display> display;
   std::unique_ptr<study::Participant> person;  ///< answers where no observer was named
-  /// LiveViewing::gaze for --gaze mouse.
+  /// Viewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
   std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
   WindowWish wish;
+  /// Seconds since the last key, button or movement of the mouse at the window.
+  std::function<std::optional<double>()> idle;
   ScreenFacts screen;
+  PictureSize size;  ///< of the window
 };
 
 /// base::Error where there is no window.

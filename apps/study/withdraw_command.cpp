@@ -6,9 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "libstudy/store/withdraw.hpp"
+#include "apps/study/withdrawal.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -38,14 +37,7 @@ void confirm(const WithdrawCommand& command) {
 
 void withdraw(const WithdrawCommand& command) {
   confirm(command);
-  const study::Withdrawal done = study::withdraw(command.database, command.participant);
-  std::printf("%s: %lld sessions, %lld answers and %lld frames of %s deleted\n", command.database.c_str(),
-              static_cast<long long>(done.deleted.sessions), static_cast<long long>(done.deleted.answers),
-              static_cast<long long>(done.deleted.frames), command.participant.c_str());
-  print_clean_up(done.beside);
-  print_list("Recorded at these stations: withdraw in their own databases, or merge this one into them:",
-             done.deleted.stations);
-  study::check_nothing_left(command.database, done.beside.left);
+  withdraw_and_tell(command.database, command.participant);
 }
 
 }  // namespace

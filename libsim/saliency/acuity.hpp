@@ -13,9 +13,10 @@ struct Acuity {
 
   SIM_FN static constexpr float radians(float degrees) { return degrees * 0.017453292519943f; }
 
-  /// Angle between the gaze and the direction to x. An arc cosine would lose everything below 0.03 degrees.
+  /// Angle between the gaze and the direction to x as the eye sees them in the picture, rad. An arc cosine
+  /// would lose everything below 0.03 degrees.
   SIM_FN static float eccentricity(const Eye& eye, Vec3 x) {
-    const Vec3 u = x - eye.viewpoint;
+    const Vec3 u = eye.visual(x - eye.viewpoint);
     const Vec3 g = eye.gaze;
     const Vec3 across = {g.y * u.z - g.z * u.y, g.z * u.x - g.x * u.z, g.x * u.y - g.y * u.x};
     return atan2f(length(across), dot(g, u));
@@ -44,9 +45,10 @@ struct Acuity {
   }
 
   /// s of a method that follows the gaze alone (FovFluid-like): 1 in the fovea, falling to 0 over a band as
-  /// wide as `band` outside its cone.
+  /// wide as `band` (m) outside its cone. Near the axis an angle of the eye's is visual_scale times the
+  /// camera's.
   SIM_FN float gaze_saliency(const Eye& eye, Vec3 x, float band) const {
-    const float beyond = eccentricity(eye, x) - fovea;
+    const float beyond = (eccentricity(eye, x) - fovea) / eye.visual_scale;
     if (beyond <= 0) return 1;
     if (beyond >= 1.5f) return 0;
     const float way = length(x - eye.viewpoint) * sinf(beyond);

@@ -36,11 +36,17 @@ struct EyeSpace {
 
 struct Eye {
   Vec3 viewpoint{};  ///< p_v, m
-  Vec3 gaze{};       ///< of length 1
+  Vec3 gaze{};       ///< as visual() gives it, of any length
   EyeSpace now{};    ///< camera of the coming frame
   EyeSpace then{};   ///< camera of the picture
   PixelRays rays{};  ///< of the picture
   GBufferView picture{};
+  Vec3 axis{0, 0, -1};     ///< the camera's line of sight, of length 1
+  float visual_scale = 1;  ///< EyeLook::visual_scale
+
+  /// A direction of the scene as the eye sees it in the picture: what lies across the axis is scaled. Of any
+  /// length; unchanged at a scale of 1.
+  SIM_FN Vec3 visual(Vec3 u) const { return visual_scale * u + ((1 - visual_scale) * dot(u, axis)) * axis; }
 };
 
 }  // namespace sim::SIM_BACKEND

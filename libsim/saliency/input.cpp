@@ -25,6 +25,8 @@ void check(const EyeLook& look) {
     throw base::Error("look", "the camera of an eye is not finite",
                       "give each eye a rigid view and a perspective");
   }
+  if (!(look.visual_scale > 0) || !std::isfinite(look.visual_scale))
+    throw base::Error("look", "the picture fills no angle of the eye's view", "give a visual scale above 0");
   const auto check_camera = [](const View& view) {
     if (!finite(view.view) || view.projection[0] == 0 || view.projection[5] == 0)
       throw base::Error("look", "the camera of the G-buffer is not a perspective", "");
@@ -105,6 +107,7 @@ bool SaliencyInput::look(const Looks& looks) {
     OneEye& eye = eyes_[k];
     eye.gaze = look.gaze;
     eye.view = look.view;
+    eye.visual_scale = look.visual_scale;
     eye.picture = {};
     const PictureWay way = way_of(look);
     if (way == PictureWay::None) continue;
@@ -142,7 +145,9 @@ Eyes SaliencyInput::next_frame(double dt_s, double hold_s) {
     }
     Eye& eye = out.eye[k];
     eye.viewpoint = narrow(origin);
-    eye.gaze = narrow(direction);
+    eye.axis = narrow({-pose[8], -pose[9], -pose[10]});
+    eye.visual_scale = static_cast<float>(from.visual_scale);
+    eye.gaze = eye.visual(narrow(direction));
     eye.now = eye_space(from.view.view);
     eye.picture = from.picture;
     if (!from.picture.depth) continue;

@@ -40,6 +40,7 @@ class SaliencyInput {
   struct OneEye {
     Gaze gaze;
     View view;
+    double visual_scale = 1;
     Vec3d last_direction{};  ///< of the last valid gaze; 0 when there was none
     double lost_s = 0;       ///< since then
     View picture_view;

@@ -27,6 +27,10 @@ struct EyeLook {
   /// The same where the renderer left it, for a back end on GL's device; goes before `seen`.
   const GlPicture* shared = nullptr;
   int seen_frame = -1;  ///< of the simulation that the picture shows; -1: not known
+  /// How the picture is seen: tan of half the angle that it fills of the eye's view, by tan of half the
+  /// camera's angle, > 0. A screen seen from far shows a wide camera's picture small. 1: the camera's angles
+  /// are the eye's, or nothing is known.
+  double visual_scale = 1;
 };
 
 /// How the last picture reached saliency.

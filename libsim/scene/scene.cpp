@@ -92,6 +92,21 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
                        "use at most half of the tank's width");
 }
 
+std::vector<VisibleBox> visible_boxes(const base::TomlTable& root) {
+  std::vector<VisibleBox> out;
+  for (const auto& table : root.tables("visible")) {
+    VisibleBox box{table.string("name"), vector(table, "min_m"), vector(table, "max_m")};
+    if (box.name.empty() || box.name.size() > 64)
+      table.fail("name", "is empty or too long", "use 1 to 64 characters");
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(box.max_m[k] - box.min_m[k] >= 1e-3))
+        table.fail("max_m", "leaves the box empty", "make each entry at least 1 mm larger than in min_m");
+    }
+    out.push_back(std::move(box));
+  }
+  return out;
+}
+
 }  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& name) {
@@ -119,6 +134,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   read_nozzles(root, scene);
   scene.view = camera(root.table("view"));
   scene.overview = root.has("overview") ? camera(root.table("overview")) : overview_of(scene.view);
+  scene.visible = visible_boxes(root);
   for (const auto& key : root.tables("gaze")) {
     scene.gaze.push_back({static_cast<int>(key.integer("frame", {0, 1e6})), vector(key, "point_m")});
     const auto n = scene.gaze.size();

@@ -29,6 +29,12 @@ struct GazeKey {
   Vec3d point_m{};
 };
 
+/// What must stay in the participant's picture, as the box that holds it; each side at least 1 mm.
+struct VisibleBox {
+  std::string name;  ///< 1 to 64 characters, such as "the falling jet"
+  Vec3d min_m{}, max_m{};
+};
+
 struct Scene {
   std::string name;
   /// Inner size of the tank from (0,0,0); glass walls and floor, open above (y is the walls' drawn height
@@ -48,6 +54,7 @@ struct Scene {
   int min_substeps = 2;
   std::vector<int> checkpoints;
   std::vector<GazeKey> gaze;
+  std::vector<VisibleBox> visible;
   std::vector<Nozzle> nozzles;
   /// Nozzles pour what lies lowest in the four corner columns of this edge; 0 without nozzles.
   double recirculation_corner_m = 0;

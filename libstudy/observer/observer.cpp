@@ -43,8 +43,8 @@ void Observer::pause(const Pause& pause, Clock& clock, const Check& check) {
   const std::int64_t until = clock.now_ns() + std::llround(pause.seconds * 1e9);
   for (;;) {
     if (check) check();
-    if (clock.now_ns() >= until) return;
-    clock.wait_until(std::min(until, clock.now_ns() + look_ns));
+    if (pause.over ? pause.over() : clock.now_ns() >= until) return;
+    clock.wait_until(pause.over ? clock.now_ns() + look_ns : std::min(until, clock.now_ns() + look_ns));
   }
 }
 

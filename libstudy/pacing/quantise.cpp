@@ -96,19 +96,35 @@ HoldList approximate_list(HoldTarget target) {
   return best;
 }
 
-std::string why_not_exact(const HoldTarget& target, const HoldList& tried) {
-  const double periods = wished_periods(target);
-  if (target.mean_kind == FpsMean::Harmonic && !is_whole(periods))
-    return format("%.6g periods for the trial are not a whole number", periods);
+/// What keeps every list with exactly this mean from the wished standard deviation; empty: nothing proven
+/// does.
+std::string what_bounds_sd(const HoldTarget& target) {
   const auto bounds = sd_bounds(target);
   if (bounds.low > bounds.high)
     return format("no holds of %.0f to %.0f periods have this mean", target.shortest, target.longest);
   if (bounds.low > target.sd + target.sd_tolerance)
     return format("at this mean the refresh forces an sd of %.4g or more", bounds.low);
   if (bounds.high < target.sd - target.sd_tolerance)
-    return format("at this mean, holds up to %.0f periods allow an sd of %.4g at most", target.longest,
-                  bounds.high);
-  return format("no whole hold counts found nearer than sd %.4g", tried.sd);
+    return format("at this mean, intervals up to %.1f ms allow an sd of %.4g at most",
+                  1e3 * target.longest / target.refresh_hz, bounds.high);
+  return {};
+}
+
+/// Which moments the best list misses and by how much, and what forces that. `tried`: with exactly the wished
+/// mean; `target`: with the tolerances of an exact list.
+std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
+  std::string words;
+  if (best.holds.empty())
+    words = format("no list of holds has a mean within %g %% of %g", 100 * approximate_mean, target.mean);
+  else if (mean_miss(best, target) > target.mean_tolerance)
+    words = format("mean %.6g for %g", best.mean, target.mean) +
+            format(" (%+.2g %%)", 100 * (best.mean / target.mean - 1));
+  if (!best.holds.empty() && sd_miss(best, target) > 0)
+    words += (words.empty() ? "" : ", ") + format("sd %.4g for %g", best.sd, target.sd) +
+             format(" (%.2g allowed)", target.sd_tolerance);
+  const std::string bound = what_bounds_sd(target);
+  if (!bound.empty()) return words + (words.empty() ? "" : ": ") + bound;
+  return words.empty() ? format("no whole hold counts found nearer than sd %.4g", tried.sd) : words;
 }
 
 void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rules, double refresh_hz,
@@ -149,9 +165,10 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rul
   HoldList list = exact_list(target);
   verdict.feasibility = Feasibility::Exact;
   if (list.excess > 0) {
-    verdict.reason = why_not_exact(target, list);
-    verdict.feasibility = Feasibility::Approximate;
+    const HoldList tried = std::move(list);
     list = approximate_list(target);
+    verdict.reason = what_misses(target, tried, list);
+    verdict.feasibility = Feasibility::Approximate;
   }
   if (list.holds.empty()) {
     verdict.feasibility = Feasibility::Unreachable;

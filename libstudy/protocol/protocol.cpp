@@ -83,6 +83,7 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.participants = static_cast<int>(root.integer("participants", {1, 100000}));
   protocol.accept_approximate = root.boolean_or("accept_approximate", false);
   protocol.needs_gaze = root.boolean_or("needs_gaze", false);
+  protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
   protocol.design = read_design(root.table("design"));
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
   protocol.content = read_content(root.table("content"));

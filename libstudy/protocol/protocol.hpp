@@ -30,6 +30,8 @@ struct Protocol {
   bool accept_approximate = false;
   /// H1 and H5 need to know where people looked: without tracked gaze they are labelled not testable.
   bool needs_gaze = false;
+  /// The camera has the angle that the picture fills of the eye's view, instead of each scene's own.
+  bool true_angle = false;
   /// True when the command line changed it (--trial-seconds ...): data are marked as test and the hash
   /// differs.
   bool test_data = false;

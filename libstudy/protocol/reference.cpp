@@ -34,7 +34,9 @@ const std::vector<TableText>& table_texts() {
        "| kind | what it is |\n|---|---|\n"
        "| instructions | a text to be read |\n"
        "| screening | questions that may rule a person out |\n"
-       "| consent | a text with boxes; one of its questions has `accept` |\n"
+       "| consent | a text with boxes; one of its questions has `accept`. A refusal is asked once more, then "
+       "the "
+       "session is over |\n"
        "| demographics | questions, as a rule personal |\n"
        "| practice | trials that are flagged, never dropped |\n"
        "| stimulus | the trials of the design; exactly one block |\n"
@@ -44,9 +46,11 @@ const std::vector<TableText>& table_texts() {
        "| black | a black screen |\n"
        "| repeat | trials shown again, with the very same intervals: test-retest |\n"
        "| catch | pages after trials drawn at random, with an answer that attention gives |\n"
-       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports and "
+       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports "
+       "and "
        "report hold its scores |\n"
-       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report hold "
+       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report "
+       "hold "
        "mean and peak |\n"
        "| debrief | the last text |"},
       {"block.question", "[[block.question]]",
@@ -90,6 +94,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "also play settings that the display meets only approximately"},
       {"", "needs_gaze", "true or false", "", "false",
        "without tracked gaze some hypotheses are labelled not testable"},
+      {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",
+       "scene: the camera keeps the scene's angle. true: it has the angle that the picture fills of the "
+       "eye's "
+       "view, refused where that cuts what must stay visible"},
       {"", "design", "table", "", "", "what is shown"},
       {"", "pacing", "table", "", "", "how frames are timed"},
       {"", "content", "table", "", "", "how the process elapses"},
@@ -181,7 +189,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "needed by practice, repeat and catch: id of the stimulus block. Practice comes before it, repeats "
        "after it"},
       {"block", "stop_at", "whole number", "[1, 20]", "never",
-       "fms: this score or more offers a rest, then the exit; the same in all fms blocks"},
+       "fms: this score or more ends the session: a rest, then the exit; the same in all fms blocks"},
       {"block", "steps", "list of texts", "", where_needed,
        "needed by stimulus: what each trial does, one after another: \"black 3\", \"rest 30\" (seconds, 0 to "
        "3600), \"stimulus\" (for pairs \"stimulus first\", \"stimulus second\"), \"ask ID ID ...\" (one page "
@@ -213,7 +221,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "screening, consent and demographics before the first trials: an answer outside [lowest, highest] "
        "ends the session"},
       {"block.question", "stop_at", "whole number", "a score", "never",
-       "this score or more offers a rest, then the exit"},
+       "this score or more ends the session: a rest, then the exit"},
       {"block.question", "expect", "whole number", "a score", where_needed,
        "needed by catch, refused elsewhere: the answer that attention gives"},
 

@@ -36,15 +36,39 @@ struct Occasion {
 
 /// A pause between two things.
 enum class PauseKind {
-  Black,  ///< nothing to see
-  Rest,   ///< a countdown
-  Break   ///< a countdown, then until the participant wishes to go on
+  Black,   ///< nothing to see
+  Rest,    ///< a countdown
+  Break,   ///< a countdown, then until the participant wishes to go on
+  First,   ///< a word: the first of two stimuli follows
+  Second,  ///< likewise
+  Held     ///< the experimenter pauses: words, until `over`
 };
+
+/// How long the word before a stimulus of a pair stands, and the black between it and the stimulus, s.
+inline constexpr double word_s = 1, after_word_s = 0.5;
 
 struct Pause {
   PauseKind kind = PauseKind::Black;
   double seconds = 0;
   std::string title{}, text{};  ///< shown with the countdown; empty: whatever the display says at such a time
+  std::function<bool()> over{};  ///< Held: asked again and again
+};
+
+/// What is said when a session ends before its last unit, in the display's words.
+enum class Notice {
+  Over,         ///< it was stopped: nothing more is shown, and a rest until one feels well
+  Refused,      ///< no consent: the page of thanks
+  NotEligible,  ///< ruled out by an answer: likewise
+  Kept,         ///< thanks after a stop: what was given stays
+  Deleted,      ///< likewise: what was given is deleted
+  Goodbye       ///< likewise: nothing was given
+};
+
+/// What is asked then; the answer is yes or no.
+enum class Offer {
+  StayOut,        ///< is it meant that consent is refused?
+  Questionnaire,  ///< a page on how one feels now?
+  Keep            ///< shall be kept what was given, and not deleted?
 };
 
 /// Asked often while a person may be waiting; throws Stopped to end the session there.
@@ -70,6 +94,10 @@ class Participant {
   virtual void before_trial(const Occasion&) {}
   /// Waits on `clock`, and for a Break until the participant goes on.
   virtual void pause(const Pause& pause, Clock& clock, const Check& check) = 0;
+  /// Shows a page that ends a session, not less than `least_s`. After all but Over the session's pages are
+  /// done.
+  virtual void tell(Notice, double /*least_s*/, Clock&, const Check&) {}
+  virtual bool offer(Offer, Clock&, const Check&) { return true; }
 };
 
 }  // namespace study

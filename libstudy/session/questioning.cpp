@@ -31,7 +31,8 @@ std::optional<Ending> ending(const Block& block, std::span<const Question> quest
     const auto& accept = questions[i].accept;
     const auto score = answers[i].answer.score;
     if (accept && !(score && in_span(*score, *accept)))
-      return Ending{EarlyEnd::NotEligible, "block " + block.id};
+      return Ending{block.kind == BlockKind::Consent ? EarlyEnd::Refused : EarlyEnd::NotEligible,
+                    "block " + block.id};
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const auto score = answers[i].answer.score;
@@ -40,6 +41,8 @@ std::optional<Ending> ending(const Block& block, std::span<const Question> quest
   }
   return {};
 }
+
+bool refused(const std::optional<Ending>& ends) { return ends && ends->how == EarlyEnd::Refused; }
 
 /// A choice in its words, any other score as a number.
 std::string in_words(const Question& question, const Answer& answer) {
@@ -109,15 +112,17 @@ std::optional<Ending> Questioning::ask(const OpenUnit& unit, int attempt,
                                        const std::vector<Question>& questions, const Occasion& occasion,
                                        bool last, const Check& check) {
   const std::vector<Question> asked = left(unit, questions);
-  std::vector<TimedAnswer> answers;
   const Block& block = run_.block(unit);
-  if (!asked.empty()) {
+  std::vector<TimedAnswer> answers;
+  std::optional<Ending> ends;
+  for (bool meant = asked.empty(); !meant;) {
     answers = run_.parts.participant.ask(block, asked, occasion, run_.parts.clock, check);
     check_answers(asked, answers);
+    ends = ending(block, asked, answers);
+    // A key that was hit by mistake shall send nobody away.
+    meant = !refused(ends) || run_.parts.participant.offer(Offer::StayOut, run_.parts.clock, check);
   }
-  auto ends = ending(block, asked, answers);
-  const bool refused = ends && ends->how == EarlyEnd::NotEligible && block.kind == BlockKind::Consent;
-  if (refused)
+  if (refused(ends))
     run_.parts.store.end_session(run_.session.id, *ends, run_.now_ns());
   else
     keep(unit, attempt, asked, answers, last, ends);

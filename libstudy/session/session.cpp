@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libstudy/session/questioning.hpp"
+#include "libstudy/session/farewell.hpp"
 #include "libstudy/session/trial_player.hpp"
 #include "stats/base/error.hpp"
 
@@ -10,18 +10,30 @@ namespace study {
 
 namespace {
 
-// After a stop nobody is sent away at once: a rest of at least this long, then until they feel well.
-constexpr double stop_rest_s = 60;
-constexpr double pause_look_s = 0.1;
-
 /// One session under way.
 class SessionRun {
  public:
   explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}
 
-  /// Returns how the session ended early, if it did.
+  /// Returns how the session ended early, if it did; that is committed.
   std::optional<Ending> go() {
-    for (const OpenUnit& unit : run_.session.units) {
+    try {
+      return units();
+    } catch (const Ending& wished) {
+      return end(wished);
+    } catch (const Left& left) {
+      return end({EarlyEnd::DroppedOut, left.what()});
+    }
+  }
+
+  void say_farewell(const Ending& ending) {
+    study::say_farewell(run_, questioning_, ending, std::span(run_.session.units).subspan(under_way_));
+  }
+
+ private:
+  std::optional<Ending> units() {
+    for (under_way_ = 0; under_way_ < run_.session.units.size(); ++under_way_) {
+      const OpenUnit& unit = run_.session.units[under_way_];
       wait_while_paused();
       if (run_.hooks.begins) run_.hooks.begins(unit);
       if (auto ends = unit.trial ? trials_.play(unit) : page(unit)) return ends;
@@ -29,11 +41,16 @@ class SessionRun {
     return {};
   }
 
- private:
+  Ending end(const Ending& ending) {
+    run_.parts.store.end_session(run_.session.id, ending, run_.now_ns());
+    return ending;
+  }
+
   void wait_while_paused() {
     const auto check = [this] { heed(run_, false); };
-    for (check(); run_.wish() == Wish::Pause;)
-      run_.parts.participant.pause({PauseKind::Black, pause_look_s}, run_.parts.clock, check);
+    check();
+    const auto over = [this] { return run_.wish() != Wish::Pause; };
+    if (!over()) pause({PauseKind::Held, 0, {}, {}, over}, check);
   }
 
   std::optional<Ending> page(const OpenUnit& unit) {
@@ -58,7 +75,7 @@ class SessionRun {
         break;
       default: {
         auto ends = questioning_.ask(unit, 0, block.questions, run_.occasion(unit), true, check);
-        if (!ends || ends->how != EarlyEnd::NotEligible) run_.tell(unit, 0, {});
+        if (!ends || ends->how == EarlyEnd::Stopped) run_.tell(unit, 0, {});
         return ends;
       }
     }
@@ -74,6 +91,7 @@ class SessionRun {
   const Running& run_;
   Questioning questioning_;
   TrialPlayer trials_;
+  std::size_t under_way_ = 0;  ///< index of the unit
 };
 
 void check_personal(const Running& run) {
@@ -86,28 +104,17 @@ void check_personal(const Running& run) {
   }
 }
 
-void rest_after_stop(const Running& run) {
-  run.parts.participant.pause({PauseKind::Break, stop_rest_s}, run.parts.clock, [&run] {
-    if (run.wish() == Wish::Stop) throw Stopped();
-  });
-}
-
 }  // namespace
 
-void run_session(const Protocol& protocol, const OpenSession& session, const SessionParts& parts,
-                 const SessionHooks& hooks) {
-  const Running run{protocol, session, parts, hooks};
-  check_personal(run);
-  std::optional<Ending> ends;
-  try {
-    ends = SessionRun(run).go();
-  } catch (const Ending& wished) {
-    parts.store.end_session(session.id, wished, run.now_ns());
-    ends = wished;
-  } catch (const Left& left) {
-    parts.store.end_session(session.id, {EarlyEnd::DroppedOut, left.what()}, run.now_ns());
-  }
-  if (ends && ends->how == EarlyEnd::Stopped) rest_after_stop(run);
+std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
+                                  const SessionParts& parts, const SessionHooks& hooks) {
+  const Running running{protocol, session, parts, hooks};
+  check_personal(running);
+  SessionRun run(running);
+  const std::optional<Ending> ending = run.go();
+  if (ending && hooks.ends) hooks.ends(*ending);
+  if (ending) run.say_farewell(*ending);
+  return ending;
 }
 
 }  // namespace study

@@ -61,6 +61,7 @@ struct SessionHooks {
   std::function<void(const OpenUnit&)> begins;
   std::function<void(const FrameRecord&)> shown;
   std::function<void(const UnitDone&)> done;
+  std::function<void(const Ending&)> ends;  ///< early; committed, and say_farewell() comes next
   std::function<Wish()> wish;
 };
 
@@ -81,10 +82,11 @@ void check_settings(const Protocol& protocol, const Display& display);
 
 /// Goes through the units of `session` that are not done, in their order. A trial that was cut short is shown
 /// again from its start, as a new attempt; what was answered is never asked again. An answer that a question
-/// does not accept ends the session (EarlyEnd::NotEligible), one at its stop_at offers a rest and ends it
-/// (EarlyEnd::Stopped).
-/// Throws Stopped, or the first failure of a part; the store then holds all answers given.
-void run_session(const Protocol& protocol, const OpenSession& session, const SessionParts& parts,
-                 const SessionHooks& hooks);
+/// does not accept ends the session (EarlyEnd::Refused on a page of consent, once the participant has said
+/// that it is meant, else EarlyEnd::NotEligible), one at its stop_at as well (EarlyEnd::Stopped). Returns how
+/// it ended early, if it did; say_farewell() was then called. Throws Stopped, or the first failure of a part;
+/// the store then holds all answers given.
+std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
+                                  const SessionParts& parts, const SessionHooks& hooks);
 
 }  // namespace study

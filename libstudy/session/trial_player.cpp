@@ -134,6 +134,12 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
   run_.parts.participant.pause({PauseKind::Black, std::max(0.0, seconds - gone_s)}, run_.parts.clock, check);
 }
 
+/// Which of a pair follows, off the picture.
+void TrialPlayer::announce(int interval) {
+  const PauseKind word = interval == 0 ? PauseKind::First : PauseKind::Second;
+  run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { heed(run_, true); });
+}
+
 void TrialPlayer::make_ready(Showing& showing) {
   showing.ready = &run_.parts.stimuli.stimulus(cell(showing.unit, showing.next_interval));
   showing.ready->start(run_.protocol.content.start_frame);
@@ -141,7 +147,9 @@ void TrialPlayer::make_ready(Showing& showing) {
 
 void TrialPlayer::show(Showing& showing, int interval) {
   showing.next_interval = interval;
-  if (!showing.ready) black(showing, 0, true);
+  const bool pair = showing.unit.trial->second.has_value();
+  if (pair) announce(interval);
+  if (pair || !showing.ready) black(showing, pair ? after_word_s : 0, true);
   const Cell& what = cell(showing.unit, interval);
   ShownStimulus shown{cell_index(*showing.unit.trial, interval), what, {}, 0, 0};
   const std::int64_t start_ns = run_.now_ns();

@@ -33,6 +33,7 @@ class TrialPlayer {
   std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
   const Cell& cell(const OpenUnit& unit, int interval) const;
   void black(Showing& showing, double seconds, bool stimulus_follows);
+  void announce(int interval);
   void make_ready(Showing& showing);
   void show(Showing& showing, int interval);
   TimingVerdict present(std::int64_t presentation, std::int64_t start_ns, const Cell& cell,

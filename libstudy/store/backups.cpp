@@ -34,6 +34,7 @@ constexpr const char* of_presentation =
 
 /// Children first.
 constexpr Dependant dependants[] = {
+    {"framing", of_session, 4},
     {"permission_change", of_session, 3},
     {"gaze", of_presentation, 3},
     {"event", of_session},

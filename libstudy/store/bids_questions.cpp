@@ -13,38 +13,57 @@ using sqlite::Statement;
 
 namespace {
 
-/// All pages of one questionnaire: a table whose columns grow with what was asked.
+/// A page in a session, before its columns' names and behind their meanings.
+struct Page {
+  std::string prefix, words;
+};
+
+/// The `time`-th page of a block in a session, from 1; `block` empty: the session as a whole. No block's id
+/// has a hyphen.
+Page page_of(const LabelledSession& session, const std::string& block, int time = 1) {
+  Page page{session.session + "_", "session ses-" + session.session};
+  if (block.empty()) return page;
+  const std::string again = time > 1 ? std::to_string(time) : "";
+  page.prefix += block + (time > 1 ? "-" + again : "") + "_";
+  page.words += ", page " + block + (time > 1 ? ", time " + again : "");
+  return page;
+}
+
+/// All pages of one questionnaire: a line for each participant, columns for each page that anybody answered.
 class Questionnaire {
  public:
-  void add_page(std::vector<std::string> key, const std::vector<Item>& asked,
+  /// `page`: its place among the participant's, as columns and words name it.
+  void add_page(const std::string& subject, const Page& page, const std::vector<Item>& asked,
                 const std::vector<std::string>& answers) {
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      meaning_[asked[i].code] = question_column(asked[i]);
-      const auto column = std::find(header_.begin(), header_.end(), asked[i].code);
-      const auto place = static_cast<std::size_t>(column - header_.begin());
-      if (column == header_.end()) header_.push_back(asked[i].code);
-      key.resize(std::max(key.size(), place + 1), "n/a");
-      key[place] = answers[i];
+      const std::string column = page.prefix + asked[i].code;
+      if (!meaning_.contains(column)) {
+        columns_.push_back(column);
+        meaning_[column] = question_column(asked[i]);
+        meaning_[column]["Description"] = asked[i].wording + " (" + page.words + ")";
+      }
+      answers_[subject][column] = answers[i];
     }
-    rows_.push_back(std::move(key));
   }
 
-  void write(const std::string& name, Writer& writer) const {
-    Table table{header_};
-    for (auto row : rows_) {
-      row.resize(header_.size(), "n/a");
-      table.push_back(std::move(row));
+  void write(const std::string& name, const std::vector<std::string>& subjects, Writer& writer) {
+    Table table{{"participant_id"}};
+    table[0].insert(table[0].end(), columns_.begin(), columns_.end());
+    for (const std::string& subject : subjects) {
+      auto& row = table.emplace_back(std::vector<std::string>{"sub-" + subject});
+      for (const std::string& column : columns_) {
+        const std::string& answer = answers_[subject][column];
+        row.push_back(answer.empty() ? "n/a" : answer);
+      }
     }
     writer.table("phenotype/" + name + ".tsv", table);
     writer.json("phenotype/" + name + ".json", meaning_);
   }
 
  private:
-  std::vector<std::string> header_{"participant_id", "session_id", "block"};
-  Table rows_;
-  Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")},
-                {"session_id", described("session")},
-                {"block", described("page of the protocol")}};
+  std::vector<std::string> columns_;
+  std::map<std::string, std::map<std::string, std::string>> answers_;  // subject, column
+  Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")}};
 };
 
 /// The page of the SSQ at a place of a session; nullptr: it has no answers.
@@ -75,8 +94,7 @@ void add_fms(const SicknessTable& summary, const LabelledSession& session, Quest
     columns.push_back({0, summary.columns[i].name, summary.columns[i].meaning, ""});
   for (const auto& row : summary.rows) {
     if (row[0] != std::to_string(session.id)) continue;
-    tool.add_page({"sub-" + session.subject, "ses-" + session.session, field(row[block])}, columns,
-                  {row.end() - 3, row.end()});
+    tool.add_page(session.subject, page_of(session, row[block]), columns, {row.end() - 3, row.end()});
   }
 }
 
@@ -119,7 +137,10 @@ void write_phenotypes(Connection& database, const std::vector<LabelledSession>& 
   const SicknessTable summary = fms_summary_table(sickness);
   Labels labels;
   std::map<std::string, Questionnaire> tools;
+  std::vector<std::string> subjects;
   for (const LabelledSession& session : sessions) {
+    if (subjects.empty() || subjects.back() != session.subject) subjects.push_back(session.subject);
+    std::map<std::string, int> times;
     Statement unit(
         database,
         "SELECT unit_id, block, kind, position FROM unit WHERE session_id = ? AND trial_id IS NULL "
@@ -133,16 +154,14 @@ void write_phenotypes(Connection& database, const std::vector<LabelledSession>& 
         answers.push_back(answer_of(database, unit.integer(0), item.id, 0).first);
       if (kind == "ssq") add_scores(ssq_page(sickness, session.id, unit.integer(3)), asked, answers);
       tools[labels.of(kind == "ssq" || kind == "fms" ? kind : block)].add_page(
-          {"sub-" + session.subject, "ses-" + session.session, field(block)}, asked, answers);
+          session.subject, page_of(session, block, ++times[block]), asked, answers);
     }
-  }
-  for (const LabelledSession& session : sessions) {
     const bool any = std::any_of(sickness.begin(), sickness.end(), [&](const SicknessSession& one) {
       return one.id == session.id && !one.fms.empty();
     });
     if (any) add_fms(summary, session, tools[labels.of("fms_summary")]);
   }
-  for (const auto& [name, tool] : tools) tool.write(name, writer);
+  for (auto& [name, tool] : tools) tool.write(name, subjects, writer);
 }
 
 }  // namespace study::bids

@@ -126,6 +126,19 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
   writer.json(stem + ".json", columns);
 }
 
+Json session_columns() {
+  return {{"acq_time", described("first stimulus, UTC")},
+          {"protocol", described("name in the protocol file")},
+          {"protocol_version", described("version in the protocol file")},
+          {"protocol_sha256", described("SHA-256 of the protocol")},
+          {"visit", described("visit of the participant under the protocol")},
+          {"test_data", described("1: never pooled with real data")},
+          {"observer", described("simulated observer that answered; n/a: a person")},
+          {"station", described("where it was recorded")},
+          {"gaze_source", described("tracked, mouse, fixed or none")},
+          {"state", described("open, done, or how it ended early")}};
+}
+
 void write_people(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
   Table people{{"participant_id", "code"}};
   std::map<std::string, Table> visits;
@@ -148,17 +161,10 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
   }
   writer.table("participants.tsv", people);
   writer.json("participants.json", {{"code", described("participant code in the study's database")}});
-  for (const auto& [sub, rows] : visits) writer.table(sub + "/" + sub + "_sessions.tsv", rows);
-  writer.json("sessions.json", {{"acq_time", described("first stimulus, UTC")},
-                                {"protocol", described("name in the protocol file")},
-                                {"protocol_version", described("version in the protocol file")},
-                                {"protocol_sha256", described("SHA-256 of the protocol")},
-                                {"visit", described("visit of the participant under the protocol")},
-                                {"test_data", described("1: never pooled with real data")},
-                                {"observer", described("simulated observer that answered; n/a: a person")},
-                                {"station", described("where it was recorded")},
-                                {"gaze_source", described("tracked, mouse, fixed or none")},
-                                {"state", described("open, done, or how it ended early")}});
+  for (const auto& [sub, rows] : visits) {
+    writer.table(sub + "/" + sub + "_sessions.tsv", rows);
+    writer.json(sub + "/" + sub + "_sessions.json", session_columns());
+  }
 }
 
 bool is_export(const fs::path& folder) {

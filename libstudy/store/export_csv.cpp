@@ -33,6 +33,7 @@ constexpr std::array tables{
     Table{"cell", "cells.csv", "protocol_id, cell"},
     Table{"run", "runs.csv", "run_id"},
     Table{"session", "sessions.csv", "session_id"},
+    Table{"framing", "framings.csv", "framing_id"},
     Table{"unit", "units.csv", "unit_id"},
     Table{"trial", "trials.csv", "trial_id"},
     Table{"presentation", "presentations.csv", "presentation_id"},

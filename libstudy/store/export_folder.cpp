@@ -12,6 +12,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
@@ -44,6 +45,7 @@ ExportDraft::ExportDraft(const ExportSource& source, const fs::path& target, con
   check_target(target_, is_export);
   record_.emplace(source.database, source.kind, target_, source.people);
   path_ = draft_of(target_);
+  base::make_folder_of(target_);
   if (::mkdir(path_.c_str(), readers_ == Readers::Owner ? 0700 : 0777) != 0) fail("cannot be made");
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_csv.hpp"
@@ -60,14 +61,15 @@ void write_text(const ExportDraft& draft, const std::string& name, const std::st
   file.finish();
 }
 
-/// Each column once; two files may share one.
-Json variables(Connection& database) {
+/// Each column that stands in a file, once; two files may share one. `scored`: the sessions of the export.
+Json variables(Connection& database, std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
   for (const RatingColumn& column : rating_columns())
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
-  for (const SicknessTable& table : sickness_tables({})) {
+  for (const SicknessTable& table : sickness_tables(scored)) {
+    if (table.rows.empty()) continue;  // no file: Psych-DS refuses what stands in none
     for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
   }
   Json list = Json::array();
@@ -87,14 +89,15 @@ void write_scores(const SicknessSession& session, const std::string& stem, const
   }
 }
 
-void write_description(Connection& database, const ExportDraft& draft) {
+void write_description(Connection& database, std::span<const SicknessSession> scored,
+                       const ExportDraft& draft) {
   const Json json{{"@context", "https://schema.org/"},
                   {"@type", "Dataset"},
                   {"name", draft.target().filename().string()},
                   {"description", "Ratings of real-time fluid at controlled frame rates"},
                   {"creator", "vip-study"},
                   {"version", base::version()},
-                  {"variableMeasured", variables(database)}};
+                  {"variableMeasured", variables(database, scored)}};
   write_text(draft, description_file, json.dump(2) + "\n");
   write_text(
       draft, "README.md",
@@ -111,6 +114,7 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
   const auto sickness = read_sickness(*database);
+  std::vector<SicknessSession> scored;
   ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
   fs::create_directory(draft.path() / "data");
@@ -121,11 +125,13 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
     const std::string condition = "session.session_id = " + std::to_string(session.id);
     files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
-    for (const SicknessSession& scored : sickness) {
-      if (scored.id == session.id) write_scores(scored, stem, draft, files);
+    for (const SicknessSession& one : sickness) {
+      if (one.id != session.id) continue;
+      write_scores(one, stem, draft, files);
+      scored.push_back(one);
     }
   }
-  write_description(*database, draft);
+  write_description(*database, scored, draft);
   database->execute("COMMIT");
   draft.put_in_place();
   return {std::move(files), people};

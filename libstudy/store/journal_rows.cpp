@@ -26,6 +26,7 @@ const std::vector<Table> followed{
     {"cell", {"protocol_id", "cell"}},
     {"run", {"run_id"}},
     {"session", {"session_id"}},
+    {"framing", {"framing_id"}, false, "s.participant, s.uid AS session", of_session},
     {"trial", {"trial_id"}, true, "s.participant, s.uid AS session", of_session},
     {"unit", {"unit_id"}, true, "s.participant, s.uid AS session", of_session},
     {"presentation",

@@ -31,6 +31,7 @@ constexpr const char* of_presentation =
     "WHERE session_id = ?1)";
 const Table session_tables[] = {
     {"session", "session_id", of_session},
+    {"framing", "framing_id", of_session},
     {"trial", "trial_id", of_session},
     {"unit", "unit_id", of_session},
     {"presentation", "presentation_id", "trial_id IN (SELECT trial_id FROM trial WHERE session_id = ?1)"},

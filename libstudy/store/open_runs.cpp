@@ -1,5 +1,6 @@
 /// What a database says is left to do.
 #include "libstudy/store/store.hpp"
+#include "libstudy/store/withdraw.hpp"
 
 namespace study {
 
@@ -126,6 +127,18 @@ void Store::mark_cut_presentations() {
   }
   database_->execute("UPDATE presentation SET state = 'interrupted' WHERE state = 'running'");
   commit(transaction);
+}
+
+std::vector<std::string> Store::wished_withdrawals() { return study::wished_withdrawals(*database_); }
+
+bool Store::has_shown(std::int64_t session) {
+  Statement row(*database_, "SELECT 1 FROM presentation JOIN trial USING (trial_id) WHERE session_id = ?");
+  return row.bind(0, session).step();
+}
+
+bool Store::has_answers(std::int64_t session) {
+  Statement row(*database_, "SELECT 1 FROM response JOIN unit USING (unit_id) WHERE session_id = ?");
+  return row.bind(0, session).step();
 }
 
 std::vector<OpenRun> Store::open_runs() {

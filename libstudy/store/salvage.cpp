@@ -15,6 +15,7 @@
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
@@ -33,6 +34,7 @@ namespace {
 class Workplace {
  public:
   explicit Workplace(const fs::path& into) : path_(into.string() + ".salvage-XXXXXX") {
+    base::make_folder_of(into);
     if (!::mkdtemp(path_.data())) {
       throw base::Error(into.string(), std::string("cannot be made: ") + std::strerror(errno),
                         "name a file in a folder that you may write to");

@@ -32,7 +32,7 @@ struct SessionRow {
   std::int64_t trials = 0, answered = 0;
   std::int64_t interrupted = 0;  ///< presentations cut short
   bool ended = false;
-  std::string state;                  ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::string state;  ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
   std::int64_t units = 0, done = 0;   ///< pages and trials
   std::int64_t excluded = 0;          ///< trials
   std::optional<bool> gaze, sharing;  ///< allowed; none: not asked

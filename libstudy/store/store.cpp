@@ -6,6 +6,7 @@
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "libstudy/store/store_statements.hpp"
+#include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -18,6 +19,7 @@ using sqlite::Transaction;
 namespace {
 
 const char* state_name(EarlyEnd how) {
+  if (how == EarlyEnd::Refused) return "refused";
   if (how == EarlyEnd::NotEligible) return "not eligible";
   return how == EarlyEnd::Stopped ? "stopped" : "dropped out";
 }
@@ -33,6 +35,10 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, con
     : path_(real_file(path)), lock_(std::in_place, path_, how) {
   database_ = open_database(path_, how, read_schema_steps(), max_pages, waiting);
   left_ = clean_up(*database_).left;
+  for (const std::string& participant : study::wished_withdrawals(*database_)) {
+    const auto left = withdraw(*database_, participant).beside.left;
+    left_.insert(left_.end(), left.begin(), left.end());
+  }
   statements_ = std::make_unique<Statements>(*database_);
   journal_ = std::make_unique<AnswerJournal>(*database_);
   // A new database may have a plan: the journal's, whose commit was under way when an earlier one was given

@@ -28,6 +28,15 @@ class AnswerJournal;
 /// never taken for an option or a formula. base::Error otherwise. Earlier databases may hold others.
 void check_participant_code(const std::string& code);
 
+/// How a session's display frames a scene.
+struct SceneFraming {
+  std::string scene;                            ///< scene file as the protocol names it
+  int width_px = 0, height_px = 0;              ///< of the picture as it is drawn
+  int shown_width_px = 0, shown_height_px = 0;  ///< on the display; others where a bake's pictures are scaled
+  double camera_angle_deg = 0;                  ///< vertical, in (0, 180)
+  std::optional<double> visual_angle_deg;       ///< that the picture fills of the eye's view; none: not known
+};
+
 /// What is written of a session before its first unit.
 struct SessionPlan {
   std::string participant;
@@ -41,7 +50,8 @@ struct SessionPlan {
   std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed" or "none"
   std::string station;               ///< where it is recorded
   std::optional<double> screen_width_mm, viewing_distance_mm;
-  std::optional<double> refresh_hz;  ///< of the display; none: frames are shown as they come
+  std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come
+  std::vector<SceneFraming> framing;  ///< not read back; empty: nothing is drawn
   Plan plan;
 };
 
@@ -82,7 +92,8 @@ struct OpenRun {
 
 /// How a session came to its end before its last unit.
 enum class EarlyEnd {
-  NotEligible,  ///< no consent, or ruled out by screening
+  Refused,      ///< no consent
+  NotEligible,  ///< ruled out by screening
   Stopped,      ///< by a stop rule or on the participant's wish; the data stay
   DroppedOut    ///< did not come back; the slot is free again
 };
@@ -104,7 +115,8 @@ class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
   /// is removed again when nothing comes to stand in it. What a withdrawal or a merge left to be done is done
-  /// first (chores.hpp). waiting: for locks of other programs, five seconds without it.
+  /// first (chores.hpp), and the withdrawals that were wished (withdraw.hpp). waiting: for locks of other
+  /// programs, five seconds without it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();
@@ -124,7 +136,7 @@ class Store {
   std::vector<OpenRun> open_runs();
 
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
-  /// not eligible or dropped out, and test data beside real ones.
+  /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id.
@@ -133,6 +145,11 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
+  /// Who wished, at the end of a session, that all be deleted: to be done once this Store is closed.
+  std::vector<std::string> wished_withdrawals();
+  /// Whether anything was shown in this session, and whether anything was answered to it.
+  bool has_shown(std::int64_t session);
+  bool has_answers(std::int64_t session);
   /// Whether the participant allows that gaze is recorded in this session, as it stands now.
   bool allows_gaze(std::int64_t session);
   /// Commits samples of a presentation, after those that it has. base::Error, with nothing kept, unless the

@@ -18,7 +18,11 @@ namespace {
 constexpr const char* sessions_sql =
     "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
     "display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
-    "WHERE u.session_id = session.session_id) FROM session WHERE protocol_id = ? ORDER BY participant, visit";
+    "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
+    "printf('camera %.4g degrees, eye ', camera_angle_deg) || iif(visual_angle_deg IS NULL, 'not known', "
+    "printf('%.4g degrees, ratio %.2f', visual_angle_deg, angle_ratio)) AS angles FROM framing f "
+    "WHERE f.session_id = session.session_id ORDER BY 1)) FROM session WHERE protocol_id = ? ORDER BY "
+    "participant, visit";
 
 constexpr const char* trials_sql =
     "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, w.attempt "
@@ -72,7 +76,8 @@ class Reader {
                           session_.text(8),
                           {},
                           {},
-                          session_.is_null(9) ? "" : session_.text(9)};
+                          session_.is_null(9) ? "" : session_.text(9),
+                          session_.is_null(10) ? "" : session_.text(10)};
       session.trials = trials(session_.integer(0));
       session.catches = catches(session_.integer(0));
       out.push_back(std::move(session));

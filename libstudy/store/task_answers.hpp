@@ -61,12 +61,15 @@ struct TaskSession {
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::string state;        ///< "open", "done", "not eligible", "stopped" or "dropped out"
+  std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
   std::string gaze_source;  ///< "tracked", "mouse", "fixed" or "none"
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
   std::string first_answer_utc;  ///< of any page or trial, by the station's clock; empty: none yet
+  /// "camera 75 degrees, eye 27.4 degrees, ratio 0.37", for each pair of angles of its scenes; empty: not
+  /// stored.
+  std::string angles;
 };
 
 /// A protocol with all its sessions by participant and visit.

@@ -51,29 +51,45 @@ Stock take_stock(Connection& database, const std::string& person) {
   return stock;
 }
 
-Withdrawal withdraw(const fs::path& given, const std::string& participant) {
-  const fs::path path = real_file(given);
-  const WriterLock lock(path);
-  const SchemaSteps steps = read_schema_steps();
-  const auto database = open_database(path, sqlite::Open::Write, steps);
-  database->execute("PRAGMA temp_store = MEMORY");
-  const auto person = person_of(*database, participant);
+std::vector<std::string> wished_withdrawals(Connection& database) {
+  Statement row(
+      database,
+      "SELECT DISTINCT s.participant FROM session s JOIN event e USING (session_id) WHERE e.kind = ? "
+      "ORDER BY 1");
+  std::vector<std::string> participants;
+  for (row.bind(0, std::string(withdrawal_wish)); row.step();) participants.push_back(row.text(0));
+  return participants;
+}
+
+std::vector<std::string> wished_withdrawals(const fs::path& path) {
+  return wished_withdrawals(*open_database(path, sqlite::Open::Read, read_schema_steps()));
+}
+
+Withdrawal withdraw(Connection& database, const std::string& participant) {
+  database.execute("PRAGMA temp_store = MEMORY");
+  const auto person = person_of(database, participant);
   if (!person) {
-    clean_up(*database);  // of others
-    throw base::Error(path.string(), "knows no participant " + participant,
+    clean_up(database);  // of others
+    throw base::Error(database.path().string(), "knows no participant " + participant,
                       "vip-study status lists the codes");
   }
   Withdrawal done;
-  done.deleted = take_stock(*database, *person);
-  prepare_rewrite(*database, {*person});
-  sqlite::Transaction transaction(*database);
-  bury(*database, *person, static_cast<std::int64_t>(steps.size()));
-  ChorePlan plan(*database);
+  done.deleted = take_stock(database, *person);
+  prepare_rewrite(database, {*person});
+  sqlite::Transaction transaction(database);
+  bury(database, *person, static_cast<std::int64_t>(read_schema_steps().size()));
+  ChorePlan plan(database);
   plan.forget(*person, participant);
   plan.rewrite();
   transaction.commit();
-  done.beside = clean_up_all(*database);
+  done.beside = clean_up_all(database);
   return done;
+}
+
+Withdrawal withdraw(const fs::path& given, const std::string& participant) {
+  const fs::path path = real_file(given);
+  const WriterLock lock(path);
+  return withdraw(*open_database(path, sqlite::Open::Write, read_schema_steps()), participant);
 }
 
 }  // namespace study

@@ -111,6 +111,19 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
   }
 }
 
+void add_framing(sqlite::Connection& database, std::int64_t session,
+                 const std::vector<SceneFraming>& framing) {
+  Statement insert(database,
+                   "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
+                   "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
+                   "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7)");
+  for (const SceneFraming& one : framing) {
+    insert.bind(0, session).bind(1, one.scene).bind(2, one.width_px).bind(3, one.height_px);
+    insert.bind(4, one.shown_width_px).bind(5, one.shown_height_px);
+    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg).run();
+  }
+}
+
 }  // namespace
 
 void check_participant_code(const std::string& code) {
@@ -171,13 +184,15 @@ std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
 void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   check_participant_code(plan.participant);
   Statement present(*database_,
-                    "SELECT 1 FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
+                    "SELECT state FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
   if (present.bind(0, protocol_id).bind(1, plan.participant).bind(2, plan.visit).step()) {
+    const bool open = present.text(0) == "open";
     throw base::Error(
         path_.string(),
         "participant " + plan.participant + " has visit " + std::to_string(plan.visit) +
-            " of this protocol already",
-        "continue with vip-study resume --db " + path_.string() + ", or give other codes or another --visit");
+            " of this protocol already" + (open ? "" : ", and it is over (" + present.text(0) + ")"),
+        (open ? "continue with vip-study resume --db " + path_.string() + ", or give" : std::string("give")) +
+            " other codes or another --visit");
   }
   Statement alike(*database_,
                   "SELECT participant FROM (SELECT participant FROM session UNION SELECT participant FROM "
@@ -213,6 +228,7 @@ void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Pro
   insert.bind(10, plan.stimulus).bind(11, plan.machine).bind(12, plan.station).bind(13, plan.time_zone);
   insert.bind(14, plan.gaze_source).bind(15, plan.screen_width_mm).bind(16, plan.viewing_distance_mm);
   const std::int64_t session = insert.bind(17, plan.ptpe).bind(18, plan.refresh_hz).run();
+  add_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);
   insert_event(session, {}, "planned", "program " + base::version(), {});
 }

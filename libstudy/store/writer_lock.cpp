@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "stats/base/error.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
@@ -64,6 +65,7 @@ bool leads_to(const fs::path& path, int fd) {
 }  // namespace
 
 WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(database) {
+  if (how == sqlite::Open::Create) base::make_folder_of(path_);
   // Another round when the file was made, or removed by who had made it, between two steps.
   for (int round = 0;; ++round) {
     if (locked_here(path_)) throw_busy(path_);

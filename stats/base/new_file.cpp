@@ -68,13 +68,27 @@ void check_output(const fs::path& path) {
   if (::stat(path.c_str(), &standing) == 0 && !S_ISREG(standing.st_mode))
     throw Error(path.string(), "is a folder, a device or a pipe, which no file is written over",
                 "name a file");
-  const fs::path folder = folder_of(path);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw Error(path.string(), std::string("cannot be created: ") + std::strerror(errno), mend);
+  struct stat above {};
+  fs::path folder = folder_of(path);
+  while (::stat(folder.c_str(), &above) != 0 && errno == ENOENT) folder = folder_of(folder);
+  if (S_ISDIR(above.st_mode) && ::access(folder.c_str(), W_OK | X_OK) == 0) return;
+  if (!S_ISDIR(above.st_mode) && above.st_mode != 0) errno = ENOTDIR;
+  throw Error(path.string(), std::string("cannot be created: ") + std::strerror(errno), mend);
+}
+
+fs::path make_folder_of(const fs::path& path) {
+  std::error_code problem;
+  fs::path made, folder = folder_of(path);
+  for (fs::path above = folder; !fs::exists(above, problem) && !problem; above = folder_of(above))
+    made = above;
+  if (!made.empty()) fs::create_directories(folder, problem);
+  if (problem) throw Error(path.string(), "cannot be created: " + problem.message(), mend);
+  return made;
 }
 
 NewFile::NewFile(const fs::path& path, Readers readers) : path_(path), readers_(readers) {
   check_output(path);
+  made_ = make_folder_of(path);
   while (!make_draft()) {
   }
 }
@@ -97,6 +111,9 @@ bool NewFile::make_draft() {
 NewFile::~NewFile() {
   if (fd_ >= 0) ::close(fd_);
   if (!draft_.empty()) ::unlink(draft_.c_str());
+  if (made_.empty()) return;
+  for (fs::path folder = folder_of(path_); ::rmdir(folder.c_str()) == 0 && folder != made_;)
+    folder = folder_of(folder);
 }
 
 void NewFile::write(std::string_view bytes) {
@@ -119,6 +136,7 @@ void NewFile::put_in_place() {
   if (::close(closing) != 0) fail("cannot be written");
   if (::rename(draft_.c_str(), path_.c_str()) != 0) fail("cannot be put in place");
   draft_.clear();
+  made_.clear();
   sync_folder_of(path_);
 }
 
@@ -128,6 +146,7 @@ void NewFile::fail(const std::string& step) const {
 
 FileLock::FileLock(const fs::path& path) {
   const fs::path beside = path.string() + ".lock";
+  make_folder_of(beside);
   fd_ = ::open(beside.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   int done = fd_ < 0 ? -1 : ::flock(fd_, LOCK_EX);
   while (done != 0 && fd_ >= 0 && errno == EINTR) done = ::flock(fd_, LOCK_EX);

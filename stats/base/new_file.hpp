@@ -21,12 +21,17 @@ bool is_draft_name(const std::string& name, const std::string& target);
 void remove_stale_drafts(const std::filesystem::path& path);
 
 /// base::Error unless a file can be put at `path`: a file stands there or nothing, and no device or the like,
-/// which the file would replace; in a folder that one may write to.
+/// which the file would replace; in a folder that one may write to, or may make. Makes nothing.
 void check_output(const std::filesystem::path& path);
 
+/// Makes the folder that `path` is to stand in, with those above it, unless it is there; returns the topmost
+/// that was made, empty where none was. base::Error names `path`.
+std::filesystem::path make_folder_of(const std::filesystem::path& path);
+
 /// A new file beside `path`. It is made for this object alone: a file or link that is already there is never
-/// written through. It goes with the object unless it was put in place, and is locked (flock) as long as the
-/// object lives. Errors are base::Error and name `path`; check_output() is asked first.
+/// written through. It goes with the object unless it was put in place, and so do the folders that had to be
+/// made for it; it is locked (flock) as long as the object lives. Errors are base::Error and name `path`;
+/// check_output() is asked first.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path, Readers readers = Readers::AsUmask);
@@ -45,6 +50,7 @@ class NewFile {
   [[noreturn]] void fail(const std::string& step) const;
 
   std::filesystem::path path_, draft_;
+  std::filesystem::path made_;  ///< topmost folder made for it; empty: none, or the file is in place
   Readers readers_;
   int fd_ = -1;
 };

@@ -7,6 +7,8 @@
 
 #include "apps/study/desk/certificate.hpp"
 #include "apps/study/desk/console.hpp"
+#include "apps/study/desk/console_screen.hpp"
+#include "apps/study/desk/console_text.hpp"
 #include "apps/study/desk/preflight.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/refresh.hpp"
@@ -18,8 +20,12 @@ namespace apps {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Returns of swaps on a screen of this period, in the order of `skips` (periods to the next return).
 std::vector<std::int64_t> swaps(double period_ns, int count, double jitter_ns = 0, int missed = -1) {
@@ -157,6 +163,33 @@ TEST(Words, UnknownLanguagesAreEnglish) {
   EXPECT_EQ(desk_words("tlh").go_on, "Continue");
 }
 
+TEST(Words, NothingIsLeftUnsaidInAnyLanguage) {
+  using study::Notice;
+  using study::Offer;
+  for (const char* language : {"en", "de"}) {
+    const DeskWords& words = desk_words(language);
+    for (const std::string& one :
+         {words.go_on, words.confirm, words.finish, words.rest, words.pause, words.ready, words.first,
+          words.second, words.held_title, words.held, words.corner, words.begin})
+      EXPECT_FALSE(one.empty()) << language;
+    for (const Notice notice : {Notice::Over, Notice::Refused, Notice::NotEligible, Notice::Kept,
+                                Notice::Deleted, Notice::Goodbye}) {
+      const DeskPage& page = words.page(notice);
+      for (const std::string& one : {page.title, page.text, page.button})
+        EXPECT_FALSE(one.empty()) << language;
+      EXPECT_EQ(page.button == words.finish, notice != Notice::Over) << "the last page says so";
+    }
+    for (const Offer offer : {Offer::StayOut, Offer::Questionnaire, Offer::Keep}) {
+      const DeskChoice& choice = words.choice(offer);
+      for (const std::string& one : {choice.title, choice.text, choice.question, choice.first, choice.second})
+        EXPECT_FALSE(one.empty()) << language;
+    }
+    EXPECT_THAT(words.begin, HasSubstr("Esc"));
+    EXPECT_THAT(words.corner, HasSubstr("Esc"));
+  }
+  EXPECT_NE(desk_words("de").over.text, desk_words("en").over.text);
+}
+
 TEST(Strip, SignsFollowTheRate) {
   EXPECT_EQ(strip_sign(1, 1.01), '.');
   EXPECT_EQ(strip_sign(1, 1.1), '+');
@@ -198,7 +231,8 @@ class ConsoleTest : public ::testing::Test {
   study::Protocol protocol_ = study::test::pilot();
   study::Store store_;
   std::vector<study::OpenRun> runs_;
-  Console console_{protocol_, store_, folder_.path() / "s.db"};
+  std::optional<double> idle_s_;
+  Console console_{protocol_, store_, folder_.path() / "s.db", [this] { return idle_s_; }};
 };
 
 TEST_F(ConsoleTest, HidesTheSettingUntilItIsRevealedAndLogsThat) {
@@ -321,7 +355,7 @@ TEST_F(ConsoleTest, ATrialIsExcludedWithItsReason) {
   EXPECT_EQ(count("trial WHERE excluded = 'wrong glasses'"), 1);
 }
 
-TEST_F(ConsoleTest, StatusShowsLatenessAndWhatIsTyped) {
+TEST_F(ConsoleTest, ViewShowsLatenessAndWhatIsTyped) {
   console_.begins(first_trial());
   for (int i = 0; i < 40; ++i) {
     study::FrameRecord frame;
@@ -331,11 +365,92 @@ TEST_F(ConsoleTest, StatusShowsLatenessAndWhatIsTyped) {
     frame.late = i == 20;
     console_.shown(frame);
   }
-  EXPECT_THAT(console_.status(), HasSubstr("late 1  worst 7.00 ms"));
-  EXPECT_THAT(console_.status(), HasSubstr("..."));
-  EXPECT_THAT(console_.status(), Not(HasSubstr("frames/s"))) << "it would tell the setting";
+  const ConsoleView view = console_.view(steady_ns());
+  EXPECT_THAT(view.rate, HasSubstr("late 1, worst 7.00 ms"));
+  EXPECT_THAT(view.rate, Not(HasSubstr("frames/s"))) << "it would tell the setting";
+  EXPECT_THAT(view.strip, HasSubstr("..."));
+  EXPECT_THAT(view.person, StartsWith("looks at the stimulus"));
+  EXPECT_THAT(view.alarms, Contains(HasSubstr("1 late frame in this showing")));
   type("nab");
-  EXPECT_EQ(console_.status(), "note: ab");
+  EXPECT_EQ(console_.view(steady_ns()).typed, "note: ab");
+}
+
+TEST_F(ConsoleTest, ViewSaysWhatThePersonDoes) {
+  const auto person = [&](double later_s = 0) {
+    return console_.view(steady_ns() + std::llround(1e9 * later_s)).person;
+  };
+  EXPECT_THAT(person(), StartsWith("waits"));
+  console_.begins(session().units.front());
+  idle_s_ = 12;
+  EXPECT_THAT(person(34),
+              AllOf(StartsWith("on this page for 34 s"), HasSubstr("last key or mouse 12 s ago")));
+  EXPECT_THAT(console_.view(steady_ns()).alarms, Not(Contains(HasSubstr("nothing was pressed"))));
+  idle_s_ = 200;
+  EXPECT_THAT(console_.view(steady_ns() + 200'000'000'000).alarms,
+              Contains(HasSubstr("nothing was pressed for 3 min")));
+  type("p");
+  EXPECT_THAT(person(), HasSubstr("PAUSE before the next step"));
+  console_.done({"P01", session().units.front().plan, 1, {}});
+  EXPECT_THAT(person(), StartsWith("PAUSED"));
+  type("p");
+  console_.ends({study::EarlyEnd::Stopped, "sick"});
+  EXPECT_THAT(person(), StartsWith("STOPPED"));
+  EXPECT_THAT(console_.view(steady_ns()).alarms, Contains(StartsWith("STOPPED")));
+  console_.ends({study::EarlyEnd::NotEligible, "age"});
+  EXPECT_THAT(person(), StartsWith("INELIGIBLE"));
+  console_.take_reopened();
+}
+
+TEST_F(ConsoleTest, AFailedVerdictSaysWhatToDoNextAndWarningsStay) {
+  console_.begins(first_trial());
+  study::TimingVerdict failed = study::test::verdict();
+  failed.verdict = study::Verdict::Fail;
+  console_.warn("power governor: powersave");
+  console_.done({"P01", first_trial().plan, 1, {failed}});
+  const ConsoleView view = console_.view(steady_ns());
+  EXPECT_THAT(view.alarms, ElementsAre(HasSubstr("trial 1: timing FAILED; r shows it again"),
+                                       "power governor: powersave"));
+  EXPECT_THAT(view.last, HasSubstr("timing fail"));
+  EXPECT_THAT(view.plan, HasSubstr("1 of "));
+}
+
+TEST(ConsoleScreen, FillsEightyByTwentyFourAndNoLineIsLonger) {
+  ConsoleView view;
+  view.title = "P01, visit 1: task1 1.0";
+  view.clock = "14:03:05";
+  view.done = 0.25;
+  view.plan = "11 of 44 steps done; left: about 12 min";
+  view.now = "step 12 of 44: stimulus 'ratings', trial 3";
+  view.person = "looks at the stimulus";
+  view.typed = "note: " + std::string(200, 'x') + "end";
+  for (int i = 0; i < 30; ++i) view.said.push_back("said " + std::to_string(i) + std::string(100, '.'));
+  for (int i = 0; i < 5; ++i) view.alarms.push_back("alarm " + std::to_string(i));
+  const auto lines = render_console(view, 80, 24);
+  ASSERT_EQ(lines.size(), 24u);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), 80u) << line;
+  EXPECT_EQ(lines[0], "P01, visit 1: task1 1.0" + std::string(80 - 23 - 8, ' ') + "14:03:05");
+  EXPECT_EQ(lines[2], "Plan     [#####...............] 11 of 44 steps done; left: about 12 min");
+  EXPECT_EQ(lines[4], "Person   looks at the stimulus");
+  EXPECT_THAT(lines[9], HasSubstr(". on time  + faster  - slower  ! by over 20 %"));
+  EXPECT_EQ(lines[12], "ALARMS   alarm 0");
+  EXPECT_EQ(lines[14], "         3 more: alarm 2");
+  EXPECT_THAT(lines[20], StartsWith("said 29"));
+  EXPECT_THAT(lines[21], HasSubstr("p pause"));
+  EXPECT_THAT(lines[23], EndsWith("xend"));
+}
+
+TEST(ConsoleScreen, FitsEveryTerminal) {
+  ConsoleView view;
+  view.title = view.person = "\xE4\xBD\xA0\xE5\xA5\xBD \xC3\xBC";  // two wide letters, a narrow one
+  view.said = {"one", "two"};
+  for (const auto& [columns, rows] : {std::pair{132, 50}, {80, 24}, {20, 10}, {2, 1}, {1, 1}}) {
+    const auto lines = render_console(view, columns, rows);
+    EXPECT_EQ(lines.size(), static_cast<std::size_t>(rows));
+    for (const std::string& line : lines)
+      EXPECT_LE(line.size(), static_cast<std::size_t>(2 * columns)) << "bytes; three each for two columns";
+  }
+  EXPECT_EQ(render_console(view, 14, 24)[4], "Person   \xE4\xBD\xA0...");
+  EXPECT_EQ(render_console(view, 80, 24)[12], "Alarms   none");
 }
 
 TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
@@ -345,6 +460,8 @@ TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   for (const auto& unit : session().units) sum += expected_s(protocol_, unit);
   EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units), sum);
   EXPECT_GT(sum, 21 * 18);
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, false), 3 + 10) << "an observer answers at once";
+  EXPECT_LT(expected_s(protocol_, session().units, false), sum);
   // 21 settings of 10 s with a mean of 26.67 frames/s.
   EXPECT_GT(expected_bytes(protocol_, session().units), 64u * 21 * 200);
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "apps/common/headless_display.hpp"
 #include "libstudy/pacing/clock.hpp"
 #include "stats/base/error.hpp"
@@ -235,9 +237,9 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
 TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAPicture) {
   apps::HeadlessDisplay display(64, 36);
   std::vector<sim::Looks> looks;
-  apps::LiveViewing viewing;
+  apps::Viewing viewing;
   viewing.gaze = [](int width, int height) { return std::optional(std::pair(0.25 * width, 0.5 * height)); };
-  viewing.vertical_fov_deg = [](int, int) { return 40.0; };
+  viewing.visual_angle_deg = [](int, int) { return 40.0; };
   apps::LiveFluid live(
       scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
   live.start(0);
@@ -248,13 +250,34 @@ TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAP
   ASSERT_EQ(looks.size(), 2u);
   const sim::EyeLook& eye = looks[0].eyes.at(0);
   EXPECT_TRUE(eye.gaze.valid);
-  // The camera has the viewer's angle, and the gaze goes through a quarter of its width.
-  sim::Camera camera = scene().view;
-  camera.vertical_fov_deg = 40;
-  const sim::View view = sim::make_view(camera, 64, 36);
+  // The camera keeps the scene's angle, and the gaze goes through a quarter of its width.
+  const sim::View view = sim::make_view(scene().view, 64, 36);
   EXPECT_EQ(eye.view.projection, view.projection);
   const sim::Gaze expected = apps::gaze_through(view, 16, 18);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(eye.gaze.direction[k], expected.direction[k], 1e-6);
+  const double half_degree = std::acos(-1.0) / 360;
+  EXPECT_NEAR(eye.visual_scale,
+              std::tan(40 * half_degree) / std::tan(scene().view.vertical_fov_deg * half_degree), 1e-12);
+}
+
+TEST_F(FluidStimulusGl, LiveFluidIsAWindowOntoTheSceneWhereThatIsAsked) {
+  apps::HeadlessDisplay display(64, 36);
+  std::vector<sim::Looks> looks;
+  apps::Viewing viewing;
+  viewing.visual_angle_deg = [](int, int) { return 40.0; };
+  viewing.true_angle = true;
+  apps::LiveFluid live(
+      scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
+  live.start(0);
+  live.prepare(1);
+  display.render(live);
+  live.prepare(2);
+  ASSERT_EQ(looks.size(), 1u);
+  sim::Camera camera = scene().view;
+  camera.vertical_fov_deg = 40;
+  const sim::EyeLook& eye = looks[0].eyes.at(0);
+  EXPECT_EQ(eye.view.projection, sim::make_view(camera, 64, 36).projection);
+  EXPECT_EQ(eye.visual_scale, 1);
 }
 
 }  // namespace

@@ -25,9 +25,11 @@ class OutputOptionsE2e : public ::testing::Test {
   OutputOptionsE2e() {
     base::write_file_atomically(folder_ / "file", "mine");
     fs::create_symlink("/dev/full", folder_ / "full");
-    for (const char* protocol : {"protocols/ptpe_pilot.toml", "protocols/task2.toml"}) {
-      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", "random",
-                                   "--participants", "2"})
+    // People of whom a fit can be made.
+    for (const auto& [protocol, observer] : {std::pair{"protocols/ptpe_pilot.toml", "ptpe:a=24,b=0.02"},
+                                             std::pair{"protocols/task2.toml", "random"}}) {
+      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", observer,
+                                   "--participants", "6", "--seed", "7"})
                               .wait();
       EXPECT_EQ(ended.exit_code, 0) << ended.err;
     }
@@ -44,7 +46,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-study salvage --db " + database_ + " --into ",
             "vip-stats fit-ptpe " + database_ + " --json ",
             "vip-stats fit-ptpe " + database_ + " --svg ",
-            "vip-stats fit-ptpe " + database_ + " --out ",
+            "vip-stats fit-ptpe " + database_ + " --force --out ",
             "vip-stats report " + database_ + " --html ",
             "vip-stats report " + database_ + " --html " + page_ + " --json ",
             "vip-stats task2 " + database_ + " --json ",
@@ -90,6 +92,18 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
   for (const std::string& line : folder_options()) {
     expect_refused(line, full, "/full");
     expect_refused(line, below, file);  // a folder is made with those above it
+  }
+}
+
+TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
+  auto all = file_options();
+  std::erase_if(all, [](const std::string& line) { return line.find("table") != std::string::npos; });
+  for (const std::string& line : folder_options()) all.push_back(line);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const fs::path target = folder_ / ("new" + std::to_string(i)) / "deep" / "out";
+    const Ended ended = run_shell(VIP_BIN_DIR "/" + all[i] + target.string());
+    EXPECT_EQ(ended.exit_code, 0) << all[i] << "\n" << ended.out;
+    EXPECT_TRUE(fs::exists(target)) << all[i];
   }
 }
 

@@ -36,6 +36,16 @@ TEST(ReportCommandE2e, MakesThePageOfASimulatedPilotFromItsJson) {
   EXPECT_TRUE(html == report::results_page(json)) << "the page is not made of the JSON alone";
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_NE(html.find("<svg"), std::string::npos);
+  // The bundle was frozen after the answers: the page says so.
+  EXPECT_EQ(json.at("preregistration").at("times").at(0).at("frozen_before"), false);
+  EXPECT_NE(html.find("The bundle was not frozen before the first answer of Pilot"), std::string::npos);
+  EXPECT_FALSE(json.at("preregistration").at("holds").get<bool>());
+  for (const char* alone : {"json", "csv", "html"}) {
+    const auto out = at("alone") + "." + alone;
+    const auto ended = typed("vip-stats report " + at("s.db") + " --" + alone + " " + out);
+    EXPECT_EQ(ended.exit_code, 0) << ended.out;
+    EXPECT_TRUE(fs::exists(out)) << out;
+  }
 }
 
 TEST(ReportCommandE2e, RefusesWhatItCannotReadAndWritesNothing) {

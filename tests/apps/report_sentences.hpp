@@ -62,6 +62,9 @@ inline std::vector<Case> head_and_methods() {
        in_each("/study/protocols", "participants_planned", nullptr)},
       {"Sessions of # with analysed answers by source of gaze: *#; by display: *#.",
        in_each("/study/protocols", "gaze", Json::object())},
+      {"Sessions of # with analysed answers by vertical angle: *#.",
+       in_each("/study/protocols", "angles", Json::object()),
+       in_each("/study/protocols", "angles", {{"camera 75 degrees, eye 27.4 degrees, ratio 0.37", 26}})},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",

@@ -57,16 +57,27 @@ TEST_F(StudyCommandsE2e, RunPrintsTheCertificateAndStatusTheCounts) {
   EXPECT_THAT(written.out, HasSubstr("frames.csv: 4200 rows"));
 }
 
+TEST_F(StudyCommandsE2e, ARunInRealTimeSaysHowLongBeforeItStarts) {
+  Process process(run_arguments(folder_ / "short.toml", database_,
+                                {"--participants", "40", "--clock", "real", "--display", "none"}));
+  ASSERT_TRUE(process.read_line());  // of --events: the first step begins
+  process.send(SIGINT);
+  const Ended ended = process.wait();
+  EXPECT_EQ(ended.exit_code, 1) << ended.err;
+  EXPECT_THAT(ended.err, ::testing::StartsWith("short: 40 sessions in real time, about 43 min\n"));
+  EXPECT_THAT(run({"--participant", "P41"}).err, ::testing::Not(HasSubstr("real time")));
+}
+
 TEST_F(StudyCommandsE2e, ShortenedTrialsAreTestData) {
   ASSERT_EQ(run({"--participants", "1", "--trial-seconds", "2"}).exit_code, 0);
   EXPECT_EQ(count_in(database_, "SELECT count(*) FROM session WHERE test_data = 1"), 1);
   EXPECT_EQ(count_in(database_, "SELECT count(*) FROM frame"), 3 * 40 + 3 * 100);
 }
 
-TEST_F(StudyCommandsE2e, TheSameParticipantsAreSentToResume) {
+TEST_F(StudyCommandsE2e, ParticipantsWhoAreDoneAreNotTakenTwice) {
   ASSERT_EQ(run().exit_code, 0);
   expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "P02"}),
-               "vip-study resume --db " + database_);
+               "it is over (done)");
   EXPECT_EQ(run({"--participant", "P03"}).exit_code, 0);
 }
 
@@ -166,7 +177,7 @@ TEST_F(StudyCommandsE2e, FullAtThePlanLeavesNoFile) {
 }
 
 TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
-  const Ended full = run({"--participants", "4", "--max-pages", "70"});
+  const Ended full = run({"--participants", "4", "--max-pages", "80"});
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_THAT(full.err, AllOf(HasSubstr("no room left"), HasSubstr("vip-study resume")));
   const auto said = acknowledged(full.out);

@@ -47,6 +47,20 @@ TEST(Scene, SingleDamHasTheNumbersOfItsDescription) {
   EXPECT_NEAR(scene.overview.eye_m[2] - scene.overview.target_m[2], 3 * (15.3 - 6.4), 1e-12);
 }
 
+TEST(Scene, DeclaresWhatMustStayVisible) {
+  const std::string box =
+      "\n[[visible]]\nname = \"crown\"\nmin_m = [1.0, 0.0, 2.0]\nmax_m = [2.0, 3.0, 4.0]\n";
+  const auto scene = sim::parse_scene(dam_text() + box, "scene.toml");
+  ASSERT_EQ(scene.visible.size(), dam().visible.size() + 1);
+  EXPECT_EQ(scene.visible.back().name, "crown");
+  EXPECT_EQ(scene.visible.back().min_m[2], 2);
+  EXPECT_EQ(scene.visible.back().max_m[1], 3);
+  EXPECT_THAT(error_of(dam_text() + replaced(box, "2.0, 3.0", "1.0, 3.0")),
+              testing::AllOf(testing::HasSubstr("max_m"), testing::HasSubstr("leaves the box empty")));
+  EXPECT_THAT(error_of(dam_text() + replaced(box, "\"crown\"", "\"\"")),
+              testing::HasSubstr("is empty or too long"));
+}
+
 TEST(Scene, SubstepsFollowTheRule) {
   const auto scene = dam();
   EXPECT_EQ(sim::substeps_of(scene, 4 * 1024), 2);

@@ -231,7 +231,7 @@ TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
   test::write_version_1(path);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 19u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 20u);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // and the copy that upgrades leave
 }
@@ -289,6 +289,26 @@ TEST(Database, FramesOfEarlierSchemasTellWhatWasMeasuredAlone) {
   salvage(old, salvaged);
   expect_frames(salvaged, 40);
   EXPECT_EQ(read(salvaged), before);
+}
+
+TEST(Database, ARefusalOfEarlierSchemasIsToldFromRulingOut) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  fs::copy_file(fs::path(VIP_TEST_DIR) / "libstudy/fixtures/study_v3.db", path);
+  {
+    Connection old(path, Open::Write);
+    old.execute(
+        "UPDATE session SET state = 'not eligible'; INSERT INTO note (session_id, utc, words) "
+        "SELECT session_id, '', 'block ' || block FROM unit WHERE kind = 'consent' AND session_id = 1; "
+        "INSERT INTO note (session_id, utc, words) SELECT session_id, '', 'block ' || block || ' 2' "
+        "FROM unit WHERE kind = 'consent' AND session_id > 1");
+    ASSERT_EQ(old.integer("SELECT count(*) FROM note WHERE words = 'block consent'"), 1);
+  }
+  const auto database = open_database(path, Open::Write, read_schema_steps());
+  EXPECT_EQ(database->integer("SELECT count(*) FROM session WHERE state = 'refused'"), 1);
+  EXPECT_EQ(database->text("SELECT state FROM session WHERE session_id = 1"), "refused");
+  EXPECT_EQ(database->integer("SELECT count(*) FROM permission WHERE session_id = 1"), 2)
+      << "views still read it";
 }
 
 TEST(Database, EveryReleasedSchemaIsStillOpened) {

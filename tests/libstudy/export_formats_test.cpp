@@ -83,13 +83,13 @@ TEST(ExportBids, FilesAndTheirNamesAreThoseOfTheStandard) {
   export_bids(make_study(folder), folder / "bids");
   EXPECT_THAT(files_below(folder / "bids"),
               ElementsAre("README.md", "dataset_description.json", "participants.json", "participants.tsv",
-                          "phenotype/about.json", "phenotype/about.tsv", "sessions.json",
+                          "phenotype/about.json", "phenotype/about.tsv",
                           "sub-P01/ses-pairsv1/beh/sub-P01_ses-pairsv1_task-pairs_events.json",
                           "sub-P01/ses-pairsv1/beh/sub-P01_ses-pairsv1_task-pairs_events.tsv",
-                          "sub-P01/sub-P01_sessions.tsv",
+                          "sub-P01/sub-P01_sessions.json", "sub-P01/sub-P01_sessions.tsv",
                           "sub-P01x2/ses-pairsv1/beh/sub-P01x2_ses-pairsv1_task-pairs_events.json",
                           "sub-P01x2/ses-pairsv1/beh/sub-P01x2_ses-pairsv1_task-pairs_events.tsv",
-                          "sub-P01x2/sub-P01x2_sessions.tsv"));
+                          "sub-P01x2/sub-P01x2_sessions.json", "sub-P01x2/sub-P01x2_sessions.tsv"));
   const auto description = read_json(folder / "bids" / "dataset_description.json");
   EXPECT_EQ(description["Name"], "bids");
   EXPECT_EQ(description["BIDSVersion"], "1.11.0");
@@ -111,11 +111,10 @@ TEST(ExportBids, EveryTableIsFullAndEveryColumnIsDescribed) {
       EXPECT_EQ(row.size(), rows[0].size());
       EXPECT_EQ(std::count(row.begin(), row.end(), ""), 0);
     }
-    const std::string sidecar =
-        name.ends_with("_sessions.tsv") ? "sessions.json" : name.substr(0, name.size() - 3) + "json";
+    const std::string sidecar = name.substr(0, name.size() - 3) + "json";
     const auto json = read_json(folder / "bids" / sidecar);
     for (const std::string& column : rows[0]) {
-      if (column == "participant_id" || (column == "session_id" && sidecar == "sessions.json")) continue;
+      if (column == "participant_id" || column == "session_id") continue;
       EXPECT_TRUE(json.contains(column) && json[column].contains("Description")) << column;
     }
   }
@@ -150,8 +149,9 @@ TEST(ExportBids, EventsTellWhatWasShownAndAnswered) {
   EXPECT_EQ(json["preference"]["Levels"]["2"], "second");
   EXPECT_EQ(json["StimulusPresentation"]["ScreenRefreshRate"], 90);
   const auto about = read_table(folder / "bids" / "phenotype" / "about.tsv", '\t');
-  EXPECT_THAT(about.at(0), ElementsAre("participant_id", "session_id", "block", "games"));
-  EXPECT_THAT(about.at(1), ElementsAre("sub-P01", "ses-pairsv1", "about", "1"));
+  EXPECT_THAT(about.at(0), ElementsAre("participant_id", "pairsv1_about_games"));
+  EXPECT_THAT(about.at(1), ElementsAre("sub-P01", "1"));
+  EXPECT_THAT(about.at(2), ElementsAre("sub-P01x2", "n/a"));
   EXPECT_FALSE(holds(folder / "bids", secret));
 }
 

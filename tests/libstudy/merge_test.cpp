@@ -60,6 +60,9 @@ Lines contents(const fs::path& path) {
            "s.display, s.stimulus, s.machine, s.station, s.time_zone, s.gaze_source, s.ptpe, s.started_utc, "
            "s.ended_utc, r.uid, r.started_utc, r.options, p.sha256 FROM session s JOIN run r USING (run_id) "
            "JOIN protocol p USING (protocol_id)",
+           "SELECT s.uid, f.scene, f.width_px, f.camera_angle_deg, f.visual_angle_deg, f.angle_ratio FROM "
+           "framing f "
+           "JOIN session s USING (session_id)",
            "SELECT s.uid, u.position, u.block, u.block_index, u.kind, u.state, u.done_utc, t.position, "
            "t.group_index, t.first_cell, t.second_cell, t.schedule_seed, t.state, t.set_aside, t.excluded "
            "FROM unit u JOIN session s USING (session_id) LEFT JOIN trial t USING (trial_id)",
@@ -150,7 +153,7 @@ TEST_F(Stations, TheUnionIsExact) {
   EXPECT_EQ(done.recognised, 0);
   for (std::size_t i = 0; i < sources.size(); ++i) EXPECT_TRUE(test::bytes_of(sources[i]) == bytes[i]);
   for (const char* table :
-       {"session", "unit", "trial", "presentation", "frame", "response", "note", "event", "run"}) {
+       {"session", "framing", "unit", "trial", "presentation", "frame", "response", "note", "event", "run"}) {
     std::int64_t sum = 0;
     const std::string sql = std::string("SELECT count(*) FROM ") + table;
     for (const fs::path& source : sources) sum += std::stoll(select(source, sql)[0]);

@@ -189,6 +189,25 @@ TEST(Quantise, ApproximateKeepsTheMeanAndTheBound) {
   EXPECT_THAT(verdict.reason, testing::HasSubstr("forces an sd of 18"));
 }
 
+TEST(Quantise, ReasonNamesTheMomentsThatMissAndNoOther) {
+  for (const auto& cell : study::read_protocol(base::resource("protocols/task1.toml")).design.cells) {
+    SCOPED_TRACE(study::setting_name(cell.setting));
+    const auto verdict = study::quantise(cell.setting, {}, 60, 1);
+    ASSERT_EQ(verdict.feasibility, Feasibility::Approximate);
+    const auto named = [&](const char* pattern, double got, double wished) {
+      char text[80];
+      std::snprintf(text, sizeof text, pattern, got, wished);
+      return verdict.reason.find(text) != std::string::npos;
+    };
+    EXPECT_EQ(named("mean %.6g for %g (", verdict.mean, cell.setting.mean),
+              std::abs(verdict.mean / cell.setting.mean - 1) > 1e-9)
+        << verdict.reason;
+    EXPECT_EQ(named("sd %.4g for %g (", verdict.sd, cell.setting.sd),
+              std::abs(verdict.sd - cell.setting.sd) > sd_tolerance(cell.setting))
+        << verdict.reason;
+  }
+}
+
 TEST(Quantise, UnreachableSaysWhy) {
   const auto fast = study::quantise({100, 5, 10}, {}, 90, 1);
   EXPECT_EQ(fast.feasibility, Feasibility::Unreachable);

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -69,20 +71,38 @@ class Scripted final : public Participant {
     return out;
   }
   void pause(const Pause& pause, Clock& clock, const Check& check) override {
-    const char* names[] = {"black", "rest", "break"};
-    if (pause.seconds > 0) {
-      seen.push_back(names[static_cast<int>(pause.kind)] +
-                     (" " + std::to_string(std::lround(pause.seconds))));
+    const char* names[] = {"black", "rest", "break", "first", "second", "held"};
+    if (pause.seconds > 0 || pause.over) {
+      seen.push_back(names[static_cast<int>(pause.kind)] + in_seconds(pause.seconds));
       if (!pause.title.empty() || !pause.text.empty()) seen.back() += " '" + pause.title + "' " + pause.text;
     }
-    wait(pause.seconds, clock, check);
+    do wait(pause.over ? 0.1 : pause.seconds, clock, check);
+    while (pause.over && !pause.over());
+  }
+  void tell(Notice notice, double least_s, Clock& clock, const Check& check) override {
+    const char* names[] = {"over", "refused", "not eligible", "kept", "deleted", "goodbye"};
+    seen.push_back("tell " + std::string(names[static_cast<int>(notice)]) + in_seconds(least_s));
+    wait(least_s, clock, check);
+  }
+  bool offer(Offer offer, Clock&, const Check& check) override {
+    const char* names[] = {"stay out", "questionnaire", "keep"};
+    seen.push_back("offer " + std::string(names[static_cast<int>(offer)]));
+    check();
+    return !decides || decides(offer);
   }
 
+  std::function<bool(Offer)> decides;  ///< none: yes to all
   std::map<std::string, Answer> says;
   std::vector<std::string> seen;
   std::vector<Occasion> occasions;
 
  private:
+  /// " 0.5"; nothing for no time.
+  static std::string in_seconds(double seconds) {
+    std::ostringstream text;
+    if (seconds > 0) text << ' ' << seconds;
+    return text.str();
+  }
   static void wait(double seconds, Clock& clock, const Check& check) {
     check();
     clock.wait_until(clock.now_ns() + std::llround(1e9 * seconds));
@@ -111,11 +131,11 @@ struct OneSession {
     person.says["remarks"] = words("");
   }
   std::vector<OpenRun> open() { return store.open_runs(); }
-  void run(const SessionHooks& hooks = {}) {
+  std::optional<Ending> run(const SessionHooks& hooks = {}) {
     SessionParts parts = desk.parts(person, store);
     parts.personal = &personal;
     const auto runs = open();
-    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
+    return run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
   }
   std::int64_t count(const std::string& sql) {
     return sqlite::Connection(folder / "study.db", sqlite::Open::Read).integer("SELECT count(*) FROM " + sql);

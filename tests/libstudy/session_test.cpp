@@ -135,7 +135,9 @@ seconds = 4
 TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   OneSession one(paced_pairs());
   one.run();
-  std::vector<std::string> trial{"black 1", "ask preference", "rest 9", "ask ease"};
+  // A word and a moment of black before each of the two; the protocol's black stays whole.
+  std::vector<std::string> trial{"first 1",   "black 0.5",      "black 1", "second 1",
+                                 "black 0.5", "ask preference", "rest 9",  "ask ease"};
   std::vector<std::string> expected{"ask age games"};
   for (int i = 0; i < 4; ++i) expected.insert(expected.end(), trial.begin(), trial.end());
   expected.emplace_back("ask remarks");
@@ -211,8 +213,9 @@ TEST(Session, RefusedConsentEndsItAndKeepsNoAnswer) {
   OneSession one(guarded());
   one.person.says["take_part"] = test::score(0);
   one.run();
-  EXPECT_THAT(one.person.seen, ElementsAre("read welcome", "ask take_part"));
-  EXPECT_EQ(one.row().state, "not eligible");
+  EXPECT_THAT(one.person.seen,
+              ElementsAre("read welcome", "ask take_part", "offer stay out", "tell refused"));
+  EXPECT_EQ(one.row().state, "refused");
   EXPECT_EQ(one.count("response"), 0);
   EXPECT_TRUE(one.open().empty());
   EXPECT_TRUE(one.store.taken_slots(one.protocol.sha256).empty());
@@ -222,7 +225,8 @@ TEST(Session, WhoIsRuledOutByScreeningSeesNothing) {
   OneSession one(guarded());
   one.person.says["epilepsy"] = test::score(1);
   one.run();
-  EXPECT_THAT(one.person.seen, ElementsAre("read welcome", "ask take_part", "ask epilepsy"));
+  EXPECT_THAT(one.person.seen,
+              ElementsAre("read welcome", "ask take_part", "ask epilepsy", "tell not eligible"));
   EXPECT_EQ(one.row().state, "not eligible");
   EXPECT_EQ(one.count("presentation"), 0);
   EXPECT_EQ(one.count("event WHERE detail LIKE '%epilepsy%' OR detail LIKE '%screening%'"), 0);
@@ -233,7 +237,9 @@ TEST(Session, AStopRuleOffersARestAndShowsNothingMore) {
   one.person.says["epilepsy"] = test::score(0);
   one.person.says["fms"] = test::score(12);
   one.run();
-  EXPECT_EQ(one.person.seen.back(), "break 60");
+  const auto& seen = one.person.seen;
+  EXPECT_THAT(std::vector(seen.end() - 4, seen.end()),
+              ElementsAre("ask fms", "tell over", "offer keep", "tell kept"));
   EXPECT_EQ(one.row().state, "stopped");
   EXPECT_EQ(one.count("presentation"), 0);
   EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'fms' AND score = 12"), 1);
@@ -289,15 +295,18 @@ TEST(Session, AfterAStopBetweenTwoQuestionsOnlyTheSecondIsAsked) {
   EXPECT_THROW(one.run(hooks), Stopped);
   one.person.seen.clear();
   one.run();
-  EXPECT_THAT(std::vector<std::string>(one.person.seen.begin(), one.person.seen.begin() + 3),
-              ElementsAre("black 1", "rest 9", "ask ease"));
+  EXPECT_THAT(
+      std::vector<std::string>(one.person.seen.begin(), one.person.seen.begin() + 7),
+      ElementsAre("first 1", "black 0.5", "black 1", "second 1", "black 0.5", "rest 9", "ask ease"));
   EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'preference'"), 4);
 }
 
 TEST(Session, TheExperimenterEndsIt) {
   OneSession one(paced_pairs());
   one.run(wish_at_frame_5(Wish::EndSession, 1));
-  EXPECT_EQ(one.person.seen.back(), "break 60");
+  const auto& seen = one.person.seen;
+  EXPECT_THAT(std::vector(seen.end() - 3, seen.end()),
+              ElementsAre("tell over 60", "offer keep", "tell kept"));
   EXPECT_EQ(one.row().state, "stopped");
   EXPECT_EQ(one.count("presentation WHERE state = 'interrupted'"), 1);
   EXPECT_TRUE(one.open().empty());
@@ -311,6 +320,8 @@ TEST(Session, APauseWaitsBeforeTheNextUnit) {
   one.run(hooks);
   EXPECT_EQ(one.row().state, "done");
   EXPECT_LE(left, 0);
+  EXPECT_EQ(one.person.seen.front(), "held") << "the participant reads that the session is paused";
+  EXPECT_EQ(std::count(one.person.seen.begin(), one.person.seen.end(), "held"), 1);
 }
 
 TEST(Session, NativeFramesAreTakenAsTheyComeAndHaveNoVerdict) {

@@ -172,14 +172,18 @@ TEST_F(SicknessStudy, BidsHasTheScoresBesideTheItems) {
   export_bids(path(), folder_ / "bids");
   const auto ssq = lines_of(folder_ / "bids" / "phenotype" / "ssq.tsv");
   ASSERT_THAT(ssq, SizeIs(2));
-  EXPECT_THAT(ssq[0], EndsWith("ssq_16\tssq_nausea\tssq_oculomotor\tssq_disorientation\tssq_total"));
+  EXPECT_THAT(ssq[0], EndsWith("before_ssq_oculomotor\ttask1labv1_ssq_before_ssq_disorientation\t"
+                               "task1labv1_ssq_before_ssq_total"));
   EXPECT_THAT(ssq[1], EndsWith("\tn/a\tn/a\t159.18\t292.32\tn/a"));
   const auto meaning = nlohmann::json::parse(test::bytes_of(folder_ / "bids" / "phenotype" / "ssq.json"));
-  EXPECT_THAT(meaning["ssq_total"]["Description"].get<std::string>(), HasSubstr("3.74 times"));
+  EXPECT_THAT(meaning["task1labv1_ssq_before_ssq_total"]["Description"].get<std::string>(),
+              HasSubstr("3.74 times"));
   const auto fms = lines_of(folder_ / "bids" / "phenotype" / "fmssummary.tsv");
-  EXPECT_THAT(fms, ElementsAre("participant_id\tsession_id\tblock\tfms_answers\tfms_mean\tfms_peak",
-                               "sub-P01\tses-task1labv1\tn/a\t1\t2\t2",
-                               "sub-P01\tses-task1labv1\tsickness\t1\t2\t2"));
+  EXPECT_THAT(fms,
+              ElementsAre("participant_id\ttask1labv1_fms_answers\ttask1labv1_fms_mean\ttask1labv1_fms_peak\t"
+                          "task1labv1_sickness_fms_answers\ttask1labv1_sickness_fms_mean\t"
+                          "task1labv1_sickness_fms_peak",
+                          "sub-P01\t1\t2\t2\t1\t2\t2"));
 }
 
 TEST_F(SicknessStudy, PsychDsHasAFileForEachAndDescribesEveryColumn) {

@@ -127,6 +127,34 @@ TEST(Store, GivesASessionBackAsItWasPlanned) {
   EXPECT_EQ(found.time_zone, "UTC");
 }
 
+TEST(Store, KeepsHowTheDisplayFramedEachScene) {
+  const test::TemporaryFolder folder;
+  {
+    Store store(folder / "study.db", Open::Create);
+    RunPlan run = test::run_plan(test::pilot(), {"P01"});
+    run.sessions[0].framing = {{"a.toml", 640, 360, 1280, 720, 75, 27.0}, {"b.toml", 64, 36, 64, 36, 60, {}}};
+    store.add_run(run);
+  }
+  sqlite::Connection database(folder / "study.db", Open::Read);
+  sqlite::Statement row(
+      database,
+      "SELECT scene, width_px, height_px, shown_width_px, shown_height_px, camera_angle_deg, "
+      "visual_angle_deg, angle_ratio FROM framing JOIN session USING (session_id) ORDER BY scene");
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.text(0), "a.toml");
+  EXPECT_EQ(row.integer(1), 640);
+  EXPECT_EQ(row.integer(2), 360);
+  EXPECT_EQ(row.integer(3), 1280);
+  EXPECT_EQ(row.integer(4), 720);
+  EXPECT_EQ(row.real(5), 75);
+  EXPECT_EQ(row.real(6), 27);
+  EXPECT_EQ(row.real(7), 27.0 / 75);
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.real(5), 60);
+  EXPECT_TRUE(row.is_null(6)) << "not known";
+  EXPECT_TRUE(row.is_null(7));
+}
+
 TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
   const test::TemporaryFolder folder;
   const Protocol protocol = test::pilot();

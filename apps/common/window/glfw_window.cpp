@@ -7,6 +7,7 @@
 #include <X11/Xlib.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 
 #include "stats/base/error.hpp"
@@ -17,6 +18,12 @@ extern "C" Display* glfwGetX11Display(void);
 namespace apps {
 
 namespace {
+
+std::int64_t steady_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
 
 /// Set when the connection to the X server broke.
 std::atomic<bool> display_lost = false;
@@ -65,7 +72,7 @@ Monitor describe(GLFWmonitor* monitor) {
 
 }  // namespace
 
-GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
+GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor), last_input_ns_(steady_ns()) {
   if (!glfwInit()) fail("no display", choice.mend);
   try {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -90,10 +97,15 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    self->note_input();
     if (action == GLFW_PRESS) self->keys_.push_back(key);
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) {
+    static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->note_input();
   });
   glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+    self->note_input();
     if (self->mouse_moved_) self->mouse_moved_(self->place_of(x, y));
   });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int inside) {
@@ -105,6 +117,10 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor) {
     if (minimised == GLFW_TRUE) self->was_minimised_ = true;
   });
 }
+
+void GlfwWindow::note_input() { last_input_ns_ = steady_ns(); }
+
+double GlfwWindow::idle_s() const { return 1e-9 * static_cast<double>(steady_ns() - last_input_ns_); }
 
 GlfwWindow::~GlfwWindow() {
   if (display_lost) return;  // every call would speak to a server that is gone

@@ -1,6 +1,8 @@
 #pragma once
 /// A GLFW window with a current OpenGL 4.5 context.
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -52,6 +54,8 @@ class GlfwWindow {
   /// Keys pressed since the last call, as GLFW numbers them: none is lost when frames are slow. A key held
   /// down counts once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
+  /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread.
+  double idle_s() const;
   /// Whether it was minimised at any time since the last call, or is now: nobody saw what was drawn then.
   bool take_minimised();
   bool minimised() const;
@@ -62,12 +66,14 @@ class GlfwWindow {
 
  private:
   Place place_of(double x, double y) const;
+  void note_input();
 
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
   std::vector<int> keys_;
   std::function<void(const Place&)> mouse_moved_;
   bool was_minimised_ = false;
+  std::atomic<std::int64_t> last_input_ns_;  ///< steady clock
 };
 
 /// Whether a compositor stands between windows and the screen. Needs a window that lives.

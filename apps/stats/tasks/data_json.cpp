@@ -28,7 +28,8 @@ Json protocol_json(const TaskData& data) {
       {"observers", data.observers},
       {"gaze", data.gaze},
       {"stations", data.stations},
-      {"displays", data.displays}};
+      {"displays", data.displays},
+      {"angles", data.angles}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
@@ -150,6 +151,7 @@ Json flow_json(const TaskFlow& flow) {
     return found == flow.by_state.end() ? 0 : found->second;
   };
   return {{"started", flow.started},
+          {"no_consent", in_state("refused")},
           {"not_eligible", in_state("not eligible")},
           {"stopped", in_state("stopped")},
           {"dropped_out", in_state("dropped out")},

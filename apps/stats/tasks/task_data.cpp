@@ -56,6 +56,7 @@ class Collector {
     ++data_.gaze[session.gaze_source];
     ++data_.stations[session.station];
     ++data_.displays[session.display];
+    if (!session.angles.empty()) ++data_.angles[session.angles];
     if (session.observer.empty()) return;
     add_once(data_.simulated, session.participant);
     add_once(data_.observers, session.observer);

@@ -17,7 +17,7 @@ namespace apps {
 /// What became of the sessions of one protocol, and of their trials.
 struct TaskFlow {
   std::map<std::string, int>
-      by_state;  ///< sessions: "open", "done", "not eligible", "stopped", "dropped out"
+      by_state;  ///< sessions: "open", "done", "refused", "not eligible", "stopped", "dropped out"
   int started = 0;
   int withdrawn = 0;           ///< participants, from whatever protocol of the database
   int test_left_out = 0;       ///< sessions of test data beside real ones
@@ -45,15 +45,15 @@ struct Report {
 /// The answers of one task, or of the pilot, that count. Indices are of the lists here.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
-  study::TaskProtocol protocol;                         ///< its sessions are those analysed
-  std::vector<std::string> set_aside;                   ///< protocols with nothing but test data
-  bool test_data = false;                               ///< there are no real data: test data are analysed
-  std::vector<std::string> participants;                ///< codes
-  std::vector<std::string> scenes;                      ///< short: "single_dam"
-  std::vector<std::string> simulated;                   ///< participants answered by observer models
-  std::vector<std::string> observers;                   ///< different models
-  std::map<std::string, int> gaze, stations, displays;  ///< sessions
-  std::string first_answer_utc;                         ///< of the sessions analysed; empty: none
+  study::TaskProtocol protocol;           ///< its sessions are those analysed
+  std::vector<std::string> set_aside;     ///< protocols with nothing but test data
+  bool test_data = false;                 ///< there are no real data: test data are analysed
+  std::vector<std::string> participants;  ///< codes
+  std::vector<std::string> scenes;        ///< short: "single_dam"
+  std::vector<std::string> simulated;     ///< participants answered by observer models
+  std::vector<std::string> observers;     ///< different models
+  std::map<std::string, int> gaze, stations, displays, angles;  ///< sessions
+  std::string first_answer_utc;                                 ///< of the sessions analysed; empty: none
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;

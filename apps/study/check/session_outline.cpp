@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "libstudy/design/orders.hpp"
+#include "libstudy/session/participant.hpp"
 
 namespace apps {
 
@@ -51,7 +52,8 @@ double trial_s(const study::Protocol& protocol, const study::PlannedTrial& trial
   for (const auto& step : block.steps) {
     const int cell = step.interval == 0 ? trial.first : trial.second.value_or(trial.first);
     if (step.kind == StepKind::Stimulus)
-      seconds += protocol.design.cells[static_cast<std::size_t>(cell)].setting.duration_s;
+      seconds += protocol.design.cells[static_cast<std::size_t>(cell)].setting.duration_s +
+                 (trial.second ? study::word_s + study::after_word_s : 0);
     seconds += step.seconds + static_cast<double>(step.asks.size()) * answer_s;
   }
   return seconds;

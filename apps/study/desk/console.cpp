@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "apps/study/desk/progress.hpp"
+#include "apps/study/desk/console_text.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 
@@ -14,35 +13,15 @@ namespace {
 
 using Guard = std::lock_guard<std::mutex>;
 
-constexpr std::size_t strip_length = 40;
-constexpr double little_disk_mb = 500;
+constexpr std::size_t strip_length = 60;
 constexpr std::int64_t strip_ns = 500'000'000;
 constexpr std::size_t most_typed = 500;  // bytes
-
-template <class... Values>
-std::string text(const char* pattern, Values... values) {
-  char out[300];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  std::snprintf(out, sizeof out, pattern, values...);
-#pragma GCC diagnostic pop
-  return out;
-}
-
-/// "14:03:05" of an ISO instant.
-std::string clock_time() { return base::utc_now().substr(11, 8); }
 
 /// Without the part of a letter that the limit left at the end.
 std::string whole_letters(std::string words) {
   for (int i = 0; i < 3 && words.size() + 3 > most_typed && !base::is_plain_line(words); ++i)
     words.pop_back();
   return words;
-}
-
-double disk_mb(const std::filesystem::path& database) {
-  std::error_code error;
-  const auto space = std::filesystem::space(std::filesystem::absolute(database).parent_path(), error);
-  return error ? -1 : 1e-6 * static_cast<double>(space.available);
 }
 
 }  // namespace
@@ -54,8 +33,9 @@ char strip_sign(double shown_s, double scheduled_s) {
   return ratio > 1 ? '+' : '-';
 }
 
-Console::Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database)
-    : protocol_(protocol), store_(store), database_(std::move(database)) {}
+Console::Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database,
+                 Idle idle)
+    : protocol_(protocol), store_(store), database_(std::move(database)), idle_(std::move(idle)) {}
 
 void Console::begin(const study::OpenSession& session) {
   const Guard guard(mutex_);
@@ -65,8 +45,11 @@ void Console::begin(const study::OpenSession& session) {
   done_ = 0;
   paused_ = ended_ = repeat_ = false;
   asking_ = Asking::Nothing;
+  warnings_.clear();
+  ending_.reset();
+  verdicts_.clear();
   say(text("%s: %zu steps of %zu left, %s; disk %.1f GB free", session.plan.participant.c_str(),
-           session.units.size(), session.planned, left().c_str(), 1e-3 * disk_mb(database_)));
+           session.units.size(), session.planned, left().c_str(), 1e-3 * free_mb(database_)));
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
            ? "; H1 and H5 are not testable without tracked gaze"
@@ -79,9 +62,20 @@ void Console::begins(const study::OpenUnit& unit) {
   unit_ = unit;
   unit_done_ = false;
   course_ = {};
-  say(describe(unit));
-  const double mb = disk_mb(database_);
-  if (mb >= 0 && mb < little_disk_mb) say(text("WARNING: only %.0f MB of disk are free", mb));
+  page_since_ns_ = steady_ns();
+  say(describe(unit) + "; left: " + left());
+}
+
+void Console::ends(const study::Ending& ending) {
+  const Guard guard(mutex_);
+  ending_ = ending;
+  page_since_ns_ = steady_ns();
+  say("the session ended early: " + ending.reason);
+}
+
+void Console::warn(const std::string& alarm) {
+  const Guard guard(mutex_);
+  warnings_.push_back(alarm);
 }
 
 void Console::shown(const study::FrameRecord& frame) {
@@ -92,6 +86,7 @@ void Console::shown(const study::FrameRecord& frame) {
     c.first_scheduled_ns = c.strip_scheduled_ns = frame.scheduled_ns;
     c.first_shown_ns = c.strip_shown_ns = frame.times.submitted_ns;
   }
+  page_since_ns_ = steady_ns();
   ++c.frames;
   c.late += frame.late ? 1 : 0;
   c.last_scheduled_ns = frame.scheduled_ns;
@@ -113,6 +108,7 @@ void Console::done(const study::UnitDone& unit) {
   if (unit_ && unit_->trial) {
     last_trial_ = unit_;
     last_trial_->attempts = unit.attempt;
+    verdicts_ = unit.verdicts;
   }
   for (const study::TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
   if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // it came too late to cut the trial
@@ -150,7 +146,8 @@ void Console::carry_out(const Deed& deed) {
   } catch (const std::exception& error) {
     const std::string why = error.what();
     const Guard guard(mutex_);
-    return say("NOT KEPT: " + deed.what + " (" + why.substr(0, why.find('\n')) + ")");
+    warnings_.push_back("NOT KEPT: " + deed.what + " (" + why.substr(0, why.find('\n')) + ")");
+    return say(warnings_.back());
   }
   const Guard guard(mutex_);
   deed.then();
@@ -287,65 +284,6 @@ void Console::keep(std::string what, std::function<void()> store, std::function<
 std::vector<std::string> Console::take_lines() {
   const Guard guard(mutex_);
   return std::exchange(lines_, {});
-}
-
-std::string Console::left() const {
-  const auto& units = session_->units;
-  const std::size_t done = std::min(done_, units.size());
-  const double s = expected_s(protocol_, std::span(units).subspan(done));
-  return s < 90 ? text("about %.0f s", s) : text("about %.0f min", s / 60);
-}
-
-std::string Console::describe(const study::OpenUnit& unit) const {
-  const study::Block& block = protocol_.blocks.at(static_cast<std::size_t>(unit.plan.block));
-  std::string line = text("step %d of %zu: %s '%s'", unit.plan.position + 1, session_->planned,
-                          study::block_kind_name(block.kind).c_str(), block.id.c_str());
-  if (unit.trial) line += text(", trial %d", unit.trial->position + 1);
-  if (unit.trial && revealed_) line += " (" + describe_cells(*unit.trial) + ")";
-  return line + "; left: " + left();
-}
-
-std::string Console::describe_cells(const study::PlannedTrial& trial) const {
-  std::string all;
-  for (const auto& index : {std::optional(trial.first), trial.second}) {
-    if (!index) continue;
-    const study::Cell& cell = protocol_.design.cells.at(static_cast<std::size_t>(*index));
-    if (!all.empty()) all += ", then ";
-    all += cell.stimulus.method + " " + cell.stimulus.n_star + " " + cell.stimulus.scene;
-    if (cell.setting.mean > 0) all += " at " + study::setting_name(cell.setting) + " frames/s";
-  }
-  return all;
-}
-
-/// Hidden, it says only how far the trial was from its schedule.
-std::string Console::describe(const study::TimingVerdict& verdict) const {
-  if (!(verdict.nominal.mean > 0)) return "timing: no schedule";
-  std::string line =
-      "timing " + study::verdict_name(verdict.verdict) +
-      text(", grade %c: mean %+.2f %%, late %lld, worst %.2f ms", static_cast<char>(verdict.grade),
-           100 * (verdict.realised.mean / verdict.nominal.mean - 1), static_cast<long long>(verdict.late),
-           verdict.worst_late_ms);
-  if (revealed_)
-    line += text("; realised %.2f, sd %.2f frames/s", verdict.realised.mean, verdict.realised.sd);
-  if (revealed_ && !verdict.reason.empty()) line += "; " + verdict.reason;
-  return line;
-}
-
-std::string Console::status() const {
-  const Guard guard(mutex_);
-  if (asking_ != Asking::Nothing) return prompt_ + typed_;
-  if (paused_) return "PAUSED; p goes on";
-  const Course& c = course_;
-  if (unit_done_ || c.frames < 2) return "";
-  const double shown_s = 1e-9 * static_cast<double>(c.last_shown_ns - c.first_shown_ns);
-  const double scheduled_s = 1e-9 * static_cast<double>(c.last_scheduled_ns - c.first_scheduled_ns);
-  std::string line = text("%5.1f s  rate %+.2f %%  late %lld  worst %.2f ms  ", shown_s,
-                          100 * (scheduled_s / shown_s - 1), static_cast<long long>(c.late), c.worst_late_ms);
-  if (revealed_) {
-    const double frames = static_cast<double>(c.frames - 1);
-    line += text("%.1f of %.1f frames/s  ", frames / shown_s, frames / scheduled_s);
-  }
-  return line + c.strip;
 }
 
 }  // namespace apps

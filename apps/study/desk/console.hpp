@@ -1,5 +1,5 @@
 #pragma once
-/// The experimenter's console: lines about the session that is running, and keys that steer it.
+/// The experimenter's console: how the session that is running goes, and keys that steer it.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/study/desk/console_screen.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/session/session.hpp"
 #include "libstudy/store/store.hpp"
@@ -21,7 +22,11 @@ namespace apps {
 /// KEPT" is said and the session goes on.
 class Console {
  public:
-  Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database);
+  /// Seconds since the participant's last key, button or movement of the mouse; none: not known.
+  using Idle = std::function<std::optional<double>()>;
+
+  Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database,
+          Idle idle = {});
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
@@ -30,7 +35,10 @@ class Console {
   void begins(const study::OpenUnit& unit);
   void shown(const study::FrameRecord& frame);
   void done(const study::UnitDone& unit);
+  void ends(const study::Ending& ending);
   study::Wish wish();
+  /// An alarm that stays for this session, such as what the station lacks.
+  void warn(const std::string& alarm);
   /// Whether trials were opened again that this session is already past; forgets it. If not, the session is
   /// over and keys do nothing until the next begins.
   bool take_reopened();
@@ -39,8 +47,8 @@ class Console {
   void key(char byte);
   /// Lines to be written since the last call.
   std::vector<std::string> take_lines();
-  /// What stands below them: how the trial goes, or what is being typed.
-  std::string status() const;
+  /// What the screen shows, without `said`; now_ns: of the steady clock.
+  ConsoleView view(std::int64_t now_ns) const;
 
  private:
   enum class Asking { Nothing, Note, Repeat, Exclude, End };
@@ -67,10 +75,16 @@ class Console {
   std::string describe_cells(const study::PlannedTrial& trial) const;
   std::string describe(const study::TimingVerdict& verdict) const;
   std::string left() const;
+  std::string describe_person(std::int64_t now_ns) const;
+  std::string describe_course() const;
+  std::vector<std::string> alarms(std::int64_t now_ns, double disk_mb) const;
+  bool looks(std::int64_t now_ns) const;
+  double on_page_s(std::int64_t now_ns) const;
 
   const study::Protocol& protocol_;
   study::Store& store_;
   std::filesystem::path database_;
+  Idle idle_;
 
   std::mutex acting_;         ///< while a key has its effect; taken before mutex_
   mutable std::mutex mutex_;  ///< of all that follows
@@ -84,6 +98,10 @@ class Console {
   std::string prompt_, typed_;
   std::vector<std::string> lines_;
   std::optional<Deed> deed_;  ///< to be carried out by the thread that set it
+  std::vector<std::string> warnings_;
+  std::optional<study::Ending> ending_;
+  std::vector<study::TimingVerdict> verdicts_;  ///< of last_trial_
+  std::int64_t page_since_ns_ = 0;              ///< steady clock: the step began, or its stimulus ended
 
   /// How the present stimulus goes.
   struct Course {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "libstudy/session/participant.hpp"
+
 namespace apps {
 
 namespace {
@@ -31,21 +33,22 @@ const study::Cell& cell_of(const study::Protocol& protocol, const study::Planned
   return protocol.design.cells.at(static_cast<std::size_t>(cell));
 }
 
-double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit) {
+double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person) {
   double total = 0;
   for (const study::TrialStep& step : block_of(protocol, unit).steps) {
     if (step.kind == StepKind::Black || step.kind == StepKind::Rest) total += step.seconds;
     if (step.kind == StepKind::Stimulus)
-      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s;
-    if (step.kind == StepKind::Ask) total += 5 * static_cast<double>(step.asks.size());
+      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s +
+               (unit.trial->second ? study::word_s + study::after_word_s : 0);
+    if (step.kind == StepKind::Ask && person) total += 5 * static_cast<double>(step.asks.size());
   }
   return total;
 }
 
 }  // namespace
 
-double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit) {
-  if (unit.trial) return trial_s(protocol, unit);
+double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person) {
+  if (unit.trial) return trial_s(protocol, unit, person);
   const study::Block& block = block_of(protocol, unit);
   switch (block.kind) {
     case BlockKind::Rest:
@@ -55,6 +58,7 @@ double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit) 
     case BlockKind::Stimulus:
       return block.between_groups_s;
     default: {
+      if (!person) return block.seconds;
       double total = std::max(block.seconds, reading_s(block.text));
       for (const study::Question& question : block.questions)
         total += reading_s(question.text) + answering_s(question);
@@ -63,9 +67,9 @@ double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit) 
   }
 }
 
-double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units) {
+double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units, bool person) {
   double total = 0;
-  for (const study::OpenUnit& unit : units) total += expected_s(protocol, unit);
+  for (const study::OpenUnit& unit : units) total += expected_s(protocol, unit, person);
   return total;
 }
 

@@ -1,16 +1,24 @@
 #include "apps/study/desk/terminal.hpp"
 
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 
+#include "apps/study/desk/console_text.hpp"
+
 namespace apps {
 
 namespace {
 constexpr int wait_ms = 100;
-}
+constexpr int usual_columns = 80, usual_rows = 24;  // of a terminal that does not tell
+constexpr std::int64_t whole_ns = 1'000'000'000;
+// The terminal's second screen (xterm, and all that follow it), and back to the first.
+constexpr const char* open_screen = "\033[?1049h";
+constexpr const char* close_screen = "\033[?1049l";
+}  // namespace
 
 ConsoleTerminal::ConsoleTerminal(Console& console)
     : console_(console), terminal_in_(isatty(STDIN_FILENO) == 1), terminal_out_(isatty(STDERR_FILENO) == 1) {
@@ -31,12 +39,16 @@ ConsoleTerminal::~ConsoleTerminal() {
 }
 
 void ConsoleTerminal::run() {
+  if (terminal_out_) std::fputs(open_screen, stderr);
   while (!stopping_) {
     read_keys();
     write_lines();
   }
   write_lines();
-  if (terminal_out_ && !status_.empty()) std::fputc('\n', stderr);
+  if (!terminal_out_) return;
+  std::fputs(close_screen, stderr);
+  for (const std::string& line : said_) std::fprintf(stderr, "%s\n", line.c_str());
+  std::fflush(stderr);
 }
 
 void ConsoleTerminal::read_keys() {
@@ -55,16 +67,42 @@ void ConsoleTerminal::read_keys() {
 
 void ConsoleTerminal::write_lines() {
   const auto lines = console_.take_lines();
-  const std::string status = terminal_out_ ? console_.status() : std::string();
-  if (lines.empty() && status == status_) return;
-  const char* clear = terminal_out_ ? "\r\033[K" : "";
-  for (const std::string& line : lines) {
-    std::fprintf(stderr, "%s%s\n", clear, line.c_str());
-    clear = "";
+  if (terminal_out_) {
+    said_.insert(said_.end(), lines.begin(), lines.end());
+    return draw();
   }
-  if (terminal_out_) std::fprintf(stderr, "\r\033[K%s", status.c_str());
+  for (const std::string& line : lines) std::fprintf(stderr, "%s\n", line.c_str());
+  if (!lines.empty()) std::fflush(stderr);
+}
+
+/// Writes the lines that changed; all of them each second, in case something else wrote to the terminal.
+void ConsoleTerminal::draw() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
+    size.ws_col = usual_columns;
+    size.ws_row = usual_rows;
+  }
+  const std::int64_t now_ns = steady_ns();
+  std::string out;
+  if (size.ws_col != columns_ || size.ws_row != rows_ || now_ns - drawn_whole_ns_ > whole_ns) {
+    if (size.ws_col != columns_ || size.ws_row != rows_) out = "\033[2J";
+    columns_ = size.ws_col;
+    rows_ = size.ws_row;
+    drawn_whole_ns_ = now_ns;
+    drawn_.clear();
+  }
+  ConsoleView view = console_.view(now_ns);
+  view.said = said_;
+  auto lines = render_console(view, columns_, rows_);
+  drawn_.resize(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i] != drawn_[i]) out += "\033[" + std::to_string(i + 1) + ";1H" + lines[i] + "\033[K";
+  }
+  if (out.empty()) return;
+  drawn_ = std::move(lines);
+  out += "\033[" + std::to_string(rows_) + ";1H" + drawn_.back();  // the cursor stands where one types
+  std::fputs(out.c_str(), stderr);
   std::fflush(stderr);
-  status_ = status;
 }
 
 }  // namespace apps

@@ -3,16 +3,36 @@
 
 #include <string>
 
+#include "libstudy/session/participant.hpp"
+
 namespace apps {
 
+/// A page without questions.
+struct DeskPage {
+  std::string title, text, button;
+};
+
+/// One of two; the first is the one that does no harm by mistake.
+struct DeskChoice {
+  std::string title, text, question, first, second;
+};
+
 struct DeskWords {
-  std::string go_on, confirm, rest, pause, ready;
+  std::string go_on, confirm, finish, rest, pause, ready;
+  std::string first, second;        ///< of two stimuli
+  std::string held_title, held;     ///< while the experimenter pauses
+  std::string corner, begin;        ///< how to stop: on every page, and as a sentence on the first
   std::string one_open, many_open;  ///< "%d" stands for how many
   std::string wait;                 ///< "%d" stands for seconds
   std::string range;                ///< two "%d"
   std::string optional;
   std::string digits, arrows, tab;  ///< how to answer
-  std::string stop_title, stop_text, stop_question, stop_no, stop_yes;
+  DeskChoice stop;
+  DeskPage over, refused, not_eligible, kept, deleted, goodbye;
+  DeskChoice stay_out, questionnaire, keep;
+
+  const DeskPage& page(study::Notice notice) const;
+  const DeskChoice& choice(study::Offer offer) const;
 };
 
 /// English where the language ("en", "de", "de-AT", ...) is not known.

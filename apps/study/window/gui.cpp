@@ -137,13 +137,15 @@ float draw_paragraphs(const std::string& text, ImVec2 at, float width, unsigned 
   return at.y;
 }
 
-/// Digits, title and text from y down; returns the y below them.
+/// Digits (none: nullptr), title and text from y down; returns the y below them.
 float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWords& words, float y) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float middle = screen.x / 2, column = std::min(0.86F * screen.x, 36 * gui.size_px());
-  ImGui::PushFont(font);
-  y = draw_centred(left, {middle, y}, screen.x, colour::dim) + 0.4F * gui.size_px();
-  ImGui::PopFont();
+  if (left) {
+    ImGui::PushFont(font);
+    y = draw_centred(left, {middle, y}, screen.x, colour::dim) + 0.4F * gui.size_px();
+    ImGui::PopFont();
+  }
   ImGui::PushFont(gui.title());
   y = draw_centred(words.title, {middle, y}, column, colour::dim) + 0.6F * gui.size_px();
   ImGui::PopFont();
@@ -153,23 +155,41 @@ float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWord
   return y;
 }
 
-}  // namespace
-
-void draw_countdown(const Gui& gui, const PauseWords& words, int left_s) {
+/// In the middle of the window, the digits as large as the words allow.
+void draw_on_black(const Gui& gui, const char* left, const PauseWords& words, const std::string& corner) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(screen);
   ImGui::Begin("countdown", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoInputs);
-  char left[32];
-  std::snprintf(left, sizeof left, "%d:%02d", left_s / 60, left_s % 60);
   // What is drawn below the window is measured and not seen.
   const auto height = [&](ImFont* font) {
     return draw_pause(gui, font, left, words, 2 * screen.y) - 2 * screen.y;
   };
   ImFont* const font = height(gui.huge()) < 0.94F * screen.y ? gui.huge() : gui.body();
   draw_pause(gui, font, left, words, std::max(0.03F * screen.y, (screen.y - height(font)) / 2));
+  ImGui::PushFont(gui.body());
+  draw_corner(gui, corner);
+  ImGui::PopFont();
   ImGui::End();
+}
+
+}  // namespace
+
+void draw_corner(const Gui& gui, const std::string& words) {
+  const float size = gui.size_px();
+  const ImVec2 at{0.8F * size, ImGui::GetIO().DisplaySize.y - 1.35F * size};
+  ImGui::GetWindowDrawList()->AddText(at, colour::faint, words.c_str());
+}
+
+void draw_countdown(const Gui& gui, const PauseWords& words, int left_s, const std::string& corner) {
+  char left[32];
+  std::snprintf(left, sizeof left, "%d:%02d", left_s / 60, left_s % 60);
+  draw_on_black(gui, left, words, corner);
+}
+
+void draw_words(const Gui& gui, const PauseWords& words, const std::string& corner) {
+  draw_on_black(gui, nullptr, words, corner);
 }
 
 }  // namespace apps

@@ -51,8 +51,13 @@ struct PauseWords {
   bool none() const { return title.empty() && text.empty(); }
 };
 
+/// Small words in the lower left corner of the current ImGui window.
+void draw_corner(const Gui& gui, const std::string& words);
+
 /// The words and the minutes and seconds left, in the middle of the window; small digits make room for a long
 /// text.
-void draw_countdown(const Gui& gui, const PauseWords& words, int left_s);
+void draw_countdown(const Gui& gui, const PauseWords& words, int left_s, const std::string& corner);
+/// The words alone.
+void draw_words(const Gui& gui, const PauseWords& words, const std::string& corner);
 
 }  // namespace apps

@@ -55,8 +55,7 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float size = gui_.size_px();
   column_ = std::min(0.86F * screen.x, 36 * size);
-  if (state.guarded(now_ns)) armed_ = false;
-  if (!state.guarded(now_ns) && !ImGui::IsMouseDown(0) && !ImGui::IsMouseReleased(0)) armed_ = true;
+  look_at_mouse(!state.guarded(now_ns));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(screen);
@@ -74,6 +73,20 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::PopFont();
   ImGui::PopStyleVar();
 }
+
+/// A mouse that happens to lie somewhere lights nothing, and its button counts once it was up.
+void PageView::look_at_mouse(bool counts) {
+  const ImVec2 at = ImGui::GetMousePos();
+  if (!begun_) {
+    mouse_x_ = at.x;
+    mouse_y_ = at.y;
+  }
+  pointed_ = pointed_ || at.x != mouse_x_ || at.y != mouse_y_;
+  if (!counts) armed_ = false;
+  if (counts && !ImGui::IsMouseDown(0) && !ImGui::IsMouseReleased(0)) armed_ = true;
+}
+
+bool PageView::hovered() const { return pointed_ && ImGui::IsItemHovered(); }
 
 void PageView::draw_body(PageState& state, std::int64_t now_ns) {
   const float size = gui_.size_px(), room = ImGui::GetContentRegionAvail().y;
@@ -95,15 +108,15 @@ void PageView::draw_body(PageState& state, std::int64_t now_ns) {
 
 void PageView::draw_text() {
   const float size = gui_.size_px();
-  if (!title_.empty()) {
+  if (!text_.title.empty()) {
     ImGui::PushFont(gui_.title());
-    wrapped(title_, colour::text);
+    wrapped(text_.title, colour::text);
     ImGui::PopFont();
     ImGui::Dummy({1, 0.6F * size});
   }
-  if (text_.empty()) return;
+  if (text_.text.empty()) return;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{0, 0.3F * size});
-  wrapped(text_, colour::text);
+  wrapped(text_.text, colour::text);
   ImGui::PopStyleVar();
   ImGui::Dummy({1, 0.8F * size});
 }
@@ -170,8 +183,8 @@ bool PageView::score_button(const PageState& state, std::size_t i, int score, co
   const PageItem& item = state.item(i);
   const bool chosen = item.chosen == score;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(
-      from, to, chosen ? colour::chosen : (ImGui::IsItemHovered() ? colour::hovered : colour::button), round);
+  list.AddRectFilled(from, to, chosen ? colour::chosen : (hovered() ? colour::hovered : colour::button),
+                     round);
   if (item.cursor == score && state.focus() == i)
     list.AddRect(from, to, colour::text, round, 0, std::max(2.0F, 0.09F * size));
   const float wrap = left_aligned ? width - 1.2F * size : 0;
@@ -339,12 +352,12 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   if (clicked && armed_) state.click_confirm(now_ns);
   const bool open = state.can_confirm(now_ns);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, to,
-                     !open ? colour::panel : (ImGui::IsItemHovered() ? colour::hovered : colour::button),
+  list.AddRectFilled(from, to, !open ? colour::panel : (hovered() ? colour::hovered : colour::button),
                      0.3F * size);
   if (open && (state.focus() == state.size() || state.size() == 1))
     list.AddRect(from, to, colour::text, 0.3F * size, 0, std::max(2.0F, 0.07F * size));
-  const std::string& label = state.size() == 0 ? words_.go_on : words_.confirm;
+  const std::string& usual = state.size() == 0 ? words_.go_on : words_.confirm;
+  const std::string& label = text_.button.empty() ? usual : text_.button;
   draw_centred(label, {screen.x / 2, from.y + (height - size) / 2}, width,
                open ? colour::text : colour::faint);
 
@@ -362,6 +375,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
     if (question.kind == AnswerKind::Text) how = words_.tab;
   }
   draw_centred(how, {screen.x / 2, to.y + 0.35F * size}, column_, colour::faint);
+  draw_corner(gui_, text_.corner);
 }
 
 }  // namespace apps

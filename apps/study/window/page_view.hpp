@@ -11,11 +11,18 @@
 
 namespace apps {
 
+/// What stands on a page beside its questions.
+struct PageText {
+  std::string title, text;
+  std::string button{};  ///< what the button to go on says; empty: as usual
+  std::string corner{};  ///< small, in the lower left corner
+};
+
 class PageView {
  public:
   /// layer: pages above one another have one each, so that the lower one stays scrolled as it is.
-  PageView(Gui& gui, const DeskWords& words, std::string title, std::string text, const char* layer = "body")
-      : gui_(gui), words_(words), title_(std::move(title)), text_(std::move(text)), layer_(layer) {}
+  PageView(Gui& gui, const DeskWords& words, PageText text, const char* layer = "body")
+      : gui_(gui), words_(words), text_(std::move(text)), layer_(layer) {}
 
   /// Draws into the current frame of the Gui.
   void draw(PageState& state, std::int64_t now_ns);
@@ -37,6 +44,9 @@ class PageView {
   void draw_words(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_matrix(PageState& state, std::size_t first, std::size_t end, std::int64_t now_ns);
   void draw_footer(PageState& state, std::int64_t now_ns);
+  void look_at_mouse(bool counts);
+  /// Whether the last thing drawn lies under a mouse that was put there.
+  bool hovered() const;
   void follow_focus(const PageState& state, std::size_t i, float top);
   /// A button with a score on it; true when it was clicked.
   bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
@@ -44,7 +54,7 @@ class PageView {
 
   Gui& gui_;
   const DeskWords& words_;
-  std::string title_, text_;
+  PageText text_;
   const char* layer_;
   bool begun_ = false;  ///< was drawn before
   float pinned_until_ =
@@ -53,6 +63,8 @@ class PageView {
   float height_ = 0;  ///< of the content as last drawn, px
   float scroll_lines_ = 0;
   bool armed_ = false;                    ///< the mouse button was up since input counts
+  bool pointed_ = false;                  ///< the mouse was moved since the page is there
+  float mouse_x_ = -1, mouse_y_ = -1;     ///< where it lay by then
   std::size_t seen_focus_ = 0;            ///< to which was scrolled
   std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard
   std::string edited_;                    ///< its content, with room to grow

@@ -100,6 +100,7 @@ void ParticipantWindow::poll(double wait_s) {
                       "bring it back and continue with vip-study resume");
   }
   if (window_.asked_to_close()) {
+    if (over_) throw study::Stopped();
     throw base::Error("the participant's window", "was closed; all answers given are kept",
                       "continue with vip-study resume");
   }
@@ -146,13 +147,14 @@ bool ParticipantWindow::handle_keys(PageState& state, PageView& view, std::int64
   return escape;
 }
 
-std::vector<study::TimedAnswer> ParticipantWindow::run_page(const std::string& title, const std::string& text,
+std::vector<study::TimedAnswer> ParticipantWindow::run_page(PageText text,
                                                             std::span<const study::Question> questions,
                                                             double least_s, const study::Clock& clock,
                                                             const study::Check& check) {
   const While here(in_page_);
   show_cursor(true);
-  PageView view(gui_, words_, title, text);
+  text.corner = corner();
+  PageView view(gui_, words_, std::move(text));
   // Drawn twice before it is shown: the first time measures.
   PageState unseen(questions, least_s, clock.now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen, clock.now_ns());
@@ -163,7 +165,7 @@ std::vector<study::TimedAnswer> ParticipantWindow::run_page(const std::string& t
     poll(poll_s);
     check();
     const std::int64_t now_ns = clock.now_ns();
-    if (handle_keys(state, view, now_ns)) {
+    if (handle_keys(state, view, now_ns) && !over_) {
       stop_wished_ = ask_to_stop(clock, check);
       check();
       state.leave_out(now_ns, clock.now_ns());
@@ -177,24 +179,49 @@ std::vector<study::TimedAnswer> ParticipantWindow::run_page(const std::string& t
   return state.answers();
 }
 
-bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Check& check) {
+std::optional<bool> ParticipantWindow::ask_first(const DeskChoice& choice, const char* layer,
+                                                 const study::Clock& clock, const study::Check& check) {
   study::Question question;
-  question.id = "stop";
+  question.id = "choice";
   question.kind = study::AnswerKind::Choice;
-  question.text = words_.stop_question;
-  question.anchors = {{1, words_.stop_no}, {2, words_.stop_yes}};
+  question.text = choice.question;
+  question.anchors = {{1, choice.first}, {2, choice.second}};
   const While here(in_page_);
   show_cursor(true);
-  PageView view(gui_, words_, words_.stop_title, words_.stop_text, "stop");
+  PageView view(gui_, words_, {choice.title, choice.text}, layer);
   PageState state({&question, 1}, 0, clock.now_ns());
   while (!state.confirmed()) {
     poll(poll_s);
     check();
-    if (handle_keys(state, view, clock.now_ns()) && !state.guarded(clock.now_ns())) return false;
+    if (handle_keys(state, view, clock.now_ns()) && !state.guarded(clock.now_ns())) return {};
     draw(view, state, clock.now_ns());
     glfwSwapBuffers(window_.get());
   }
-  return state.answers()[0].answer.score == 2;
+  return state.answers()[0].answer.score == 1;
+}
+
+bool ParticipantWindow::ask_to_stop(const study::Clock& clock, const study::Check& check) {
+  return !ask_first(words_.stop, "stop", clock, check).value_or(true);
+}
+
+bool ParticipantWindow::choose_first(const DeskChoice& choice, const study::Clock& clock,
+                                     const study::Check& check) {
+  std::optional<bool> first;
+  while (!first) first = ask_first(choice, "choice", clock, check);
+  show_black();
+  return *first;
+}
+
+bool ParticipantWindow::look_up(double wait_s, const study::Clock& clock, const study::Check& check) {
+  PageState none({}, 0, clock.now_ns());
+  PageView nothing(gui_, words_, {});
+  poll(wait_s);
+  check();
+  if (!handle_keys(none, nothing, clock.now_ns()) || over_) return false;
+  stop_wished_ = ask_to_stop(clock, check);
+  check();
+  show_black();
+  return true;
 }
 
 void ParticipantWindow::wait(const PauseWords& words, std::int64_t until_ns, const study::Clock& clock,
@@ -202,28 +229,41 @@ void ParticipantWindow::wait(const PauseWords& words, std::int64_t until_ns, con
   const While here(in_page_);
   show_black();
   int drawn_s = -1;
-  PageState none({}, 0, clock.now_ns());
-  PageView nothing(gui_, words_, "", "");
   for (std::int64_t now_ns = clock.now_ns(); now_ns < until_ns; now_ns = clock.now_ns()) {
     const double left_s = 1e-9 * static_cast<double>(until_ns - now_ns);
-    poll(std::min(poll_s, left_s));
-    check();
-    if (handle_keys(none, nothing, now_ns)) {
-      stop_wished_ = ask_to_stop(clock, check);
-      check();
-      show_black();
-      drawn_s = -1;
-    }
+    if (look_up(std::min(poll_s, left_s), clock, check)) drawn_s = -1;
     const int whole_s = static_cast<int>(std::ceil(left_s));
     if (words.none() || whole_s == drawn_s) continue;
     drawn_s = whole_s;
     gui_.begin(black);
-    draw_countdown(gui_, words, whole_s);
+    draw_countdown(gui_, words, whole_s, corner());
     gui_.end();
     glfwSwapBuffers(window_.get());
   }
   forget_input();
   if (drawn_s >= 0) show_black();
+}
+
+void ParticipantWindow::show_words(const PauseWords& words, const std::function<bool()>& over,
+                                   const study::Clock& clock, const study::Check& check) {
+  const While here(in_page_);
+  show_cursor(false);
+  for (bool drawn = false; !over();) {
+    if (!drawn) {
+      gui_.begin(black);
+      draw_words(gui_, words, corner());
+      gui_.end();
+      glfwSwapBuffers(window_.get());
+    }
+    drawn = !look_up(poll_s, clock, check);
+  }
+  forget_input();
+  show_black();
+}
+
+void ParticipantWindow::set_over(bool over) {
+  over_ = over;
+  stop_wished_ = false;
 }
 
 study::Wish ParticipantWindow::wait_while_minimised(const std::function<study::Wish()>& others) {

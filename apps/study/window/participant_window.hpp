@@ -30,12 +30,20 @@ class ParticipantWindow {
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
 
   /// Shows a page until it is confirmed. Esc asks whether to stop; what then follows comes through wish().
-  std::vector<study::TimedAnswer> run_page(const std::string& title, const std::string& text,
-                                           std::span<const study::Question> questions, double least_s,
-                                           const study::Clock& clock, const study::Check& check);
+  std::vector<study::TimedAnswer> run_page(PageText text, std::span<const study::Question> questions,
+                                           double least_s, const study::Clock& clock,
+                                           const study::Check& check);
+  /// Asks for one of two; true: the first.
+  bool choose_first(const DeskChoice& choice, const study::Clock& clock, const study::Check& check);
   /// Black until then, with the time left and the words when there are any.
   void wait(const PauseWords& words, std::int64_t until_ns, const study::Clock& clock,
             const study::Check& check);
+  /// The words on black, without a time, until `over` is true.
+  void show_words(const PauseWords& words, const std::function<bool()>& over, const study::Clock& clock,
+                  const study::Check& check);
+  /// From now on the session is over, or another one begins: over, Esc means nothing, and who closes the
+  /// window just leaves (study::Stopped).
+  void set_over(bool over);
   /// Black, handed over now.
   void show_black();
 
@@ -59,6 +67,12 @@ class ParticipantWindow {
   void draw(PageView& view, PageState& state, std::int64_t now_ns);
   /// True when the participant wishes to stop.
   bool ask_to_stop(const study::Clock& clock, const study::Check& check);
+  /// One of two on a page above others; none: Esc was pressed.
+  std::optional<bool> ask_first(const DeskChoice& choice, const char* layer, const study::Clock& clock,
+                                const study::Check& check);
+  /// Waits a moment; true when Esc was pressed, and answered with the wish to stop or not.
+  bool look_up(double wait_s, const study::Clock& clock, const study::Check& check);
+  std::string corner() const { return over_ ? std::string() : words_.corner; }
   void show_cursor(bool shown);
   void forget_input();
   /// Until the window is back, or others wish the end.
@@ -71,6 +85,7 @@ class ParticipantWindow {
   Gamepad gamepad_;
   bool in_page_ = false;  ///< Esc is answered there
   bool stop_wished_ = false;
+  bool over_ = false;  ///< see set_over()
   bool away_ = false;  ///< the last wish was NotShown: the window may still be minimised
 };
 

@@ -10,9 +10,13 @@ namespace apps {
 
 class WindowParticipant final : public study::Participant {
  public:
-  /// before_stimulus: called at the end of each black pause, when a stimulus may follow.
-  WindowParticipant(std::shared_ptr<ParticipantWindow> window, std::function<void()> before_stimulus)
-      : window_(std::move(window)), before_stimulus_(std::move(before_stimulus)) {}
+  /// last_block: id of the protocol's. before_stimulus: called at the end of each black pause, when a
+  /// stimulus may follow.
+  WindowParticipant(std::shared_ptr<ParticipantWindow> window, std::string last_block,
+                    std::function<void()> before_stimulus)
+      : window_(std::move(window)),
+        last_block_(std::move(last_block)),
+        before_stimulus_(std::move(before_stimulus)) {}
 
   std::optional<std::string> simulated() const override { return {}; }
   void read(const study::Block& block, double least_s, study::Clock& clock,
@@ -21,9 +25,17 @@ class WindowParticipant final : public study::Participant {
                                       const study::Occasion& occasion, study::Clock& clock,
                                       const study::Check& check) override;
   void pause(const study::Pause& pause, study::Clock& clock, const study::Check& check) override;
+  void tell(study::Notice notice, double least_s, study::Clock& clock, const study::Check& check) override;
+  bool offer(study::Offer offer, study::Clock& clock, const study::Check& check) override;
 
  private:
+  /// What stands on a page of a block: the first page of a session says how to stop, the last one that it
+  /// ends.
+  PageText page_of(const study::Block& block);
+
   std::shared_ptr<ParticipantWindow> window_;
+  std::string last_block_;
+  bool begun_ = false;  ///< a page of the session was shown
   std::function<void()> before_stimulus_;
 };
 

@@ -46,10 +46,13 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   WindowParts parts;
   WindowDisplay* const screen = display.get();  // outlives the person: see SessionSetup
   parts.screen = display->facts();
+  parts.size = {window->size().width, window->size().height};
   parts.display = std::move(display);
-  parts.person = std::make_unique<WindowParticipant>(window, [screen] { screen->find_beat(); });
+  parts.person = std::make_unique<WindowParticipant>(window, protocol.blocks.back().id,
+                                                     [screen] { screen->find_beat(); });
   parts.gaze = [window](int, int) { return window->mouse(); };
   parts.mouse = std::make_unique<WindowMouse>(window);
+  parts.idle = [window] { return window->window().idle_s(); };
   parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
   return parts;
 }

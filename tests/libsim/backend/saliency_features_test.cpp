@@ -91,6 +91,74 @@ SIM_TEST(Acuity, FallsFromOneAndNeverRises) {
   EXPECT_EQ((Acuity{Kind::Smoothstep, fovea, 1}.falloff_at(Acuity::radians(30))), 0);
 }
 
+/// A picture of 520 x 292.5 mm seen from 600 mm, drawn by a camera of 75 degrees.
+struct Desk {
+  static constexpr double half_height_mm = 146.25, distance_mm = 600, degree = 0.017453292519943295;
+  const double half_slope = std::tan(37.5 * degree);
+
+  /// Where the camera puts what is seen at this place of the picture, mm from its middle; 3 m deep.
+  Vec3 point(double x_mm, double y_mm) const {
+    const double slope_by_mm = half_slope / half_height_mm;
+    return {static_cast<float>(3 * x_mm * slope_by_mm), static_cast<float>(3 * y_mm * slope_by_mm), -3};
+  }
+  Eye eye_that_looks_at(double x_mm, double y_mm, double visual_scale) const {
+    const Vec3 to = point(x_mm, y_mm);
+    Looks looks = one_eye(view_along_z(64, 36), nullptr, {to.x, to.y, to.z});
+    looks.eyes[0].visual_scale = visual_scale;
+    SaliencyInput input;
+    input.look(looks);
+    return input.next_frame(1.0 / 60, 0.5).eye[0];
+  }
+  double scale() const { return half_height_mm / distance_mm / half_slope; }
+};
+
+SIM_TEST(Acuity, EccentricityIsTheAngleAtTheEyeWhateverTheCameras) {
+  const Desk desk;
+  // Pairs of places, mm from the middle of the picture.
+  const double places[][4] = {{0, 0, 79, 0}, {-200, 100, 200, -100}, {100, 0, 179, 20}, {250, 140, 0, 0}};
+  for (const auto& [gx, gy, x, y] : places) {
+    const Eye eye = desk.eye_that_looks_at(gx, gy, desk.scale());
+    const double d = Desk::distance_mm, along = gx * x + gy * y + d * d;
+    const double expected =
+        std::acos(along / (std::hypot(gx, gy, d) * std::hypot(x, y, d)));  // of the places, at the eye
+    EXPECT_NEAR(static_cast<double>(Acuity::eccentricity(eye, desk.point(x, y))), expected, 1e-4);
+  }
+}
+
+SIM_TEST(Acuity, TheFoveasRimLiesAtItsVisualAngle) {
+  const Desk desk;
+  const Acuity acuity{AcuityFalloff::Hyperbolic, Acuity::radians(7.5f), 1};
+  const auto e = [&](double visual_deg, double scale) {
+    const Vec3 at = desk.point(0, Desk::distance_mm * std::tan(visual_deg * Desk::degree));
+    return acuity.falloff_at(Acuity::eccentricity(desk.eye_that_looks_at(0, 0, scale), at));
+  };
+  EXPECT_EQ(e(7.4999, desk.scale()), 1);
+  EXPECT_LT(e(7.6, desk.scale()), 0.97f);
+  EXPECT_NEAR(e(7.5 + 2.3, desk.scale()), 0.5f, 1e-3f);
+  EXPECT_LT(e(7.4999, 1), 0.2f) << "in the camera's angle it lies at 22.8 degrees";
+}
+
+SIM_TEST(Acuity, TheBandAroundTheFoveaKeepsItsWidthInTheScene) {
+  const Desk desk;
+  const Acuity acuity{AcuityFalloff::Hyperbolic, Acuity::radians(1), 1};
+  for (const double scale : {1.0, desk.scale()}) {
+    const Eye eye = desk.eye_that_looks_at(0, 0, scale);
+    const double rim_m = 3 * std::tan(Desk::degree) / scale;  // from the axis, 3 m deep
+    const Vec3 outside = {static_cast<float>(rim_m + 0.1), 0, -3};
+    EXPECT_NEAR(acuity.gaze_saliency(eye, outside, 0.2f), 0.5f, 0.02f) << scale;
+    EXPECT_EQ(acuity.gaze_saliency(eye, {static_cast<float>(rim_m + 0.3), 0, -3}, 0.2f), 0) << scale;
+  }
+}
+
+SIM_TEST(Acuity, APictureThatFillsNoAngleIsRefused) {
+  SaliencyInput input;
+  for (const double bad : {0.0, -1.0, std::nan("")}) {
+    Looks looks = one_eye(view_along_z(8, 8), nullptr);
+    looks.eyes[0].visual_scale = bad;
+    EXPECT_THROW(input.look(looks), base::Error) << bad;
+  }
+}
+
 SIM_TEST(Acuity, TellsSmallAnglesApart) {
   SaliencyInput input;
   input.look(one_eye(view_along_z(8, 8), nullptr));

@@ -38,6 +38,22 @@ TEST(NewFile, ALinkWithTheNameOfAnEarlierDraftIsNotWrittenThrough) {
   EXPECT_TRUE(fs::is_symlink(guessed));
 }
 
+TEST(NewFile, MakesTheFoldersAboveItAndTakesThemAwayUnlessItIsPutInPlace) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "a" / "b" / "out";
+  EXPECT_NO_THROW(check_output(path));
+  EXPECT_EQ(entries(folder.path()), 0u) << "asking makes nothing";
+  { NewFile given_up(path); }
+  EXPECT_EQ(entries(folder.path()), 0u);
+  write_file_atomically(path, "new");
+  EXPECT_EQ(read_file(path, 10), "new");
+  { NewFile given_up(folder / "a" / "c" / "out"); }
+  EXPECT_TRUE(fs::exists(path));
+  EXPECT_FALSE(fs::exists(folder / "a" / "c"));
+  EXPECT_THROW(check_output(path / "below" / "a" / "file"), Error);
+  EXPECT_THROW(make_folder_of(path / "below" / "a" / "file"), Error);
+}
+
 TEST(NewFile, DraftsHaveNamesThatCannotBeGuessed) {
   std::set<fs::path> names;
   for (int i = 0; i < 100; ++i) names.insert(draft_name("out"));

@@ -1,0 +1,82 @@
+#include "apps/common/framing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace apps {
+
+namespace {
+
+/// Slope from the middle of a picture to its upper edge.
+double slope(double vertical_deg) { return std::tan(vertical_deg * std::numbers::pi / 360); }
+
+bool holds(const sim::View& view, const sim::Vec3d& point_m) {
+  const auto place = place_in(view, point_m);
+  return place && place->first >= 0 && place->first <= view.viewport.width && place->second >= 0 &&
+         place->second <= view.viewport.height;
+}
+
+}  // namespace
+
+std::optional<double> Framing::ratio() const {
+  if (!visual_deg) return {};
+  return *visual_deg / camera_deg;
+}
+
+double Framing::visual_scale() const { return visual_deg ? slope(*visual_deg) / slope(camera_deg) : 1; }
+
+Framing frame_picture(const sim::Camera& camera, const Viewing& viewing, int width_px, int height_px) {
+  Framing framing{camera.vertical_fov_deg, {}};
+  if (!viewing.visual_angle_deg) return framing;
+  framing.visual_deg = viewing.visual_angle_deg(width_px, height_px);
+  if (viewing.true_angle) framing.camera_deg = *framing.visual_deg;
+  return framing;
+}
+
+sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, int height_px) {
+  camera.vertical_fov_deg = frame_picture(camera, viewing, width_px, height_px).camera_deg;
+  return sim::make_view(camera, width_px, height_px);
+}
+
+std::optional<std::pair<double, double>> place_in(const sim::View& view, const sim::Vec3d& point_m) {
+  const sim::Mat4 m = sim::multiply(view.projection, view.view);
+  std::array<double, 4> clip{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    clip[row] = static_cast<double>(m[12 + row]);
+    for (std::size_t k = 0; k < 3; ++k) clip[row] += static_cast<double>(m[4 * k + row]) * point_m[k];
+  }
+  if (!(clip[3] > view.near_m)) return {};  // depth along the axis
+  return std::pair(0.5 * view.viewport.width * (clip[0] / clip[3] + 1),
+                   0.5 * view.viewport.height * (clip[1] / clip[3] + 1));
+}
+
+std::array<sim::Vec3d, 8> corners_of(const sim::VisibleBox& box) {
+  std::array<sim::Vec3d, 8> out;
+  for (std::size_t i = 0; i < 8; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) out[i][k] = (i >> k & 1) ? box.max_m[k] : box.min_m[k];
+  }
+  return out;
+}
+
+std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view) {
+  std::vector<std::string> out;
+  for (const auto& box : scene.visible) {
+    const auto corners = corners_of(box);
+    // The box and the view are convex: its corners speak for it.
+    if (!std::all_of(corners.begin(), corners.end(), [&](const auto& corner) { return holds(view, corner); }))
+      out.push_back(box.name);
+  }
+  return out;
+}
+
+Rectangle fit_picture(int width, int height, int into_width, int into_height) {
+  const double scale = std::min(double(into_width) / width, double(into_height) / height);
+  const int w = static_cast<int>(std::lround(width * scale));
+  const int h = static_cast<int>(std::lround(height * scale));
+  const int x = (into_width - w) / 2, y = (into_height - h) / 2;
+  return {x, y, x + w, y + h};
+}
+
+}  // namespace apps

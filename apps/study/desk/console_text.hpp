@@ -1,0 +1,40 @@
+#pragma once
+/// Small parts of the console's lines.
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+template <class... Values>
+std::string text(const char* pattern, Values... values) {
+  char out[300];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  std::snprintf(out, sizeof out, pattern, values...);
+#pragma GCC diagnostic pop
+  return out;
+}
+
+/// "14:03:05" in UTC.
+inline std::string clock_time() { return base::utc_now().substr(11, 8); }
+
+inline std::int64_t steady_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Megabytes free beside a database; below 0: not known.
+inline double free_mb(const std::filesystem::path& database) {
+  std::error_code error;
+  const auto space = std::filesystem::space(std::filesystem::absolute(database).parent_path(), error);
+  return error ? -1 : 1e-6 * static_cast<double>(space.available);
+}
+
+}  // namespace apps

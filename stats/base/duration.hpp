@@ -1,0 +1,11 @@
+#pragma once
+/// Lengths of time as people say them.
+
+#include <string>
+
+namespace base {
+
+/// "40 s" below 90 s, "12 min" below two hours, else "3.5 h". Seconds, 0 or more.
+std::string duration_words(double seconds);
+
+}  // namespace base

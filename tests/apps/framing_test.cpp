@@ -1,0 +1,156 @@
+/// What a picture shows of a scene, and how large the eye sees it.
+#include "apps/common/framing.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+sim::Scene shipped(const char* name) {
+  return sim::read_scene(base::resource(std::string("data/scenes/") + name + ".toml"));
+}
+
+Viewing seen_at(double angle_deg, bool true_angle) {
+  Viewing viewing;
+  viewing.visual_angle_deg = [=](int, int) { return angle_deg; };
+  viewing.true_angle = true_angle;
+  return viewing;
+}
+
+TEST(Framing, TheCameraKeepsTheScenesAngleUnlessTheTrueOneIsAsked) {
+  sim::Camera camera;
+  camera.vertical_fov_deg = 75;
+  const Framing unknown = frame_picture(camera, {}, 160, 90);
+  EXPECT_EQ(unknown.camera_deg, 75);
+  EXPECT_FALSE(unknown.visual_deg);
+  EXPECT_FALSE(unknown.ratio());
+  EXPECT_EQ(unknown.visual_scale(), 1);
+
+  const Framing known = frame_picture(camera, seen_at(27, false), 160, 90);
+  EXPECT_EQ(known.camera_deg, 75);
+  EXPECT_EQ(known.visual_deg, 27);
+  EXPECT_DOUBLE_EQ(*known.ratio(), 27.0 / 75);
+  const double half_degree = std::acos(-1.0) / 360;
+  EXPECT_NEAR(known.visual_scale(), std::tan(27 * half_degree) / std::tan(75 * half_degree), 1e-12);
+
+  const Framing asked = frame_picture(camera, seen_at(27, true), 160, 90);
+  EXPECT_EQ(asked.camera_deg, 27);
+  EXPECT_EQ(*asked.ratio(), 1);
+  EXPECT_EQ(asked.visual_scale(), 1);
+}
+
+TEST(Framing, PointsLieWhereTheCameraDrawsThem) {
+  sim::Camera camera;
+  camera.eye_m = {0, 0, 0};
+  camera.target_m = {0, 0, -1};
+  camera.vertical_fov_deg = 90;
+  const sim::View view = sim::make_view(camera, 200, 100);
+  const auto place = place_in(view, {1, 0.5, -2});
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->first, 125, 1e-4);
+  EXPECT_NEAR(place->second, 62.5, 1e-4);
+  EXPECT_FALSE(place_in(view, {0, 0, 1})) << "behind the eye";
+}
+
+TEST(Framing, APictureKeepsItsShapeInTheMiddle) {
+  const Rectangle to = fit_picture(1280, 720, 1000, 1000);
+  EXPECT_EQ(to.x0, 0);
+  EXPECT_EQ(to.x1, 1000);
+  EXPECT_EQ(to.y1 - to.y0, 563);
+  EXPECT_EQ(to.y0, 218);
+}
+
+/// Small balls over the surface of a box.
+std::vector<sim::RenderParticle> particles_on(const sim::VisibleBox& box) {
+  constexpr int steps = 24;
+  std::vector<sim::RenderParticle> out;
+  const auto at = [&](std::size_t k, int i) {
+    return static_cast<float>(box.min_m[k] + (box.max_m[k] - box.min_m[k]) * i / steps);
+  };
+  for (int x = 0; x <= steps; ++x) {
+    for (int y = 0; y <= steps; ++y) {
+      for (int z = 0; z <= steps; ++z) {
+        const bool on_surface = x % steps == 0 || y % steps == 0 || z % steps == 0;
+        if (on_surface) out.push_back({at(0, x), at(1, y), at(2, z), 0.05f});
+      }
+    }
+  }
+  return out;
+}
+
+class FramingGl : public ::testing::Test {
+ protected:
+  struct Seen {
+    bool any = false, edge = false;  ///< of the picture's pixels that show fluid
+  };
+  /// What is declared visible, drawn as balls.
+  Seen draw(const sim::Scene& scene, const sim::View& view) {
+    sim::RenderOptions options;
+    options.clip_to_tank = false;
+    sim::FluidRenderer renderer(scene, options);
+    const int width = view.viewport.width, height = view.viewport.height;
+    const sim::Offscreen target(width, height);
+    sim::ParticleBuffer buffer;
+    Seen seen;
+    for (const auto& box : scene.visible) {
+      buffer.upload(particles_on(box));
+      renderer.draw(buffer, {&view, 1}, target.framebuffer());
+      const auto depth = renderer.read_depth();
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          if (!std::isfinite(depth[static_cast<std::size_t>(y * width + x)])) continue;
+          seen.any = true;
+          seen.edge |= x == 0 || y == 0 || x == width - 1 || y == height - 1;
+        }
+      }
+    }
+    return seen;
+  }
+
+  sim::GlContext context = sim::GlContext::make_headless();
+};
+
+struct Shape {
+  int width, height;
+};
+constexpr Shape wide{320, 180}, old{240, 180}, ultra_wide{420, 180};
+
+TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
+  for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
+    const sim::Scene scene = shipped(name);
+    ASSERT_FALSE(scene.visible.empty()) << name;
+    for (const Shape& shape : {wide, old, ultra_wide}) {
+      const sim::View view = framed_view(scene.view, seen_at(27, false), shape.width, shape.height);
+      const Seen seen = draw(scene, view);
+      EXPECT_TRUE(seen.any) << name;
+      EXPECT_FALSE(seen.edge) << name << " " << shape.width;
+      EXPECT_THAT(cut_off(scene, view), IsEmpty()) << name << " " << shape.width;
+    }
+  }
+}
+
+/// 520 mm seen from 600 mm, 16:9: what the README's flags once made of the camera.
+TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
+  for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
+    const sim::Scene scene = shipped(name);
+    const sim::View view = framed_view(scene.view, seen_at(27.4, true), wide.width, wide.height);
+    const Seen seen = draw(scene, view);
+    EXPECT_TRUE(!seen.any || seen.edge) << name;
+    EXPECT_THAT(cut_off(scene, view), ElementsAre(scene.visible.front().name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace apps
