@@ -127,7 +127,7 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
 
 ConsoleView Console::view(std::int64_t now_ns) const {
   const double disk_mb = free_mb(database_);  // a slow disk must not hold up frames, which wait for mutex_
-  const Guard guard(mutex_);
+  const std::lock_guard<std::mutex> guard(mutex_);
   ConsoleView view;
   view.clock = clock_time();
   view.title = protocol_.name + " " + protocol_.version;
