@@ -16,7 +16,9 @@ if(VIP_NATIVE)
   target_compile_options(vip_flags INTERFACE $<${_cxx}:-march=native>)
 endif()
 if(VIP_SANITIZE)
-  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=${VIP_SANITIZE}> $<${_cxx}:-fno-omit-frame-pointer>)
+  target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=${VIP_SANITIZE}> $<${_cxx}:-fno-omit-frame-pointer>
+                         # What is found ends the test, undefined behaviour too.
+                         $<${_cxx}:-fno-sanitize-recover=all>)
   target_link_options(vip_flags INTERFACE -fsanitize=${VIP_SANITIZE})
 endif()
 

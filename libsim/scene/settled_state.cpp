@@ -79,7 +79,7 @@ std::optional<std::vector<ParticleState>> read_settled(const fs::path& folder, c
   try {
     if (folder.empty() || !fs::exists(path)) return {};
     const std::string bytes = base::read_file(path, most_bytes);
-    if (bytes.size() < digest_size || (bytes.size() - digest_size) % sizeof(ParticleState) != 0) return {};
+    if (bytes.size() <= digest_size || (bytes.size() - digest_size) % sizeof(ParticleState) != 0) return {};
     const std::string_view body = std::string_view(bytes).substr(digest_size);
     if (base::sha256_hex(body) != bytes.substr(0, digest_size)) return {};
     std::vector<ParticleState> out(body.size() / sizeof(ParticleState));

@@ -25,9 +25,11 @@ class OutputOptionsE2e : public ::testing::Test {
   OutputOptionsE2e() {
     base::write_file_atomically(folder_ / "file", "mine");
     fs::create_symlink("/dev/full", folder_ / "full");
-    for (const char* protocol : {"protocols/ptpe_pilot.toml", "protocols/task2.toml"}) {
-      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", "random",
-                                   "--participants", "2"})
+    // People of whom a fit can be made.
+    for (const auto& [protocol, observer] : {std::pair{"protocols/ptpe_pilot.toml", "ptpe:a=24,b=0.02"},
+                                             std::pair{"protocols/task2.toml", "random"}}) {
+      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", observer,
+                                   "--participants", "6", "--seed", "7"})
                               .wait();
       EXPECT_EQ(ended.exit_code, 0) << ended.err;
     }

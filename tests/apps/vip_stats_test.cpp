@@ -124,7 +124,8 @@ TEST(VipStatsE2e, ReportsAllThreeEstimators) {
   EXPECT_EQ(json.at("bands").size(), 2u * 21);
   EXPECT_EQ(json.at("bands")[0].at("ci"), json.at("a_ci"));
   EXPECT_TRUE(json.at("lack_of_fit").at("p").is_number());
-  for (const char* words : {"direct", "contour (the paper's)", "ordinal mixed", "lack of fit", "mu(20)"})
+  for (const char* words :
+       {"direct", "contour (the paper's)", "ordinal mixed", "shape of the scores", "mu(20)"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << outcome.out;
 }
 

@@ -54,9 +54,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   fuzz::attempt([&] {
     const auto bundle = apps::report::read_bundle(frozen.path);
-    const Json results{
-        {"study", {{"protocols", Json::array({{{"task", "task2"}, {"sha256", frozen.protocol}}})}}},
-        {"hypotheses", Json::array()}};
+    const Json results{{"study",
+                        {{"protocols", Json::array({{{"task", "task2"},
+                                                     {"title", "Task 2"},
+                                                     {"sha256", frozen.protocol},
+                                                     {"first_answer_utc", "2026-01-31T12:00:00Z"}}})}}},
+                       {"hypotheses", Json::array()}};
     apps::report::compare_with_bundle(bundle, {}, results);
   });
   return 0;

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 
+#include "stats/base/file.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -124,6 +125,12 @@ TEST_F(SettledState, StateThatIsNotFiniteOrOfOtherParticlesIsSettledAgain) {
     EXPECT_TRUE(same(first, after_five_frames()));
     EXPECT_EQ(settled_frames_, before + 10);
   }
+}
+
+TEST_F(SettledState, StateOfNoParticlesIsNone) {
+  fs::create_directories(folder_);
+  base::write_file_atomically(folder_ / "empty.settled", base::sha256_hex(""));
+  EXPECT_FALSE(sim::read_settled(folder_, "empty"));
 }
 
 TEST_F(SettledState, FolderThatCannotBeWrittenIsNoError) {

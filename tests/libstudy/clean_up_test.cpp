@@ -79,7 +79,7 @@ void withdraw_and_stop(const fs::path& path, const std::string& code) {
   const std::string person = database->text("SELECT person FROM session WHERE participant = '" + code + "'");
   prepare_rewrite(*database, {person});
   Transaction transaction(*database);
-  bury(*database, person, 3);
+  bury(*database, person, static_cast<std::int64_t>(read_schema_steps().size()));
   ChorePlan plan(*database);
   plan.forget(person, code);
   plan.rewrite();

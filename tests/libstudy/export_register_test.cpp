@@ -247,7 +247,8 @@ TEST_F(Exports, FoldersMadeForFilesGoWhenNothingIsLeftInThem) {
 TEST_F(Exports, ThatFailWriteNothingIntoTheRegister) {
   EXPECT_THAT([&] { RegisteredFiles(path).write("vip-stats report", "/dev/full", "{}"); },
               ThrowsMessage<base::Error>(HasSubstr("/dev/full")));
-  EXPECT_THROW(RegisteredFiles(path).write("vip-stats report", folder / "none" / "a.json", "{}"),
+  base::write_file_atomically(folder / "file", "");
+  EXPECT_THROW(RegisteredFiles(path).write("vip-stats report", folder / "file" / "a.json", "{}"),
                base::Error);
   EXPECT_EQ(count("export"), 0);
 }

@@ -33,7 +33,10 @@ std::vector<test::SoundText> sound_protocols() {
     std::sort(files.begin(), files.end());
     for (const auto& file : files) {
       test::SoundText text{file.filename().string(), base::read_file(file, 1 << 20)};
-      // The one key that no file needs.
+      // Keys that no file needs.
+      const std::string format = "format = 2\n";
+      if (const auto at = text.bytes.find(format); at != std::string::npos)
+        text.bytes.insert(at + format.size(), "camera_angle = \"true\"\n");
       const std::string stimulus = "kind = \"stimulus\"\n";
       if (const auto at = text.bytes.find(stimulus); at != std::string::npos)
         text.bytes.insert(at + stimulus.size(), "on_interruption = \"invalidate\"\n");

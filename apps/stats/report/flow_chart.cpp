@@ -65,7 +65,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
       "those who left in between, with the reason, and what is counted apart.";
   const std::vector<std::pair<std::vector<Entry>, std::vector<Entry>>> steps{
       {{{"sessions started", flow["started"]}},
-       those_with_some({{"did not consent", flow["refused"]},
+       those_with_some({{"did not consent", flow["no_consent"]},
                         {"not eligible", flow["not_eligible"]},
                         {"stopped early", flow["stopped"]},
                         {"did not come back", flow["dropped_out"]},

@@ -151,7 +151,7 @@ Json flow_json(const TaskFlow& flow) {
     return found == flow.by_state.end() ? 0 : found->second;
   };
   return {{"started", flow.started},
-          {"refused", in_state("refused")},
+          {"no_consent", in_state("refused")},
           {"not_eligible", in_state("not eligible")},
           {"stopped", in_state("stopped")},
           {"dropped_out", in_state("dropped out")},

@@ -306,10 +306,11 @@ TEST(BakeFile, ExistingFileStaysUnlessOverwritten) {
   EXPECT_EQ(sim::BakeReader(folder / "a.bake").header().frame_count, 2);
 }
 
-TEST(BakeFile, FolderThatIsMissingIsNamed) {
+TEST(BakeFile, PlaceThatCannotBeIsNamed) {
   const Folder folder;
+  bake_test::write(folder / "no", 1);
   EXPECT_THAT(error_of([&] { const sim::BakeWriter w(folder / "no/a.bake", bake_test::header(1)); }),
-              AllOf(HasSubstr("no/a.bake"), HasSubstr("cannot be created")));
+              HasSubstr(folder / "no"));
   EXPECT_THAT(error_of([&] { const sim::BakeReader r(folder / "a.bake"); }), HasSubstr("cannot be read"));
 }
 

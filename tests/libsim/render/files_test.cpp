@@ -64,7 +64,7 @@ TEST_F(RenderFiles, DamagedPngIsNamed) {
 TEST_F(RenderFiles, PngThatCannotBeWrittenLeavesTheOldOne) {
   sim::write_png(folder / "a.png", gradient());
   EXPECT_THROW(sim::write_png(folder / "a.png", sim::Image{}), base::Error);
-  EXPECT_THROW(sim::write_png(folder / "no/a.png", gradient()), base::Error);
+  EXPECT_THROW(sim::write_png(folder / "a.png" / "b.png", gradient()), base::Error);
   EXPECT_EQ(sim::read_png(folder / "a.png").rgba, gradient().rgba);
 }
 
