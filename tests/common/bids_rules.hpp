@@ -175,7 +175,8 @@ class BidsRules {
     for (std::size_t i = 0; i < first.size(); ++i) {
       require(json["Columns"].size() > i && json["Columns"][i] == first[i], name,
               first[i] + " comes in place");
-      require(json.value(first[i], Json::object()).value("Units", "") != "", name, first[i] + " has Units");
+      const Json units = json.value(first[i], Json::object()).value("Units", Json());
+      require(units.is_string() && units != "", name, first[i] + " has Units");
     }
     require(one_of(json.value("RecordedEye", Json()), {"left", "right", "cyclopean"}), name, "RecordedEye");
     require(one_of(json.value("SampleCoordinateSystem", Json()),

@@ -72,7 +72,7 @@ std::string timing_section(const Field& root) {
     Table table(std::string("Timing certificate, ") + title,
                 {"Scene", "n*", "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass", "Degraded",
                  "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)", "Longest (ms)",
-                 "Late frames", "Solved (%)", "Tau (frames/s)"});
+                 "Late frames", "Solved", "Tau (frames/s)"});
     for (const Field& c : timing.entries()) {
       if (c["task"].words() != key) continue;
       table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
