@@ -49,7 +49,7 @@ until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms a
 }
 # The next page, and a picture of it; what comes in its first 300 ms counts for nothing.
 page() { sleep 0.6; shoot "${code}_$1"; }
-welcome() { until_begins instructions; [ "${1:-}" = "" ] || shoot "${code}_welcome"; sleep 3; key Return; }
+welcome() { until_begins instructions; sleep 3; key Return; }
 agree() { until_begins consent; key 1 Return; }
 to_practice() {
   welcome; agree
@@ -60,8 +60,11 @@ to_practice() {
 
 # The mouse lies where "yes" comes to stand: it is not lit. A key hit by mistake is taken back; then the refusal is meant.
 begin P01
-welcome shown
+until_begins instructions
+shoot P01_welcome
 xdotool mousemove $((width * 30 / 100)) $((height * 513 / 1000))
+sleep 3
+key Return
 until_begins consent
 shoot P01_consent
 expect "P01: a mouse that lies on yes does not light it" "70 71 75" "$(pixel $((width * 30 / 100)) $((height * 513 / 1000)))"
