@@ -24,8 +24,8 @@ class FeatureSource {
   virtual PictureFeatures of(const StimulusSpec& stimulus) = 0;
 };
 
-/// Cells without pictures, from a table (feature_table.cpp says where it comes from): the three scenes at n_* =
-/// 16k and 32k; other sizes have those of 16k. base::Error for a scene or a method that stands in no row.
+/// Cells without pictures, from a table (feature_table.cpp says where it comes from): the three scenes at n_*
+/// = 16k and 32k; other sizes have those of 16k. base::Error for a scene or a method that stands in no row.
 class FeatureTable final : public FeatureSource {
  public:
   PictureFeatures of(const StimulusSpec& stimulus) override;

@@ -110,8 +110,8 @@ void splits_are_calm(Backend backend) {
       EXPECT_GT(events.splits, 0u);
       EXPECT_LT(densest, radius > 100 ? 1.25 : 1.15);
       EXPECT_LT(gain, 0.01);
-      // S4 asks for 0.5 sqrt(g d_*) = 0.61 m/s in a frame; one particle keeps it. A few give up to 1.1 m/s, as
-      // merges beside them push too, and the whole tank 2.1: what the parting leaves is still pushed.
+      // S4 asks for 0.5 sqrt(g d_*) = 0.61 m/s in a frame; one particle keeps it. A few give up to 1.1 m/s,
+      // as merges beside them push too, and the whole tank 2.1: what the parting leaves is still pushed.
       const double most = radius > 100 ? 2.4 : radius > 2 * d ? 1.6 : 0.61;
       EXPECT_LT(kick, most);
       expect_sound(*fluid, static_cast<std::int64_t>(start.size()), 8 * Settled::n_star);

@@ -295,9 +295,8 @@ TEST(Session, AfterAStopBetweenTwoQuestionsOnlyTheSecondIsAsked) {
   EXPECT_THROW(one.run(hooks), Stopped);
   one.person.seen.clear();
   one.run();
-  EXPECT_THAT(
-      std::vector<std::string>(one.person.seen.begin(), one.person.seen.begin() + 7),
-      ElementsAre("first 1", "black 0.5", "black 1", "second 1", "black 0.5", "rest 9", "ask ease"));
+  EXPECT_THAT(std::vector<std::string>(one.person.seen.begin(), one.person.seen.begin() + 7),
+              ElementsAre("first 1", "black 0.5", "black 1", "second 1", "black 0.5", "rest 9", "ask ease"));
   EXPECT_EQ(one.count("response JOIN question USING (question_id) WHERE code = 'preference'"), 4);
 }
 

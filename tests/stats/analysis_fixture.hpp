@@ -38,18 +38,20 @@ inline ScoreTable normal_table(const std::vector<double>& means, double particip
     const double level = participant_sd * normal(generator);
     for (int block = 0; block < 2; ++block) {
       for (int m = 0; m < static_cast<int>(means.size()); ++m)
-        scores.push_back({p, block, block, m, means[static_cast<std::size_t>(m)] + level + noise * normal(generator)});
+        scores.push_back(
+            {p, block, block, m, means[static_cast<std::size_t>(m)] + level + noise * normal(generator)});
     }
   }
   return {std::move(scale), scores, n, n_stars, methods};
 }
 
-/// n answers to one pair, the first k of them for a; every answer of another participant, a first in every other.
+/// n answers to one pair, the first k of them for a; every answer of another participant, a first in every
+/// other.
 inline void add_pair(std::vector<PairChoice>& choices, int a, int b, int k, int n) {
   for (int i = 0; i < n; ++i) {
     const bool a_first = i % 2 == 0, a_chosen = i < k;
-    choices.push_back({i, 0, a_first ? a : b, a_first ? b : a, a_first == a_chosen,
-                       static_cast<int>(choices.size()) % 10});
+    choices.push_back(
+        {i, 0, a_first ? a : b, a_first ? b : a, a_first == a_chosen, static_cast<int>(choices.size()) % 10});
   }
 }
 

@@ -104,8 +104,7 @@ World task1_world(const PowerRequest& request, const ShownFactors& factors, cons
           "Ours, Ours-TSp and HiRes alike, FovFluid worse by " + figure(d * request.sd_realism) +
               " on realism and " + figure(d * request.sd_sickness) + " on cybersickness (" + figure(d) +
               " standard deviations of the differences): all of H1, H2, H3 are true",
-          {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism,
-                      d * request.sd_sickness)}};
+          {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism, d * request.sd_sickness)}};
 }
 
 /// The same preference for the better of any two methods.

@@ -31,8 +31,8 @@ std::string format_certificate(const std::vector<study::CertificateRow>& rows, s
                                bool coloured) {
   char head[160];
   std::snprintf(head, sizeof head, "%6s %6s %7s %8s %7s %8s %7s %7s %8s %5s %9s %5s %s\n", "mu", "delta",
-                "trials", "mu real", "worst", "d real", "worst", "late", "worst ms", "pass", "degraded", "fail",
-                "grade");
+                "trials", "mu real", "worst", "d real", "worst", "late", "worst ms", "pass", "degraded",
+                "fail", "grade");
   std::string text = std::string("Timing certificate (") +
                      (mean == study::FpsMean::Harmonic ? "harmonic" : "arithmetic") +
                      " mean, frames/s; worst = largest distance of one trial)\n" + head;
