@@ -121,7 +121,9 @@ begin P04
 to_practice
 until_begins practice
 printf p >&3
-sleep 4
+until [ "$(ask "select count(*) from presentation join trial using (trial_id) join session using (session_id)
+  where participant = 'P04' and presentation.state = 'played'")" = 1 ]; do sleep 0.1; done
+sleep 1
 for k in 5 Return 1 Return Return; do key "$k"; done
 page paused
 printf p >&3
