@@ -147,6 +147,7 @@ void run(RunCommand& command) {
   const auto ptpe = read_ptpe(command.ptpe);
   SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
+  open_mirror(command.play, setup);
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
@@ -175,6 +176,9 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
                    "Experimenter's console in this terminal: plan, timing and keys to steer the session");
   command.add_flag("--events", options.events,
                    "Print a line for each step of a session once it is safe, without answers");
+  command.add_flag("--mirror", options.mirror,
+                   "Show the experimenter what the participant sees, in a second window on another monitor; "
+                   "this unblinds and is logged");
 }
 
 void add_run_command(CLI::App& app) {

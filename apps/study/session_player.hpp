@@ -36,7 +36,11 @@ struct PlayOptions {
   std::int64_t max_pages = 0;  ///< 0 = no limit
   bool console = false;        ///< the experimenter's, in the terminal
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
+  bool mirror = false;         ///< the experimenter sees the participant's view in a second window
 };
+
+/// Opens the mirror where it is asked for. base::Error when there is no window, or no room for a second one.
+void open_mirror(const PlayOptions& options, const SessionSetup& setup);
 
 /// How a person's sessions ended, of several the last of these that fits one; those of observers are Done.
 enum class RunEnd {

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "libstudy/store/ratings.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libstudy/session_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 
 namespace study {
 namespace {
@@ -101,8 +101,8 @@ TEST(LateFrames, OneFrameLateByTwoMillisecondsDegradesTheTrial) {
   EXPECT_NEAR(row.mean, 50, 1e-9);
   const double slow = 1 / 0.022 - 50, fast = 1 / 0.018 - 50;
   EXPECT_NEAR(row.sd, std::sqrt((slow * slow + fast * fast) / 500 - std::pow((slow + fast) / 500, 2)), 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("1 late frame, the worst by 2 ms"));
+  const auto trials = test::trials_of(folder / "study.db");
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr("1 late frame, the worst by 2 ms"));
 }
 
 TEST(LateFrames, SustainedLoadFailsTheTrial) {
@@ -114,8 +114,8 @@ TEST(LateFrames, SustainedLoadFailsTheTrial) {
   EXPECT_NEAR(row.worst_late_ms, 25 * 500 - 20 * 499, 1e-6);
   EXPECT_NEAR(row.mean, 500 / (499 * 0.025 + 0.020), 1e-9);
   EXPECT_NEAR(row.sd, 10 * std::sqrt(499.0) / 500, 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
+  const auto trials = test::trials_of(folder / "study.db");
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
 }
 
 TEST(LateFrames, ACellCountsEachVerdict) {

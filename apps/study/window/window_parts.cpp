@@ -53,6 +53,7 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   parts.gaze = [window](int, int) { return window->mouse(); };
   parts.mouse = std::make_unique<WindowMouse>(window);
   parts.idle = [window] { return window->window().idle_s(); };
+  parts.open_mirror = [window] { window->open_mirror(); };
   parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
   return parts;
 }
