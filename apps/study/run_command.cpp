@@ -186,6 +186,7 @@ void add_run_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand("run", "Run a protocol and keep everything in a database");
   sub.add_option("protocol", command->protocol, "Protocol file")->required();
   add_play_options(sub, command->play);
+  sub.get_option("--db")->check(output_file());
   auto* count = sub.add_option("--participants", command->participants,
                                "Run P01, P02, ... (default: as many as the protocol plans)");
   count->check(CLI::Range(1, 9999));
