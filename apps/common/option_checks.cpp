@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
 

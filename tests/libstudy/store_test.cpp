@@ -214,7 +214,7 @@ TEST(Store, TrialsHoldWhatWasShownAndAnswered) {
   EXPECT_FALSE(rows[1].score());
   EXPECT_FALSE(rows[1].trial.first.played);
   EXPECT_FALSE(rows[1].trial.first.verdict);
-  const sqlite::Connection look(folder / "study.db", Open::Read);
+  sqlite::Connection look(folder / "study.db", Open::Read);
   EXPECT_EQ(look.text("SELECT lag1 FROM presentation"), "-0.125");
 }
 

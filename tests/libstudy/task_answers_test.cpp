@@ -288,7 +288,17 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   EXPECT_EQ(trials[0].first.nominal.sd, 5);
   EXPECT_EQ(trials[0].answers.at(0).score, 5);
   EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
-  EXPECT_EQ(study.protocols[0].sessions[0].angles, "not known");
+}
+
+// A later version knows no angles of what an earlier one drew, before the upgrade and after it.
+TEST(TaskAnswers, AnEarlierVersionsAnglesAreNotKnown) {
+  const test::TemporaryFolder folder;
+  test::write_version_1(folder / "old.db");
+  sqlite::Connection(folder / "old.db", Open::Write).execute("UPDATE session SET display = 'headless'");
+  const auto angles = [&] { return read_tasks(folder / "old.db").protocols.at(0).sessions.at(0).angles; };
+  EXPECT_EQ(angles(), "not known");
+  Store(folder / "old.db", Open::Write);
+  EXPECT_EQ(angles(), "not known");
 }
 
 }  // namespace
