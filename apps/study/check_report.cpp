@@ -49,7 +49,7 @@ double longest_ms(const RefreshCheck& check, std::size_t setting) {
 /// Of all showings: they are equally long.
 double overrun_s(const study::Protocol& protocol) {
   const double duration_s = protocol.design.cells.front().setting.duration_s;
-  return 1e-9 * static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns);
+  return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
 }
 
 void print_session(const CheckReport& report) {

@@ -126,7 +126,7 @@ TEST(Measure, GoesOnForTheCellsThatAreStillReached) {
   const StepTimes times = measured(protocol, stage);
   EXPECT_EQ(times.compute_s.size(), 100u);
   for (const MeasuredCell& cell : judged(protocol, times).cells)
-    EXPECT_EQ(cell.too_slow, cell.setting.mean > 10 || cell.setting.sd > 0)
+    EXPECT_EQ(cell.too_slow, cell.setting.mean > 10)
         << study::setting_name(cell.setting) << ": " << cell.words;
 }
 
@@ -183,15 +183,15 @@ TEST(Rehearsal, AFastMachinePlaysTheScheduleAndAShowingLastsAsPlanned) {
 
 TEST(Rehearsal, ASlowMachineIsCutAsASessionWouldBe) {
   const auto protocol = study::test::pilot();
-  const auto report = judged(protocol, steps_of(0.9, 0.1));
+  const auto report = judged(protocol, steps_of(0.65, 0.1));
   for (const MeasuredCell& cell : report.cells) {
     EXPECT_TRUE(cell.too_slow);
-    EXPECT_THAT(cell.words, StartsWith("too slow live: 1 frames/s where "));
-    EXPECT_NEAR(cell.showing_s, 21, 0.02) << "10 s, as much again, and the frame that came after it";
+    EXPECT_THAT(cell.words, StartsWith("too slow live: 1.33 frames/s where "));
+    EXPECT_NEAR(cell.showing_s, 20.25, 0.02) << "10 s, as much again, and what the next frame took";
   }
   const auto times = showing_times(protocol, report);
   EXPECT_EQ(times.size(), protocol.design.cells.size());
-  EXPECT_NEAR(times.front(), 21, 0.02);
+  EXPECT_NEAR(times.front(), 20.25, 0.02);
   EXPECT_EQ(showing_times(protocol, {}).front(), 10) << "nothing was measured";
 }
 

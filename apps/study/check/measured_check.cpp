@@ -51,7 +51,7 @@ void judge_rate(MeasuredCell& out, const study::Protocol& protocol, double alone
 /// What the trial's own rules say of it.
 void judge_showing(MeasuredCell& out, const study::Protocol& protocol, const study::PlayedTrial& played,
                    double refresh_hz) {
-  if (out.too_slow || out.setting.mean == 0) return;
+  if (out.too_slow) return;
   const auto verdict = study::judge_trial(out.setting, study::for_display(protocol.pacing, refresh_hz),
                                           played, protocol.timing, study::TimingGrade::CpuSubmit);
   out.too_slow = verdict.verdict == study::Verdict::Fail;
@@ -78,7 +78,7 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
   std::sort(sorted.begin(), sorted.end());
   out.p95_ms = 1000 * sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
   judge_rate(out, protocol, stats::fps_moments(rehearsal.frame_s).mean);
-  judge_showing(out, protocol, rehearsal.played, refresh_hz);
+  if (!intervals_ns.empty()) judge_showing(out, protocol, rehearsal.played, refresh_hz);
   return out;
 }
 

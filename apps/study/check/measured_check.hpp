@@ -36,7 +36,8 @@ struct MeasuredReport {
 using IntervalsOf = std::function<std::vector<std::int64_t>(const study::FpsSetting&)>;
 
 /// refresh_hz: of the display; 0: frames come as they are ready. Under a schedule a cell is too slow when its
-/// mean time exceeds the mean interval, or when its rehearsal fails by the protocol's bounds; under
+/// mean time exceeds the mean interval, or when its rehearsal fails by the protocol's bounds (not asked where
+/// there is no schedule); under
 /// TimingSource::Native when its rate stays below fps_min. The conditions collapse under Native when the
 /// methods of every group all reach the refresh, or when no method with temporal acceleration ever has tau
 /// below zero.
