@@ -82,6 +82,8 @@ class LiveFluid final : public study::Stimulus {
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
+  /// The simulation at the prepared step; there is one from the first start() or prepare() on.
+  sim::Simulation& simulation() { return *simulation_; }
   /// Whether the method looks at the picture of the last frame, so that every one must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
@@ -117,15 +119,17 @@ struct StimulusChoice {
   /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
   std::optional<sim::FrameRate> fixed_rate;
   stats::PtpeModel model;
-  Viewing viewing;  ///< of a bake with pictures: nothing
+  Viewing viewing;        ///< of a bake with pictures: nothing
+  bool overview = false;  ///< live fluid is watched by the scene's camera for figures
 };
 
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
 /// time apart than content_step_s.
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
 
-/// The same without a bake.
-std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice);
+/// The same without a bake. settling: as SimulationOptions::settling.
+std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
+                                           const std::function<void(int, int)>& settling = {});
 
 /// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
 bool shows_pictures(const StimulusChoice& choice);

@@ -88,8 +88,9 @@ std::optional<study::PictureFeatures> read_features(const std::filesystem::path&
                                                     const std::string& key) {
   if (!std::filesystem::exists(path)) return {};
   const auto json = nlohmann::json::parse(base::read_file(path, 1 << 16), nullptr, false);
-  if (!json.is_object() || json.value("key", "") != key) return {};
-  const study::PictureFeatures found{json.value("granularity_px", 0.0), json.value("flicker", 0.0)};
+  const auto of = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
+  if (of("key") != key || !of("granularity_px").is_number() || !of("flicker").is_number()) return {};
+  const study::PictureFeatures found{of("granularity_px"), of("flicker")};
   if (found.granularity_px <= 0 || found.flicker <= 0) return {};
   return found;
 }

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libsim/methods/method.hpp"
+#include "apps/study/bakes/bake_plan.hpp"
 
 namespace apps {
 
@@ -127,36 +127,14 @@ void print_speed(const CheckReport& report) {
               1000 * content.content_step_s);
 }
 
-struct BakeAdvice {
-  study::StimulusSpec what;
-  bool adaptive = false;    ///< follows gaze or picture: runs live
-  std::int64_t frames = 0;  ///< content steps that the longest cell shows
-};
-
-std::vector<BakeAdvice> bake_advice(const study::Protocol& protocol) {
-  std::vector<BakeAdvice> out;
-  for (const auto& what : stimuli_of(protocol)) {
-    BakeAdvice one{what, sim::traits_of(sim::parse_method(what.method)).adaptive(), 0};
-    for (const auto& cell : protocol.design.cells) {
-      if (!(cell.stimulus == what)) continue;
-      one.frames =
-          std::max(one.frames, protocol.content.start_frame + content_steps(protocol, cell.setting, 0));
-    }
-    out.push_back(one);
-  }
-  return out;
-}
-
 void print_stimuli(const CheckReport& report) {
-  const bool native = report.protocol.design.timing == TimingSource::Native;
   bool bakes = false;
   std::printf("\nstimuli:\n");
-  for (const auto& one : bake_advice(report.protocol)) {
-    std::printf("  %-28s ", stimulus_name(one.what).c_str());
-    if (native) {
-      std::printf("live, as fast as it runs\n");
-    } else if (one.adaptive) {
-      std::printf("live: it follows what is looked at\n");
+  for (const auto& one : plan_bakes(report.protocol)) {
+    const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";
+    std::printf("  %-28s ", (stimulus_name(one.what) + rate).c_str());
+    if (!one.live.empty()) {
+      std::printf("live: %s\n", one.live.c_str());
     } else {
       std::printf("baked, %lld frames; or live where that is in time\n", static_cast<long long>(one.frames));
       bakes = true;
@@ -164,10 +142,10 @@ void print_stimuli(const CheckReport& report) {
   }
   if (bakes) {
     std::printf(
-        "to bake: vip-study bake SCENE --method M --n-star N --frames F --content-step %.17g --pictures "
-        "WIDTHxHEIGHT --out FILE\n",
-        report.protocol.content.content_step_s);
+        "to bake: vip-study bake --protocol FILE --out FOLDER --size WIDTHxHEIGHT, with the angle options of "
+        "run; to use: run --stimulus FOLDER\n");
   }
+  const bool native = report.protocol.design.timing == TimingSource::Native;
   std::printf("gaze: %s\n", report.protocol.needs_gaze
                                 ? "needed; without tracked gaze H1 and H5 are labelled not testable"
                                 : "not needed");
@@ -321,11 +299,13 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
                      {"even_above", balance.even_above}};
   add_refresh(json, report);
   add_common(json, report);
-  for (const auto& one : bake_advice(protocol)) {
+  for (const auto& one : plan_bakes(protocol)) {
     json["stimuli"].push_back({{"scene", one.what.scene},
                                {"method", one.what.method},
                                {"n_star", one.what.n_star},
-                               {"live", one.adaptive || protocol.design.timing == TimingSource::Native},
+                               {"live", !one.live.empty()},
+                               {"why_live", one.live},
+                               {"bake_file", one.file},
                                {"bake_frames", one.frames}});
   }
   add_framing(json, report);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/common/program.hpp"
+#include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/check/kept_times.hpp"
 #include "apps/study/check/measuring.hpp"
 #include "apps/study/session_player.hpp"
@@ -20,6 +21,20 @@ namespace {
 
 const study::Cell& first_cell(const study::Protocol& protocol, const MeasuredStimulus& one) {
   return protocol.design.cells.at(static_cast<std::size_t>(one.cells.front()));
+}
+
+/// Of a stimulus with some live cells, those.
+std::vector<MeasuredStimulus> live_stimuli(const study::Protocol& protocol, const CellStimuli& stimuli) {
+  std::vector<MeasuredStimulus> out;
+  for (const PlannedStimulus& planned : plan_bakes(protocol)) {
+    MeasuredStimulus one{{}, sim::traits_of(sim::parse_method(planned.what.method)).temporal, {}};
+    for (const int cell : planned.cells) {
+      if (stimuli.is_live(protocol.design.cells.at(static_cast<std::size_t>(cell))))
+        one.cells.push_back(cell);
+    }
+    if (!one.cells.empty()) out.push_back(std::move(one));
+  }
+  return out;
 }
 
 const FramedScene& framed(const study::Cell& cell, const MeasuringPlace& place) {
@@ -77,11 +92,7 @@ std::string refusal(const MeasuredReport& report) {
 
 std::vector<MeasuredStimulus> measure_live(const study::Protocol& protocol, CellStimuli& stimuli,
                                            const MeasuringPlace& place) {
-  const auto live = [&](const study::Cell& cell) { return stimuli.is_live(cell); };
-  const auto temporal = [](const std::string& method) {
-    return sim::traits_of(sim::parse_method(method)).temporal;
-  };
-  auto all = to_measure(protocol, live, temporal);
+  auto all = live_stimuli(protocol, stimuli);
   const std::filesystem::path folder = sim::default_cache_folder();
   std::vector<MeasuredStimulus*> open;
   const auto key = [&](const MeasuredStimulus& one) {

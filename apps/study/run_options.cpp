@@ -1,5 +1,6 @@
 #include "apps/study/run_options.hpp"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "apps/common/picture_size.hpp"
@@ -31,6 +32,15 @@ int side_of(const nlohmann::json& json, const std::string& place) {
   return static_cast<int>(side);
 }
 
+int monitor_of(const nlohmann::json& json, const std::string& place) {
+  const auto found = json.find("monitor");
+  if (found == json.end()) return 0;
+  // Any number that is no int converts to one without a word, or with undefined behaviour.
+  if (!found->is_number_integer() || *found < 0 || *found > std::numeric_limits<int>::max())
+    unreadable(place);
+  return found->get<int>();
+}
+
 }  // namespace
 
 std::string format_run_options(const RunOptions& options) {
@@ -54,7 +64,7 @@ std::string format_run_options(const RunOptions& options) {
 RunOptions parse_run_options(const std::string& text, const std::string& place) {
   try {
     const auto json = nlohmann::json::parse(text);
-    if (json.at("format").get<int>() != format_version) {
+    if (json.at("format") != format_version) {
       throw base::Error(place, "options of another format",
                         "finish it with the version of vip-study that wrote it");
     }
@@ -64,7 +74,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.display = json.at("display");
     options.width_px = side_of(json.at("width_px"), place);
     options.height_px = side_of(json.at("height_px"), place);
-    options.monitor = json.value("monitor", 0);
+    options.monitor = monitor_of(json, place);
     options.bake = json.at("bake");
     options.backend = json.at("backend");
     options.gaze = json.at("gaze");

@@ -83,6 +83,8 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.language = text_of(root, "language");
   protocol.participants = static_cast<int>(root.integer("participants", {1, 100000}));
   protocol.accept_approximate = root.boolean_or("accept_approximate", false);
+  protocol.accept_mixed_pictures = root.boolean_or("accept_mixed_pictures", false);
+  protocol.fixation = root.choice_or("gaze", "free", {"free", "fixation"}) == "fixation";
   protocol.needs_gaze = root.boolean_or("needs_gaze", false);
   protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
   protocol.design = read_design(root.table("design"));

@@ -92,6 +92,12 @@ const std::vector<KeyReference>& protocol_reference() {
        "planned; `vip-study check` says what the number leaves unbalanced"},
       {"", "accept_approximate", "true or false", "", "false",
        "also play settings that the display meets only approximately"},
+      {"", "accept_mixed_pictures", "true or false", "", "false",
+       "also compare stimuli of a scene whose pictures differ in renderer, size or angle, as baked and live "
+       "ones can; the report names it"},
+      {"", "gaze", "text", "\"free\", \"fixation\"", "\"free\"",
+       "fixation: the texts tell participants to look at the middle of the picture, where levels then are "
+       "fine; methods that follow the gaze can be baked"},
       {"", "needs_gaze", "true or false", "", "false",
        "without tracked gaze some hypotheses are labelled not testable"},
       {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",

@@ -111,7 +111,8 @@ class Reader {
  private:
   bool take(const Json& mark) {
     if (mark.contains("journal")) {
-      content.schema = mark.value("schema", std::int64_t{0});
+      const auto schema = mark.find("schema");
+      content.schema = schema != mark.end() && schema->is_number_integer() ? schema->get<std::int64_t>() : 0;
       return true;
     }
     if (const auto ready = mark.find("ready"); ready != mark.end() && ready->is_number_integer()) {

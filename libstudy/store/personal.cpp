@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -20,10 +21,11 @@ namespace {
 
 // A journal that goes with each commit instead of a log: nothing beside the file keeps what was deleted.
 constexpr const char* opening =
-    "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA;"
-    "CREATE TABLE IF NOT EXISTS personal (participant TEXT NOT NULL, question TEXT NOT NULL, "
-    "wording TEXT NOT NULL, answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT;"
-    "CREATE TABLE IF NOT EXISTS renaming (batch TEXT PRIMARY KEY) STRICT";
+    "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA";
+constexpr std::array<const char*, 2> tables{
+    "personal (participant TEXT NOT NULL, question TEXT NOT NULL, wording TEXT NOT NULL, "
+    "answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT",
+    "renaming (batch TEXT PRIMARY KEY) STRICT"};
 
 /// Made, or taken over, with no rights for others before anything stands in it.
 void make_private(const fs::path& path) {
@@ -37,6 +39,21 @@ void make_private(const fs::path& path) {
   }
 }
 
+/// A broken index, a trigger or another shape would let stand what is said to be deleted.
+void check_whole(sqlite::Connection& file) {
+  Statement foreign(
+      file, "SELECT name FROM sqlite_schema WHERE sql NOT IN ('CREATE TABLE ' || ?, 'CREATE TABLE ' || ?)");
+  foreign.bind(0, tables[0]).bind(1, tables[1]);
+  std::string wrong = foreign.step() ? "holds '" + foreign.text(0) + "', which vip-study did not make" : "";
+  if (const std::string found = file.text("PRAGMA integrity_check(1)"); wrong.empty() && found != "ok")
+    wrong = "is damaged: " + found;
+  if (!wrong.empty()) {
+    throw base::Error(
+        file.path().string(), wrong,
+        "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
+  }
+}
+
 }  // namespace
 
 PersonalFile::PersonalFile(const fs::path& database) {
@@ -44,6 +61,8 @@ PersonalFile::PersonalFile(const fs::path& database) {
   make_private(path);
   file_ = std::make_unique<sqlite::Connection>(path, sqlite::Open::Write);
   file_->execute(opening);
+  for (const char* table : tables) file_->execute(std::string("CREATE TABLE IF NOT EXISTS ") + table);
+  check_whole(*file_);
 }
 
 fs::path PersonalFile::beside(const fs::path& database) { return study::beside(database, ".personal"); }

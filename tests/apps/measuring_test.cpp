@@ -25,8 +25,6 @@ study::Protocol pilot_with(const std::string& from, const std::string& to) {
   return study::parse_protocol(text, "pilot.toml");
 }
 
-study::Protocol task1() { return study::read_protocol(base::resource("protocols/task1.toml")); }
-
 /// A stimulus and a display that take time on a virtual clock.
 class SlowStage final : public study::Stimulus, public study::Display {
  public:
@@ -74,27 +72,6 @@ MeasuredReport judged(const study::Protocol& protocol, const StepTimes& times) {
   return judge_measured(protocol, {{all_cells(protocol), false, times}}, 0, [&](const FpsSetting& setting) {
     return study::compile_schedule(setting, protocol.pacing, 0).intervals_ns;
   });
-}
-
-const auto any_cell = [](const study::Cell&) { return true; };
-
-TEST(ToMeasure, ARunForEachStimulusAndWhereTauDependsOnItForEachSetting) {
-  const auto never = [](const std::string&) { return false; };
-  const auto always = [](const std::string&) { return true; };
-  const auto pilot = study::test::pilot();
-  ASSERT_EQ(to_measure(pilot, any_cell, never).size(), 1u);
-  EXPECT_EQ(to_measure(pilot, any_cell, never).front().cells, all_cells(pilot));
-  EXPECT_EQ(to_measure(pilot, any_cell, always).size(), pilot.design.cells.size());
-  EXPECT_EQ(to_measure(task1(), any_cell, never).size(), stimuli_of(task1()).size());
-}
-
-TEST(ToMeasure, LeavesOutWhatDoesNotRunLive) {
-  const auto adaptive = [](const study::Cell& cell) { return cell.stimulus.method != "HiRes"; };
-  const auto protocol = task1();
-  const auto found = to_measure(protocol, adaptive, [](const std::string&) { return false; });
-  EXPECT_EQ(found.size(), stimuli_of(protocol).size() * 4 / 5);
-  for (const auto& one : found)
-    EXPECT_NE(protocol.design.cells.at(static_cast<std::size_t>(one.cells.front())).stimulus.method, "HiRes");
 }
 
 TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {

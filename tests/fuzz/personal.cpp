@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const test::TemporaryFolder folder(test::memory_folder());
   for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
   if (std::FILE* out = std::fopen((folder / "s.db.personal").c_str(), "wb")) {
-    std::fwrite(data, 1, size, out);
+    if (size > 0) std::fwrite(data, 1, size, out);  // libFuzzer's empty input is a null pointer
     std::fclose(out);
   }
   fuzz::attempt([&] {

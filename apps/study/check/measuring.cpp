@@ -26,27 +26,6 @@ bool wants(const study::Protocol& protocol, const study::Cell& cell, double refr
 
 }  // namespace
 
-std::vector<MeasuredStimulus> to_measure(const study::Protocol& protocol,
-                                         const std::function<bool(const study::Cell&)>& live,
-                                         const std::function<bool(const std::string&)>& temporal) {
-  std::vector<MeasuredStimulus> out;
-  for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
-    const study::Cell& cell = protocol.design.cells[i];
-    if (!live(cell)) continue;
-    const bool by_rate = temporal(cell.stimulus.method);
-    const auto same = std::find_if(out.begin(), out.end(), [&](const MeasuredStimulus& known) {
-      const study::Cell& other = cell_of(protocol, known.cells.front());
-      return other.stimulus == cell.stimulus &&
-             (!by_rate || (other.setting.mean == cell.setting.mean && other.setting.sd == cell.setting.sd));
-    });
-    if (same == out.end())
-      out.push_back({{static_cast<int>(i)}, by_rate, {}});
-    else
-      same->cells.push_back(static_cast<int>(i));
-  }
-  return out;
-}
-
 double longest_measuring_s(const study::Protocol& protocol, const MeasuredStimulus& what) {
   double longest = patience_s;
   for (const int cell : what.cells) longest = std::max(longest, cell_of(protocol, cell).setting.duration_s);

@@ -2,7 +2,6 @@
 /// Runs live stimuli as a session does, as fast as they come, and keeps what each step took.
 
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "apps/study/check/rehearsal.hpp"
@@ -10,12 +9,6 @@
 #include "libstudy/pacing/clock.hpp"
 
 namespace apps {
-
-/// Cells that one run measures: of one stimulus, and where `temporal` holds for its method of one setting.
-/// Only cells for which `live` holds. Nothing is measured yet.
-std::vector<MeasuredStimulus> to_measure(const study::Protocol& protocol,
-                                         const std::function<bool(const study::Cell&)>& live,
-                                         const std::function<bool(const std::string&)>& temporal);
 
 /// The longest that measuring it takes, s, apart from its making: as long as its longest trial, at least 5 s.
 double longest_measuring_s(const study::Protocol& protocol, const MeasuredStimulus& what);
