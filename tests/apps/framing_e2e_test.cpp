@@ -64,8 +64,8 @@ TEST_F(FramingE2e, TheCameraStaysAndBothAnglesAreStored) {
 TEST_F(FramingE2e, ASessionResumedOnAnotherDisplayKeepsBothFramings) {
   write_protocol("LoRes");
   std::vector<std::string> arguments = desk_;
-  arguments.insert(arguments.end(),
-                   {"--clock", "real", "--display", "headless", "--backend", "cpu", "--participants", "1"});
+  arguments.insert(arguments.end(), {"--accept-slow", "--clock", "real", "--display", "headless", "--backend",
+                                     "cpu", "--participants", "1"});
   Process process(run_arguments(protocol_, database_, arguments));
   while (const auto line = process.read_line())
     if (line->find("done P01 1 ") == 0) break;
