@@ -38,7 +38,7 @@ DISPLAY=:$(cat "$out/screen")
 export DISPLAY
 begun=$SECONDS
 "$study" run "$out/$protocol.toml" --db "$db" --participant P01 --display window --gaze mouse --station test \
-  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds "$seconds" "${stimulus[@]}" --seed 5 --events \
+  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds "$seconds" "${stimulus[@]}" --seed 5 --events --accept-slow \
   >"$out/events" 2>"$out/log" </dev/null &
 session=$!
 
@@ -54,7 +54,7 @@ page_is_on() {
 # What is answered: the questions with one right answer by name, the others differently from unit to unit.
 answer_to() {  # answer_to CODE POSITION PLACE MIN MAX
   case $1 in
-    take_part | acuity) echo 1 ;;
+    take_part | acuity | data_shared) echo 1 ;;
     guardian | attention_check) echo 2 ;;
     epilepsy | balance) echo 0 ;;
     age) echo 34 ;;
@@ -209,6 +209,10 @@ for block in $(ask "select distinct kind from unit join response using (unit_id)
 done
 expect "answers to trials in Psych-DS" "$in_trials" "$(rows "$(find "$out/psych-ds/data" -name '*v1_data.csv')")"
 expect "answers on pages in Psych-DS" "$on_pages" "$(rows "$(find "$out/psych-ds/data" -name '*pages_data.csv')")"
+"$study" consent P01 --db "$db" --sharing no >>"$out/log"
+"$study" export --db "$db" --bids "$out/bids-refused" --psych-ds "$out/psych-ds-refused" >>"$out/export_log"
+expect "files of P01 in public exports once sharing is refused" 0 \
+  "$(grep -rlE 'sub-P01|P01' "$out/bids-refused" "$out/psych-ds-refused" | wc -l)"
 expect "unfinished files" 0 "$(find "$out" -name '*.tmp*' | wc -l)"
 said=$("$study" status --db "$db" | grep P01 | tr -s ' ' | sed 's/ [a-z]* clock.*//; s/^ //')
 expect "status" "P01 visit 1 $trials of $trials trials, $units of $units steps, 0 cut short, 0 excluded complete" "$said"

@@ -78,10 +78,13 @@ class LiveFluid final : public study::Stimulus {
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
+  /// Nothing is computed when it stands there already: a session makes it ready before it plays it.
   void start(std::int64_t start_step) override;
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(unsigned framebuffer, int width_px, int height_px) override;
+  /// The simulation at the prepared step; there is one from the first start() or prepare() on.
+  sim::Simulation& simulation() { return *simulation_; }
   /// Whether the method looks at the picture of the last frame, so that every one must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
@@ -100,6 +103,7 @@ class LiveFluid final : public study::Stimulus {
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
+  bool started_ = false;  ///< and no step was prepared since
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture
@@ -117,15 +121,17 @@ struct StimulusChoice {
   /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
   std::optional<sim::FrameRate> fixed_rate;
   stats::PtpeModel model;
-  Viewing viewing;  ///< of a bake with pictures: nothing
+  Viewing viewing;        ///< of a bake with pictures: nothing
+  bool overview = false;  ///< live fluid is watched by the scene's camera for figures
 };
 
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
 /// time apart than content_step_s.
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
 
-/// The same without a bake.
-std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice);
+/// The same without a bake. settling: as SimulationOptions::settling.
+std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
+                                           const std::function<void(int, int)>& settling = {});
 
 /// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
 bool shows_pictures(const StimulusChoice& choice);

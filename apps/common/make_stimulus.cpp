@@ -25,8 +25,10 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
 
 }  // namespace
 
-std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice) {
-  const sim::Scene scene = sim::read_scene(choice.scene);
+std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
+                                           const std::function<void(int, int)>& settling) {
+  sim::Scene scene = sim::read_scene(choice.scene);
+  if (choice.overview) scene.view = scene.overview;
   sim::SimulationOptions options;
   options.cache = sim::default_cache_folder();
   options.method = sim::parse_method(choice.method);
@@ -35,6 +37,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice) {
   options.frame_dt_s = choice.content_step_s;
   options.temporal.fixed_rate = choice.fixed_rate;
   options.temporal.model = choice.model;
+  options.settling = settling;
   const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
   const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
                                   std::to_string(options.n_star) + ", on " +

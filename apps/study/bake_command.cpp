@@ -1,21 +1,16 @@
-/// vip-study bake: compute the frames of a scene beforehand, and check such files.
-#include "libsim/bake/bake_file.hpp"
-
-#include <algorithm>
-#include <chrono>
+/// vip-study bake: compute the frames of a scene, or of all scenes of a protocol, beforehand; check such
+/// files.
 #include <cstdio>
 #include <memory>
 
-#include "apps/common/finite_water.hpp"
-#include "apps/common/fluid_picture.hpp"
-#include "apps/common/picture_size.hpp"
 #include "apps/common/program.hpp"
+#include "apps/study/bakes/bake_protocol.hpp"
+#include "apps/study/bakes/read_whole.hpp"
+#include "apps/study/bakes/write_bake.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/session_framing.hpp"
 #include "apps/study/session_player.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
-#include "libsim/scene/gaze.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -24,104 +19,36 @@ namespace apps {
 namespace {
 
 struct BakeCommand {
-  std::string scene, out, verify;
+  std::string scene, out, verify, protocol;
   std::string method = "HiRes", n_star = "32k", backend = "auto";
-  std::string pictures, camera = "view";
+  std::string pictures, camera = "view", rate, ptpe;
   std::int64_t frames = 600;
   double content_step_s = 0;
   bool force = false;
+  // With a protocol:
+  std::string size, keep = "particles";
+  std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
-/// Draws frames into a framebuffer of its own and reads them back as a bake keeps them: bottom row first.
-class PictureTaker {
- public:
-  PictureTaker(const sim::Scene& scene, const sim::Camera& camera, int width_px, int height_px)
-      : context_(sim::GlContext::make_headless()),
-        picture_of_fluid_(scene),
-        target_(width_px, height_px),
-        view_(sim::make_view(camera, width_px, height_px)) {}
-
-  void look(sim::Simulation& fluid, const sim::Gaze& gaze) { picture_of_fluid_.look(fluid, view_, gaze); }
-
-  const std::vector<std::uint8_t>& take(sim::Simulation& fluid) {
-    picture_of_fluid_.draw(fluid, view_, target_.framebuffer());
-    picture_ = target_.read().rgba;
-    const auto row = static_cast<std::ptrdiff_t>(4 * target_.width());
-    for (auto top = picture_.begin(), bottom = picture_.end() - row; top < bottom;
-         top += row, bottom -= row) {
-      std::swap_ranges(top, top + row, bottom);
-    }
-    return picture_;
-  }
-
- private:
-  sim::GlContext context_;
-  FluidPicture picture_of_fluid_;
-  sim::Offscreen target_;
-  sim::View view_;
-  std::vector<std::uint8_t> picture_;
-};
-
-void stop_if_wished(const std::string& out) {
-  if (StopSignals::stop_wished()) {
-    throw base::Error(out, "stopped on request; no file was written", "run the same command again");
-  }
+stats::PtpeModel model_of(const BakeCommand& command) {
+  return command.ptpe.empty() ? stats::PtpeModel{} : sim::read_ptpe_file(command.ptpe).model;
 }
 
-/// Everything that is to be known before the first frame is written.
-struct Work {
-  sim::Scene scene;
-  std::unique_ptr<PictureTaker> pictures;
-  std::unique_ptr<sim::Simulation> simulation;
-  sim::BakeHeader header;
-};
-
-void fill_header(const BakeCommand& command, const sim::SimulationOptions& options, Work& work) {
-  sim::BakeHeader& h = work.header;
-  h.scene_name = work.scene.name;
-  h.scene_sha256 = work.scene.sha256;
-  h.method = sim::method_name(options.method);
-  h.backend = sim::backend_name(options.backend);
-  h.program_version = base::version();
-  h.n_star = options.n_star;
-  h.max_particles = work.simulation->particle_capacity();
-  h.frame_count = command.frames;
-  h.frame_dt_s = options.frame_dt_s;
-  h.tank_size_m = work.scene.tank_size_m;
-  h.radius_by_level_m = work.simulation->radii_m();
-  if (h.has_pictures()) h.camera = command.camera;
-}
-
-/// Refuses what can be refused, then fills and settles the scene.
-Work prepare(const BakeCommand& command) {
-  Work work;
-  const auto path = base::find_input(command.scene);
-  work.header.scene_text = base::read_file(path, 1 << 20);
-  work.scene = sim::parse_scene(work.header.scene_text, path.string());
-  sim::SimulationOptions options;
-  options.method = sim::parse_method(command.method);
-  options.n_star = sim::parse_n_star(command.n_star);
-  options.backend = sim::choose_backend(command.backend);
-  options.frame_dt_s = command.content_step_s > 0 ? command.content_step_s : work.scene.frame_dt_s;
-  sim::BakeWriter::check_target(command.out, command.force);
-  PictureSize size;
-  if (!command.pictures.empty()) size = parse_picture_size(command.pictures, "--pictures");
-  work.header.picture_width_px = size.width;
-  work.header.picture_height_px = size.height;
-  if (work.header.has_pictures()) {
-    const sim::Camera& camera = command.camera == "overview" ? work.scene.overview : work.scene.view;
-    work.pictures = std::make_unique<PictureTaker>(work.scene, camera, size.width, size.height);
-  }
-  std::unique_ptr<Progress> progress;
-  options.settling = [&](int done, int total) {
-    stop_if_wished(command.out);
-    if (!progress) progress = std::make_unique<Progress>("settling", static_cast<std::size_t>(total));
-    progress->update(static_cast<std::size_t>(done));
-  };
-  options.cache = sim::default_cache_folder();
-  work.simulation = sim::make_simulation(work.scene, options);
-  fill_header(command, options, work);
-  return work;
+BakeOrder order_of(const BakeCommand& command) {
+  BakeOrder order;
+  order.fluid.scene = base::find_input(command.scene);
+  order.fluid.method = command.method;
+  order.fluid.n_star = command.n_star;
+  order.fluid.backend = command.backend;
+  order.fluid.content_step_s = command.content_step_s;
+  order.fluid.overview = command.camera == "overview";
+  order.fluid.model = model_of(command);
+  if (!command.rate.empty()) order.fluid.fixed_rate = sim::parse_frame_rate(command.rate);
+  order.frames = command.frames;
+  order.pictures = !command.pictures.empty();
+  if (order.pictures) order.size = parse_picture_size(command.pictures, "--pictures");
+  order.scene_gaze = true;
+  return order;
 }
 
 void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
@@ -138,101 +65,126 @@ void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
               bake.content_hash().c_str());
 }
 
-/// Levels that follow a gaze follow the scene's own, and the pictures where there are any.
-void look(Work& work, const sim::Camera& camera, int frame) {
-  const sim::Gaze gaze = gaze_at(camera, sim::gaze_point(work.scene, frame));
-  if (work.pictures) return work.pictures->look(*work.simulation, gaze);
-  work.simulation->look({{{gaze, sim::make_view(camera, 1280, 720)}}});
-}
-
 void bake(const BakeCommand& command) {
   const StopSignals signals;
-  Work work = prepare(command);
-  const sim::Camera& camera = command.camera == "overview" ? work.scene.overview : work.scene.view;
-  sim::BakeWriter writer(command.out, work.header, command.force);
-  Progress progress("bake", static_cast<std::size_t>(command.frames));
-  std::vector<sim::RenderParticle> particles;
-  for (std::int64_t frame = 0; frame < command.frames; ++frame) {
-    stop_if_wished(command.out);
-    if (frame > 0) {
-      look(work, camera, static_cast<int>(frame));
-      work.simulation->step_frame();
-    }
-    work.simulation->read_particles(particles);
-    writer.add_frame(static_cast<double>(frame) * work.header.frame_dt_s, particles,
-                     work.simulation->account());
-    if (work.pictures) writer.add_picture(work.pictures->take(*work.simulation));
-    progress.update(static_cast<std::size_t>(frame + 1));
-  }
-  check_finite(*work.simulation, command.out);
-  print_sizes(command.out, writer.finish());
+  const BakeOrder order = order_of(command);
+  const sim::BakeHeader header = header_of(order);
+  sim::BakeWriter::check_target(command.out, command.force);
+  std::optional<sim::GlContext> context;
+  if (draws(header)) context = sim::GlContext::make_headless();
+  std::optional<Progress> settling, frames;
+  BakeHooks hooks;
+  hooks.stop = [&] {
+    if (StopSignals::stop_wished())
+      throw base::Error(command.out, "stopped on request; no file was written", "run the same command again");
+  };
+  hooks.settling = [&](int done, int total) {
+    if (!settling) settling.emplace("settling", static_cast<std::size_t>(total));
+    settling->update(static_cast<std::size_t>(done));
+  };
+  hooks.frames = [&](std::int64_t done) {
+    if (!frames) frames.emplace("bake", static_cast<std::size_t>(command.frames));
+    frames->update(static_cast<std::size_t>(done));
+  };
+  print_sizes(command.out, write_bake(order, header, command.out, command.force, hooks));
 }
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Calls read(frame) for all frames; frames a second.
-template <typename Read>
-double read_all(const char* label, std::int64_t frames, Read read) {
-  Progress progress(label, static_cast<std::size_t>(frames));
-  const double start_s = seconds_now();
-  for (std::int64_t frame = 0; frame < frames; ++frame) {
-    read(frame);
-    progress.update(static_cast<std::size_t>(frame + 1));
-  }
-  return static_cast<double>(frames) / std::max(1e-9, seconds_now() - start_s);
+void bake_all(const BakeCommand& command) {
+  const StopSignals signals;
+  const std::string file = base::find_input(command.protocol).string();
+  const study::Protocol protocol = study::read_protocol(file);
+  ProtocolBakes wish{file, command.out, {}, command.keep == "pictures"};
+  wish.look.size = parse_picture_size(command.size);
+  wish.look.common.viewing =
+      screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
+  wish.look.common.backend = command.backend;
+  wish.look.common.model = model_of(command);
+  check_visible(frame_scenes(protocol, wish.look.common.viewing, wish.look.size));
+  bake_protocol(protocol, wish, [&] {
+    if (StopSignals::stop_wished())
+      throw base::Error(command.out, "stopped on request; bakes that are complete stay, no other was written",
+                        "run the same command again: it goes on from there");
+  });
 }
 
 void verify(const std::string& path) {
   const sim::BakeReader bake(path);
   const sim::BakeHeader& h = bake.header();
-  sim::BakeFrame frame;
-  const double particles = read_all("particles", h.frame_count, [&](auto i) { bake.read_frame(i, frame); });
+  const ReadingSpeed speed = read_whole(bake);
   std::printf("%s: %s, %s, n_* %lld, on %s, bake %s: all %lld frames are whole\n", path.c_str(),
               h.scene_name.c_str(), h.method.c_str(), static_cast<long long>(h.n_star), h.backend.c_str(),
               bake.content_hash().c_str(), static_cast<long long>(h.frame_count));
   std::printf("  %s%lld particles a frame read, checked and decoded at %.0f frames/s\n",
               h.radius_by_level_m.size() > 1 ? "up to " : "", static_cast<long long>(h.max_particles),
-              particles);
+              speed.particles);
   if (!h.has_pictures()) return;
-  sim::PictureReader reader(bake);
-  const double pictures = read_all("pictures", h.frame_count, [&](auto i) { reader.read(i); });
   std::printf("  %dx%d pictures (%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
-              h.picture_height_px, h.camera.c_str(), pictures);
+              h.picture_height_px, h.camera.c_str(), speed.pictures);
+}
+
+void add_scene_options(CLI::App& sub, BakeCommand& command) {
+  for (CLI::Option* option :
+       {sub.add_option("--method", command.method, sim::method_names())->capture_default_str(),
+        sub.add_option("--n-star", command.n_star, "Particles when all are coarsest; k = 1,024")
+            ->capture_default_str(),
+        sub.add_option("--frames", command.frames, "Content steps to compute")
+            ->check(CLI::Range(1, 1 << 20))
+            ->capture_default_str(),
+        sub.add_option("--content-step", command.content_step_s,
+                       "Fluid time between frames, s; default: the scene's")
+            ->check(number_in(1e-6, 1)),
+        sub.add_option("--pictures", command.pictures, "Keep pictures of this size too, such as 640x360"),
+        sub.add_option("--camera", command.camera, "Camera of the pictures")
+            ->check(CLI::IsMember({"view", "overview"}))
+            ->capture_default_str(),
+        sub.add_option("--rate", command.rate,
+                       "Mean and standard deviation of the frame rate that tau of Ours-TSp follows from: "
+                       "16.9,3.2"),
+        static_cast<CLI::Option*>(
+            sub.add_flag("--force", command.force, "Replace the output when it exists"))})
+    option->group("A scene")->excludes("--protocol");
+}
+
+void add_protocol_options(CLI::App& sub, BakeCommand& command) {
+  for (CLI::Option* option :
+       {sub.add_option("--size", command.size, "Pixels of the participant's picture, as in run"),
+        sub.add_option("--keep", command.keep,
+                       "particles: the session draws them. pictures: both, and the session copies pictures")
+            ->check(CLI::IsMember({"particles", "pictures"}))
+            ->capture_default_str(),
+        sub.add_option("--screen-width-mm", command.screen_width_mm,
+                       "Width of the participant's picture on the screen"),
+        sub.add_option("--viewing-distance-mm", command.viewing_distance_mm, "From the eye to the screen")})
+    option->group("A protocol")->needs("--protocol");
 }
 
 }  // namespace
 
 void add_bake_command(CLI::App& app) {
   auto command = std::make_shared<BakeCommand>();
-  CLI::App& sub = *app.add_subcommand("bake", "Compute the frames of a scene into a file, or check one");
+  CLI::App& sub = *app.add_subcommand(
+      "bake", "Compute the frames of a scene, or of a protocol's scenes, into files, or check one");
   auto* scene = sub.add_option("scene", command->scene, "Scene file");
-  auto* out = sub.add_option("--out", command->out, "Bake file to write");
-  sub.add_option("--method", command->method, sim::method_names())->capture_default_str();
-  sub.add_option("--n-star", command->n_star, "Particles when all are coarsest; k = 1,024")
-      ->capture_default_str();
-  sub.add_option("--frames", command->frames, "Content steps to compute")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  sub.add_option("--content-step", command->content_step_s,
-                 "Fluid time between frames, s; default: the scene's")
-      ->check(number_in(1e-6, 1));
-  sub.add_option("--pictures", command->pictures, "Keep pictures of this size too, such as 640x360");
-  sub.add_option("--camera", command->camera, "Camera of the pictures")
-      ->check(CLI::IsMember({"view", "overview"}))
-      ->capture_default_str();
+  auto* out = sub.add_option("--out", command->out, "Bake file to write; with --protocol a folder");
+  auto* protocol = sub.add_option("--protocol", command->protocol,
+                                  "Bake all stimuli of this protocol that can be, into the folder --out; "
+                                  "given again, goes on and mends");
+  protocol->excludes(scene);
+  add_scene_options(sub, *command);
+  add_protocol_options(sub, *command);
   sub.add_option("--backend", command->backend, "Computes the fluid")
       ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
       ->capture_default_str();
-  sub.add_flag("--force", command->force, "Replace the output when it exists");
+  sub.add_option("--ptpe", command->ptpe, "PTPE file that tau of Ours-TSp goes by; default: the paper's");
   auto* check = sub.add_option("--verify", command->verify, "Read this bake and check every frame");
   check->excludes(scene)->excludes(out);
   sub.callback([command] {
     if (!command->verify.empty()) return verify(command->verify);
-    if (command->scene.empty()) throw CLI::RequiredError("scene");
+    const bool whole = !command->protocol.empty();
+    if (!whole && command->scene.empty()) throw CLI::RequiredError("scene");
     if (command->out.empty()) throw CLI::RequiredError("--out");
-    bake(*command);
+    if (whole && command->size.empty()) throw CLI::RequiredError("--size");
+    whole ? bake_all(*command) : bake(*command);
   });
 }
 

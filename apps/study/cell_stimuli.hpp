@@ -18,6 +18,8 @@ class CellStimuli final : public study::StimulusSource {
               Viewing viewing);
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
+  /// Whether the cell is computed while it is shown.
+  bool is_live(const study::Cell&) const { return live_; }
   /// Of all cells, for the record; does not depend on which of them were shown.
   std::string description() const { return description_; }
   /// In what the bake differs from what the protocol names, such as "n_* 2048 instead of 32768"; empty: in

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libsim/methods/method.hpp"
+#include "apps/study/bakes/bake_plan.hpp"
 
 namespace apps {
 
@@ -32,11 +32,6 @@ const char* timing_name(const study::Design& design) {
   }
 }
 
-/// "HiRes single_dam 32k".
-std::string stimulus_name(const study::StimulusSpec& what) {
-  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star;
-}
-
 /// Why a setting is not exact, with the stimulus where each has settings of its own.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
@@ -49,6 +44,12 @@ std::string remark_of(const CheckReport& report, std::size_t setting, const std:
 
 double longest_ms(const RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
+}
+
+/// Of all showings: they are equally long.
+double overrun_s(const study::Protocol& protocol) {
+  const double duration_s = protocol.design.cells.front().setting.duration_s;
+  return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
 }
 
 void print_session(const CheckReport& report) {
@@ -68,6 +69,8 @@ void print_session(const CheckReport& report) {
       all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, quick_pace.answer_s,
       slow_pace.answer_s, all.trials_s.least / 60, all.trials_s.most / 60,
       protocol.design.groups * study::trials_of_group(protocol.design));
+  std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
+              protocol.design.cells.front().setting.duration_s);
   std::printf("balance: %s\n", describe_balance(protocol, report.balance).c_str());
 }
 
@@ -124,38 +127,14 @@ void print_speed(const CheckReport& report) {
               1000 * content.content_step_s);
 }
 
-struct BakeAdvice {
-  study::StimulusSpec what;
-  bool adaptive = false;    ///< follows gaze or picture: runs live
-  std::int64_t frames = 0;  ///< content steps that the longest cell shows
-};
-
-std::vector<BakeAdvice> bake_advice(const study::Protocol& protocol) {
-  std::vector<BakeAdvice> out;
-  for (const auto& what : stimuli_of(protocol)) {
-    BakeAdvice one{what, sim::traits_of(sim::parse_method(what.method)).adaptive(), 0};
-    for (const auto& cell : protocol.design.cells) {
-      if (!(cell.stimulus == what)) continue;
-      const double steps = protocol.content.real_time
-                               ? std::ceil(cell.setting.duration_s / protocol.content.content_step_s)
-                               : static_cast<double>(study::frame_count(cell.setting));
-      one.frames = std::max(one.frames, protocol.content.start_frame + static_cast<std::int64_t>(steps));
-    }
-    out.push_back(one);
-  }
-  return out;
-}
-
 void print_stimuli(const CheckReport& report) {
-  const bool native = report.protocol.design.timing == TimingSource::Native;
   bool bakes = false;
   std::printf("\nstimuli:\n");
-  for (const auto& one : bake_advice(report.protocol)) {
-    std::printf("  %-28s ", stimulus_name(one.what).c_str());
-    if (native) {
-      std::printf("live, as fast as it runs\n");
-    } else if (one.adaptive) {
-      std::printf("live: it follows what is looked at\n");
+  for (const auto& one : plan_bakes(report.protocol)) {
+    const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";
+    std::printf("  %-28s ", (stimulus_name(one.what) + rate).c_str());
+    if (!one.live.empty()) {
+      std::printf("live: %s\n", one.live.c_str());
     } else {
       std::printf("baked, %lld frames; or live where that is in time\n", static_cast<long long>(one.frames));
       bakes = true;
@@ -163,10 +142,10 @@ void print_stimuli(const CheckReport& report) {
   }
   if (bakes) {
     std::printf(
-        "to bake: vip-study bake SCENE --method M --n-star N --frames F --content-step %.17g --pictures "
-        "WIDTHxHEIGHT --out FILE\n",
-        report.protocol.content.content_step_s);
+        "to bake: vip-study bake --protocol FILE --out FOLDER --size WIDTHxHEIGHT, with the angle options of "
+        "run; to use: run --stimulus FOLDER\n");
   }
+  const bool native = report.protocol.design.timing == TimingSource::Native;
   std::printf("gaze: %s\n", report.protocol.needs_gaze
                                 ? "needed; without tracked gaze H1 and H5 are labelled not testable"
                                 : "not needed");
@@ -188,14 +167,6 @@ void print_framing(const CheckReport& report) {
   }
   for (const std::string& note : framing_notes(report.protocol, report.scenes))
     std::printf("  %s\n", note.c_str());
-}
-
-void print_measured(const MeasuredReport& measured) {
-  std::printf("\nmeasured here:\n%-30s %9s %8s %8s %8s\n", "stimulus", "frames/s", "sd", "p95 ms", "tau min");
-  for (const auto& one : measured.stimuli) {
-    std::printf("%-30s %9.1f %8.2f %8.1f %8.2f  %s\n", stimulus_name(one.what).c_str(), one.fps.mean,
-                one.fps.sd, one.p95_ms, one.tau_min, one.words.c_str());
-  }
 }
 
 nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
@@ -264,14 +235,17 @@ void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
 void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
   json["too_slow"] = measured.too_slow;
   json["collapse"] = measured.collapse;
-  for (const auto& one : measured.stimuli) {
+  for (const auto& one : measured.cells) {
     json["measured"].push_back({{"scene", one.what.scene},
                                 {"method", one.what.method},
                                 {"n_star", one.what.n_star},
+                                {"asked_mean_fps", one.setting.mean},
+                                {"asked_sd_fps", one.setting.sd},
                                 {"fps_mean", one.fps.mean},
                                 {"fps_sd", one.fps.sd},
                                 {"p95_ms", one.p95_ms},
                                 {"tau_min", one.tau_min},
+                                {"showing_s", one.showing_s},
                                 {"too_slow", one.too_slow},
                                 {"words", one.words}});
   }
@@ -289,7 +263,7 @@ void print_report(const CheckReport& report) {
   print_speed(report);
   print_stimuli(report);
   print_framing(report);
-  if (report.measured) print_measured(*report.measured);
+  if (report.measured) std::printf("\nmeasured here:\n%s", measured_table(*report.measured).c_str());
 }
 
 nlohmann::ordered_json report_json(const CheckReport& report) {
@@ -303,6 +277,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
       {"needs_gaze", protocol.needs_gaze},
       {"units", report.outline.units},
       {"trials", report.outline.trials},
+      {"overrun_s", overrun_s(protocol)},
       {"plan_s", report.outline.shown_s},
       {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
       {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};
@@ -324,11 +299,13 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
                      {"even_above", balance.even_above}};
   add_refresh(json, report);
   add_common(json, report);
-  for (const auto& one : bake_advice(protocol)) {
+  for (const auto& one : plan_bakes(protocol)) {
     json["stimuli"].push_back({{"scene", one.what.scene},
                                {"method", one.what.method},
                                {"n_star", one.what.n_star},
-                               {"live", one.adaptive || protocol.design.timing == TimingSource::Native},
+                               {"live", !one.live.empty()},
+                               {"why_live", one.live},
+                               {"bake_file", one.file},
                                {"bake_frames", one.frames}});
   }
   add_framing(json, report);

@@ -9,8 +9,9 @@
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer comes last, so a file that was cut short is known as such. Positions are 16 bit per axis over
 /// each frame's bounding box: off by at most extent / 131070, which the writer holds under a twentieth of the
-/// finest radius. All else is kept exactly, the solver's account of each frame too (not in format 1). Equal
-/// content gives equal bytes (no date is stored).
+/// finest radius. All else is kept exactly, the solver's account of each frame too (not in format 1). Since
+/// format 3 the header says how the fluid was watched and what tau followed from. Equal content gives equal
+/// bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -21,9 +22,33 @@
 
 #include "libsim/bake/codec.hpp"
 #include "libsim/methods/method.hpp"
+#include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/scene.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
+
+/// How the fluid was watched while it was baked.
+struct BakedView {
+  /// Of the picture that was drawn, kept or for the method to follow; 0 x 0 = none was.
+  int width_px = 0, height_px = 0;
+  double camera_angle_deg = 0;             ///< vertical, of that picture, in (0, 180); 0 = none was drawn
+  std::optional<double> visual_angle_deg;  ///< that it was taken to fill of the eye's view; none = not known
+  std::string renderer;                    ///< what drew it: gl_description()
+  /// Where one was taken to look: "middle" of the picture, along the "scene"'s keys, "none": the method
+  /// follows none. Empty = not known (formats before 3).
+  std::string gaze;
+  std::vector<GazeKey> gaze_path;  ///< read as Scene::gaze is; empty = none is followed
+
+  bool drawn() const { return width_px > 0; }
+};
+
+/// What temporal acceleration went by.
+struct BakedTolerance {
+  FrameRate rate;          ///< that tau followed from
+  stats::PtpeModel model;  ///< of tau and beta
+  std::uint32_t seed = 1;  ///< of the choice of active particles
+};
 
 /// What was baked.
 struct BakeHeader {
@@ -43,6 +68,8 @@ struct BakeHeader {
   int picture_width_px = 0;
   int picture_height_px = 0;
   std::string camera;  ///< "view" or "overview"; empty without pictures
+  BakedView view;
+  std::optional<BakedTolerance> tolerance;  ///< none = a method that solves every particle, or not known
 
   bool has_pictures() const { return picture_width_px > 0; }
 };
@@ -121,9 +148,9 @@ class PictureReader {
   Bytes chunk_, scratch_;
 };
 
-/// Header bytes as they stand in a file.
+/// Header bytes as they stand in a file of the present format.
 Bytes format_bake_header(const BakeHeader& header);
-/// The inverse; base::Error at `place` for anything out of range.
-BakeHeader parse_bake_header(ByteSpan bytes, const std::string& place);
+/// The inverse, also of earlier formats; base::Error at `place` for anything out of range.
+BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::string& place);
 
 }  // namespace sim

@@ -8,6 +8,81 @@ namespace sim {
 namespace {
 
 constexpr std::size_t max_text = 4096;
+constexpr std::uint32_t max_gaze_keys = 1000;
+
+bool is_size(int width, int height) {
+  const auto side = [](int px) { return px > 0 && px <= max_picture_side; };
+  return (width == 0 && height == 0) || (side(width) && side(height));
+}
+
+bool is_angle(double degrees) { return degrees > 0 && degrees < 180; }
+
+void put_view(ByteWriter& out, const BakedView& view) {
+  out.string(view.renderer);
+  out.string(view.gaze);
+  out.put(static_cast<std::int32_t>(view.width_px));
+  out.put(static_cast<std::int32_t>(view.height_px));
+  out.put(view.camera_angle_deg);
+  out.put(view.visual_angle_deg.value_or(0));
+  out.put(static_cast<std::uint32_t>(view.gaze_path.size()));
+  for (const GazeKey& key : view.gaze_path) {
+    out.put(static_cast<std::int32_t>(key.frame));
+    for (const double metres : key.point_m) out.put(metres);
+  }
+}
+
+BakedView get_view(ByteReader& in) {
+  BakedView view;
+  view.renderer = in.string(max_text);
+  view.gaze = in.string(max_text);
+  view.width_px = in.get<std::int32_t>();
+  view.height_px = in.get<std::int32_t>();
+  view.camera_angle_deg = in.get<double>();
+  if (const auto degrees = in.get<double>(); degrees != 0) view.visual_angle_deg = degrees;
+  const auto keys = in.get<std::uint32_t>();
+  if (keys > max_gaze_keys) in.fail("states " + std::to_string(keys) + " gaze keys");
+  for (std::uint32_t i = 0; i < keys; ++i) {
+    GazeKey& key = view.gaze_path.emplace_back();
+    key.frame = in.get<std::int32_t>();
+    for (double& metres : key.point_m) metres = in.get<double>();
+  }
+  return view;
+}
+
+void put_tolerance(ByteWriter& out, const std::optional<BakedTolerance>& tolerance) {
+  out.put(static_cast<std::uint8_t>(tolerance ? 1 : 0));
+  if (!tolerance) return;
+  for (const double value :
+       {tolerance->rate.mean, tolerance->rate.sd, tolerance->model.a, tolerance->model.b})
+    out.put(value);
+  out.put(tolerance->seed);
+}
+
+std::optional<BakedTolerance> get_tolerance(ByteReader& in) {
+  const auto there = in.get<std::uint8_t>();
+  if (there > 1) in.fail("has a header with an unknown tolerance");
+  if (!there) return {};
+  BakedTolerance out;
+  for (double* value : {&out.rate.mean, &out.rate.sd, &out.model.a, &out.model.b}) {
+    *value = in.get<double>();
+    if (!std::isfinite(*value)) in.fail("has a header whose tolerance is not finite");
+  }
+  out.seed = in.get<std::uint32_t>();
+  return out;
+}
+
+void check(const BakedView& view, const ByteReader& in) {
+  const auto within = [&](bool good, const std::string& what) {
+    if (!good) in.fail("has a header whose " + what + " is out of range");
+  };
+  within(is_size(view.width_px, view.height_px), "size of the picture seen");
+  within(view.drawn() ? is_angle(view.camera_angle_deg) : view.camera_angle_deg == 0, "camera's angle");
+  within(!view.visual_angle_deg || is_angle(*view.visual_angle_deg), "angle of the eye's view");
+  for (const GazeKey& key : view.gaze_path) {
+    const auto& p = key.point_m;
+    within(key.frame >= 0 && std::isfinite(p[0] + p[1] + p[2]), "gaze");
+  }
+}
 
 void check(const BakeHeader& header, const ByteReader& in) {
   const auto within = [&](bool good, const std::string& what) {
@@ -21,9 +96,8 @@ void check(const BakeHeader& header, const ByteReader& in) {
   for (const float radius : header.radius_by_level_m) {
     within(std::isfinite(radius) && radius > 0, "radius");
   }
-  const auto side = [&](int px) { return px > 0 && px <= max_picture_side; };
-  const bool none = header.picture_width_px == 0 && header.picture_height_px == 0;
-  within(none || (side(header.picture_width_px) && side(header.picture_height_px)), "picture size");
+  within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
+  check(header.view, in);
 }
 
 }  // namespace
@@ -45,10 +119,12 @@ Bytes format_bake_header(const BakeHeader& header) {
   for (const float radius : header.radius_by_level_m) out.put(radius);
   out.put(static_cast<std::int32_t>(header.picture_width_px));
   out.put(static_cast<std::int32_t>(header.picture_height_px));
+  put_view(out, header.view);
+  put_tolerance(out, header.tolerance);
   return bytes;
 }
 
-BakeHeader parse_bake_header(ByteSpan bytes, const std::string& place) {
+BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::string& place) {
   ByteReader in(bytes, place);
   BakeHeader header;
   for (std::string* text : {&header.scene_name, &header.scene_sha256, &header.method, &header.backend,
@@ -66,6 +142,10 @@ BakeHeader parse_bake_header(ByteSpan bytes, const std::string& place) {
   for (std::uint32_t i = 0; i < levels; ++i) header.radius_by_level_m.push_back(in.get<float>());
   header.picture_width_px = in.get<std::int32_t>();
   header.picture_height_px = in.get<std::int32_t>();
+  if (format >= 3) {
+    header.view = get_view(in);
+    header.tolerance = get_tolerance(in);
+  }
   if (!in.rest().empty()) in.fail("has a header of the wrong length");
   check(header, in);
   return header;

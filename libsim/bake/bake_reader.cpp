@@ -118,7 +118,7 @@ struct BakeReader::State {
     if (source.size() < bake::prologue_bytes + size + bake::footer_bytes) truncated();
     source.read(bake::prologue_bytes, size, bytes);
     if (XXH3_64bits(bytes.data(), bytes.size()) != checksum) fail(source.name(), "has a damaged header");
-    header = parse_bake_header(bytes, source.name());
+    header = parse_bake_header(bytes, format, source.name());
     body_begin = bake::prologue_bytes + size;
   }
 

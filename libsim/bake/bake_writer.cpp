@@ -93,7 +93,7 @@ BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool over
     : state_(std::make_unique<State>()) {
   state_->path = path;
   state_->header = header;
-  parse_bake_header(format_bake_header(header), path.string());
+  parse_bake_header(format_bake_header(header), bake_format, path.string());
   state_->open(overwrite);
   state_->write_header();
 }

@@ -61,8 +61,8 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
 void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
                     int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
-/// Format of what is written; 1 is still read.
-inline constexpr std::uint32_t bake_format = 2;
+/// Format of what is written; 1 and 2 are still read.
+inline constexpr std::uint32_t bake_format = 3;
 
 /// Facts as they stand at the front of both kinds of chunk: time and counts, since format 2 then one byte
 /// that says what was measured (FactBits), and that: tau, mu and delta, beta and the number of active

@@ -32,6 +32,7 @@ TimingTolerance read_timing(const base::TomlTable& table) {
       table.number_or("fail_mean_relative", timing.fail_mean_relative, tolerance_range);
   timing.fail_sd_relative = table.number_or("fail_sd_relative", timing.fail_sd_relative, tolerance_range);
   timing.fail_sd_absolute = table.number_or("fail_sd_absolute_fps", timing.fail_sd_absolute, {0, 1000});
+  if (table.has("overrun_s")) timing.overrun_s = table.number("overrun_s", pause_range);
   if (timing.fail_mean_relative < timing.mean_relative)
     table.fail("fail_mean_relative", "is tighter than mean_relative", "make it at least as wide");
   if (timing.fail_sd_relative < timing.sd_relative)
@@ -82,6 +83,8 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.language = text_of(root, "language");
   protocol.participants = static_cast<int>(root.integer("participants", {1, 100000}));
   protocol.accept_approximate = root.boolean_or("accept_approximate", false);
+  protocol.accept_mixed_pictures = root.boolean_or("accept_mixed_pictures", false);
+  protocol.fixation = root.choice_or("gaze", "free", {"free", "fixation"}) == "fixation";
   protocol.needs_gaze = root.boolean_or("needs_gaze", false);
   protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
   protocol.design = read_design(root.table("design"));

@@ -28,6 +28,10 @@ struct Protocol {
   ContentRules content;
   TimingTolerance timing;
   bool accept_approximate = false;
+  /// Also compare stimuli whose pictures differ in renderer, size or angle, as baked and live ones can.
+  bool accept_mixed_pictures = false;
+  /// Participants are told to look at the middle of the picture: where they look is known beforehand.
+  bool fixation = false;
   /// H1 and H5 need to know where people looked: without tracked gaze they are labelled not testable.
   bool needs_gaze = false;
   /// The camera has the angle that the picture fills of the eye's view, instead of each scene's own.

@@ -92,6 +92,12 @@ const std::vector<KeyReference>& protocol_reference() {
        "planned; `vip-study check` says what the number leaves unbalanced"},
       {"", "accept_approximate", "true or false", "", "false",
        "also play settings that the display meets only approximately"},
+      {"", "accept_mixed_pictures", "true or false", "", "false",
+       "also compare stimuli of a scene whose pictures differ in renderer, size or angle, as baked and live "
+       "ones can; the report names it"},
+      {"", "gaze", "text", "\"free\", \"fixation\"", "\"free\"",
+       "fixation: the texts tell participants to look at the middle of the picture, where levels then are "
+       "fine; methods that follow the gaze can be baked"},
       {"", "needs_gaze", "true or false", "", "false",
        "without tracked gaze some hypotheses are labelled not testable"},
       {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",
@@ -169,6 +175,9 @@ const std::vector<KeyReference>& protocol_reference() {
       {"timing", "fail_sd_relative", "number", "[0, 1]", "0.2",
        "at least sd_relative; the wider of the two counts"},
       {"timing", "fail_sd_absolute_fps", "number", "[0, 1000]", "2.5", "at least sd_absolute_fps, frames/s"},
+      {"timing", "overrun_s", "number", "[0, 3600]", "duration_s, at least 5",
+       "a showing that goes on for longer than this past its planned end is cut and has failed; its "
+       "questions are asked, s"},
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "

@@ -118,6 +118,33 @@ TEST(BakeFile, Format1IsReadAndMeasuredNothingButCounts) {
   }
 }
 
+/// Kept as the version before format 3 wrote it: Ours-TSp, three frames.
+TEST(BakeFile, Format2IsReadAndDoesNotSayHowItWasWatched) {
+  const sim::BakeReader bake(base::resource("tests/libsim/bake/fixtures/format_2.bake"));
+  EXPECT_EQ(bake.header().method, "Ours-TSp");
+  EXPECT_TRUE(bake.header().view.gaze.empty());
+  EXPECT_FALSE(bake.header().view.drawn() || bake.header().tolerance);
+  sim::BakeFrame frame;
+  bake.read_frame(2, frame);
+  EXPECT_TRUE(frame.facts.account.temporal && frame.facts.account.guards);
+}
+
+TEST(BakeFile, HeadersThatCannotBeAreRefused) {
+  const auto error_with = [](const auto& change) {
+    sim::BakeHeader header = bake_test::header(3, 32, 18);
+    change(header);
+    return error_of([&] { sim::parse_bake_header(sim::format_bake_header(header), sim::bake_format, "f"); });
+  };
+  using Header = sim::BakeHeader;
+  EXPECT_EQ(error_with([](Header&) {}), "");
+  EXPECT_THAT(error_with([](Header& h) { h.view.width_px = -1; }), HasSubstr("size of the picture seen"));
+  EXPECT_THAT(error_with([](Header& h) { h.view.camera_angle_deg = 180; }), HasSubstr("camera's angle"));
+  EXPECT_THAT(error_with([](Header& h) { h.view.visual_angle_deg = NAN; }), HasSubstr("eye's view"));
+  EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path[1].frame = -1; }), HasSubstr("gaze"));
+  EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path.resize(2000); }), HasSubstr("2000 gaze keys"));
+  EXPECT_THAT(error_with([](Header& h) { h.tolerance->model.b = NAN; }), HasSubstr("tolerance"));
+}
+
 TEST(BakeFile, AccountsThatCannotBeAreRefused) {
   const auto error_with = [](const auto& change) {
     sim::BakeFacts facts{0, {{10}, sim::TemporalReport{-6.0, {}, 0.5, 4}, sim::GuardCounts{}}};
@@ -250,9 +277,10 @@ TEST(BakeFile, NewerVersionIsRefused) {
   const Folder folder;
   bake_test::write(folder / "a.bake", 1);
   sim::Bytes bytes = bake_test::read_all(folder / "a.bake");
-  bytes[8] = 3;
+  bytes[8] = sim::bake_format + 1;
   EXPECT_THAT(error_of([&] { const sim::BakeReader bake(bytes, "new.bake"); }),
-              AllOf(HasSubstr("new.bake"), HasSubstr("format 3"), HasSubstr("newer program")));
+              AllOf(HasSubstr("new.bake"), HasSubstr("format " + std::to_string(sim::bake_format + 1)),
+                    HasSubstr("newer program")));
 }
 
 TEST(BakeFile, LyingCountsAreRefusedBeforeMemoryIsTaken) {

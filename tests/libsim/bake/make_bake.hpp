@@ -32,6 +32,8 @@ inline sim::BakeHeader header(std::int64_t frames, int width = 0, int height = 0
   h.picture_width_px = width;
   h.picture_height_px = height;
   h.camera = width ? "view" : "";
+  h.view = {64, 36, 75, 27.5, "test, OpenGL 4.5", "scene", {{0, {1, 2, 3}}, {60, {4, 5, 6}}}};
+  h.tolerance = {{20, 5}, {31, 0.035}, 7};
   return h;
 }
 

@@ -1,0 +1,149 @@
+#include "apps/study/bakes/bake_order.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+/// Angles that differ by less were computed from other roundings of the same screen.
+constexpr double same_angle_deg = 0.01;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string degrees(double value) { return value > 0 ? number(value) + " deg" : "not known"; }
+
+bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)); }
+
+std::string size_words(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+std::string words_of(const std::optional<sim::BakedTolerance>& tolerance) {
+  if (!tolerance) return "tau not known";
+  const auto& [rate, model, seed] = *tolerance;
+  return "tau of " + number(rate.mean) + ", " + number(rate.sd) + " frames/s with a = " + number(model.a) +
+         ", b = " + number(model.b) + ", seed " + std::to_string(seed);
+}
+
+std::string words_of(const sim::BakedView& view) {
+  if (view.gaze.empty()) return "gaze not known";
+  return view.gaze == "scene" ? "gaze along the scene's keys" : "gaze on the middle of the picture";
+}
+
+/// Collects what is shown instead of what is wanted.
+class Departures {
+ public:
+  void add(const std::string& what, const std::string& shown, const std::string& wanted) {
+    if (shown == wanted) return;
+    all_.push_back((what.empty() ? "" : what + " ") + shown + " instead of " + wanted);
+  }
+  std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+bool adaptive(const sim::BakeHeader& header) {
+  return sim::traits_of(sim::parse_method(header.method)).adaptive();
+}
+
+sim::BakedView view_of(const BakeOrder& order, const sim::Scene& scene, bool follows_gaze) {
+  sim::BakedView view;
+  view.gaze = "none";
+  if (!order.pictures && !follows_gaze) return view;
+  const sim::Camera& camera = order.fluid.overview ? scene.overview : scene.view;
+  const Framing framing = frame_picture(camera, order.fluid.viewing, order.size.width, order.size.height);
+  view.width_px = order.size.width;
+  view.height_px = order.size.height;
+  view.camera_angle_deg = framing.camera_deg;
+  view.visual_angle_deg = framing.visual_deg;
+  if (!follows_gaze) return view;
+  const bool keys = order.scene_gaze && !scene.gaze.empty();
+  view.gaze = keys ? "scene" : "middle";
+  view.gaze_path = keys ? scene.gaze : std::vector<sim::GazeKey>{{0, camera.target_m}};
+  return view;
+}
+
+}  // namespace
+
+sim::BakeHeader header_of(const BakeOrder& order) {
+  sim::BakeHeader header;
+  header.scene_text = base::read_file(order.fluid.scene, 1 << 20);
+  const sim::Scene scene = sim::parse_scene(header.scene_text, order.fluid.scene.string());
+  const sim::MethodTraits& traits = sim::traits_of(sim::parse_method(order.fluid.method));
+  header.scene_name = scene.name;
+  header.scene_sha256 = scene.sha256;
+  header.method = traits.name;
+  header.program_version = base::version();
+  header.n_star = sim::parse_n_star(order.fluid.n_star);
+  header.frame_count = order.frames;
+  header.frame_dt_s = order.fluid.content_step_s > 0 ? order.fluid.content_step_s : scene.frame_dt_s;
+  header.tank_size_m = scene.tank_size_m;
+  header.view = view_of(order, scene, traits.adaptive());
+  if (order.pictures) {
+    header.picture_width_px = order.size.width;
+    header.picture_height_px = order.size.height;
+    header.camera = order.fluid.overview ? "overview" : "view";
+  }
+  if (traits.temporal) {
+    if (!order.fluid.fixed_rate)
+      throw base::Error(header.method, "leaves particles out by tau, which follows from a frame rate",
+                        "name it: --rate MEAN,SD in frames/s");
+    header.tolerance = {*order.fluid.fixed_rate, order.fluid.model, sim::TemporalOptions{}.seed};
+  }
+  return header;
+}
+
+std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted) {
+  Departures out;
+  out.add("scene", found.scene_name + " " + found.scene_sha256.substr(0, 12),
+          wanted.scene_name + " " + wanted.scene_sha256.substr(0, 12));
+  out.add("method", found.method, wanted.method);
+  out.add("n_*", std::to_string(found.n_star), std::to_string(wanted.n_star));
+  // A file rounds the step of a protocol.
+  if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
+    out.add("content step", number(found.frame_dt_s) + " s", number(wanted.frame_dt_s) + " s");
+  if (found.frame_count < wanted.frame_count)
+    out.add("", std::to_string(found.frame_count) + " frames", std::to_string(wanted.frame_count));
+  if (found.method != wanted.method) return out.take();
+  if (wanted.tolerance) {
+    const auto &a = found.tolerance, &b = wanted.tolerance;
+    if (!a || !same(a->rate.mean, b->rate.mean) || !same(a->rate.sd, b->rate.sd) ||
+        !same(a->model.a, b->model.a) || !same(a->model.b, b->model.b) || a->seed != b->seed)
+      out.add("", words_of(a), words_of(b));
+  }
+  if (adaptive(wanted)) out.add("", words_of(found.view), words_of(wanted.view));
+  return out.take();
+}
+
+std::vector<std::string> view_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted) {
+  Departures out;
+  const sim::BakedView &a = found.view, &b = wanted.view;
+  if (!a.drawn() || !b.drawn()) return {};
+  const auto camera = [](const sim::BakeHeader& one) {
+    return one.camera == "overview" ? "overview" : "view";
+  };
+  out.add("camera", camera(found), camera(wanted));
+  out.add("picture", size_words(a.width_px, a.height_px), size_words(b.width_px, b.height_px));
+  if (std::abs(a.camera_angle_deg - b.camera_angle_deg) > same_angle_deg)
+    out.add("camera angle", degrees(a.camera_angle_deg), degrees(b.camera_angle_deg));
+  const double seen = a.visual_angle_deg.value_or(0), wished = b.visual_angle_deg.value_or(0);
+  if (std::abs(seen - wished) > same_angle_deg)
+    out.add("angle of the eye's view", degrees(seen), degrees(wished));
+  return out.take();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& one : words) out += (out.empty() ? "" : ", ") + one;
+  return out;
+}
+
+}  // namespace apps

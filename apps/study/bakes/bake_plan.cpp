@@ -1,0 +1,97 @@
+#include "apps/study/bakes/bake_plan.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/study/check/rehearsal.hpp"
+#include "libsim/bake/layout.hpp"
+#include "libsim/methods/method.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+bool same_rate(const study::FpsSetting& a, const study::FpsSetting& b) {
+  return a.mean == b.mean && a.sd == b.sd;
+}
+
+std::int64_t frames_of(const study::Protocol& protocol, const study::Cell& cell) {
+  return protocol.content.start_frame + content_steps(protocol, cell.setting, 0);
+}
+
+std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one) {
+  if (protocol.design.timing == study::TimingSource::Native) return "as fast as it runs";
+  if (one.adaptive && !protocol.fixation) return "it follows what is looked at";
+  if (one.frames > sim::bake::max_frames)
+    return "a bake holds " + std::to_string(sim::bake::max_frames) + " frames at most";
+  return "";
+}
+
+/// "single_dam_32k_HiRes.bake"; with the frame rate that tau follows from, where one does.
+std::string file_name(const PlannedStimulus& one) {
+  std::string out =
+      std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
+  if (one.rate) {
+    char rate[64];
+    std::snprintf(rate, sizeof rate, "_%.6g_%.6g", one.rate->mean, one.rate->sd);
+    out += rate;
+  }
+  return out + ".bake";
+}
+
+/// Scenes of one name in several folders, and frame rates that are written alike, are told apart by a number.
+void make_distinct(std::vector<PlannedStimulus>& all) {
+  for (auto one = all.begin(); one != all.end(); ++one) {
+    if (one->file.empty()) continue;
+    const std::string stem = std::filesystem::path(one->file).stem().string();
+    for (int n = 2; std::any_of(all.begin(), one, [&](const auto& had) { return had.file == one->file; });
+         ++n)
+      one->file = stem + "-" + std::to_string(n) + ".bake";
+  }
+}
+
+}  // namespace
+
+std::vector<PlannedStimulus> plan_bakes(const study::Protocol& protocol) {
+  std::vector<PlannedStimulus> out;
+  const bool native = protocol.design.timing == study::TimingSource::Native;
+  for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
+    const study::Cell& cell = protocol.design.cells[i];
+    const sim::MethodTraits& traits = sim::traits_of(sim::parse_method(cell.stimulus.method));
+    sim::parse_n_star(cell.stimulus.n_star);
+    const bool by_rate = traits.temporal && !native;
+    auto known = std::find_if(out.begin(), out.end(), [&](const PlannedStimulus& one) {
+      return one.what == cell.stimulus && (!by_rate || same_rate(*one.rate, cell.setting));
+    });
+    if (known == out.end()) {
+      known = out.insert(out.end(), {cell.stimulus, {}, {}, traits.adaptive(), 0, {}, {}});
+      if (by_rate) known->rate = cell.setting;
+    }
+    known->cells.push_back(static_cast<int>(i));
+    if (!native) known->frames = std::max(known->frames, frames_of(protocol, cell));
+  }
+  for (PlannedStimulus& one : out) {
+    one.live = why_live(protocol, one);
+    if (one.live.empty()) one.file = file_name(one);
+  }
+  make_distinct(out);
+  return out;
+}
+
+BakeOrder order_of(const study::Protocol& protocol, const PlannedStimulus& one, const SessionLook& look) {
+  BakeOrder order;
+  order.fluid = look.common;
+  order.fluid.viewing.gaze = {};  // fixation: on the middle
+  order.fluid.scene = base::find_input(one.what.scene);
+  order.fluid.method = one.what.method;
+  order.fluid.n_star = one.what.n_star;
+  order.fluid.content_step_s = protocol.content.content_step_s;
+  if (one.rate) order.fluid.fixed_rate = sim::FrameRate{one.rate->mean, one.rate->sd};
+  order.frames = one.frames;
+  order.size = look.size;
+  return order;
+}
+
+}  // namespace apps

@@ -1,0 +1,147 @@
+/// Which stimuli of a protocol are baked, and in what a bake differs from what is wanted.
+#include "apps/study/bakes/bake_plan.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::string shipped(const std::string& name) {
+  return base::read_file(base::resource("protocols/" + name + ".toml"), 1 << 20);
+}
+
+std::string with_fixation(const std::string& text) {
+  return test::replaced(text, "participants = ", "gaze = \"fixation\"\nparticipants = ");
+}
+
+std::vector<PlannedStimulus> plan_of(const std::string& text) {
+  return plan_bakes(study::parse_protocol(text, "test"));
+}
+
+std::int64_t baked(const std::vector<PlannedStimulus>& plan) {
+  return std::count_if(plan.begin(), plan.end(), [](const auto& one) { return one.live.empty(); });
+}
+
+std::set<std::string> files(const std::vector<PlannedStimulus>& plan) {
+  std::set<std::string> out;
+  for (const auto& one : plan) {
+    if (!one.file.empty()) out.insert(one.file);
+  }
+  return out;
+}
+
+TEST(BakePlan, MethodsThatFollowAFreeGazeRunLive) {
+  const auto plan = plan_of(shipped("task1"));
+  EXPECT_EQ(plan.size(), 30u);
+  EXPECT_EQ(baked(plan), 12);
+  EXPECT_EQ(files(plan).size(), 12u);
+  for (const auto& one : plan) {
+    const bool fixed = one.what.method == "LoRes" || one.what.method == "HiRes";
+    EXPECT_EQ(one.live.empty(), fixed) << one.what.method;
+    EXPECT_EQ(one.file.empty(), !fixed) << one.what.method;
+  }
+  EXPECT_EQ(plan.front().file, "single_dam_16k_LoRes.bake");
+  EXPECT_EQ(plan.front().frames, std::llround(55.25 * 30));
+}
+
+TEST(BakePlan, UnderFixationAllAreBakedEachUnderItsName) {
+  const auto plan = plan_of(with_fixation(shipped("task1")));
+  EXPECT_EQ(baked(plan), 30);
+  EXPECT_EQ(files(plan).size(), 30u);
+}
+
+TEST(BakePlan, OneBakeServesAllSettingsUnlessTauFollowsFromThem) {
+  const std::string text = with_fixation(shipped("ptpe_pilot"));
+  EXPECT_THAT(plan_of(text), ::testing::SizeIs(1));
+  const auto plan =
+      plan_of(test::replaced(text, "method = [\"HiRes\"]", "method = [\"Ours\", \"Ours-TSp\"]"));
+  EXPECT_EQ(plan.size(), 1u + 21);
+  EXPECT_EQ(files(plan).size(), plan.size());
+  EXPECT_EQ(plan.front().cells.size(), 21u);
+}
+
+TEST(BakePlan, WhatRunsAsFastAsItGoesIsNotBaked) {
+  const std::string text = test::replaced(shipped("task1"), "timing = \"table2\"", "timing = \"native\"");
+  EXPECT_EQ(baked(plan_of(with_fixation(text))), 0);
+}
+
+TEST(BakePlan, ScenesOfOneNameAreToldApart) {
+  const auto plan = plan_of(test::replaced(shipped("ptpe_pilot"), "scene = [\"data/scenes/single_dam.toml\"]",
+                                           "scene = [\"a/dam.toml\", \"b/dam.toml\"]"));
+  EXPECT_THAT(files(plan), ElementsAre("dam_32k_HiRes-2.bake", "dam_32k_HiRes.bake"));
+}
+
+BakeOrder order() {
+  BakeOrder out;
+  out.fluid.scene = base::resource("data/scenes/single_dam.toml");
+  out.fluid.method = "Ours-TSp";
+  out.fluid.n_star = "64";
+  out.fluid.fixed_rate = sim::FrameRate{20, 5};
+  out.fluid.viewing.visual_angle_deg = [](int, int) { return 30.0; };
+  return out;
+}
+
+TEST(BakeOrder, WhatIsWantedDepartsInNothing) {
+  EXPECT_THAT(fluid_departures(header_of(order()), header_of(order())), IsEmpty());
+  EXPECT_THAT(view_departures(header_of(order()), header_of(order())), IsEmpty());
+}
+
+/// What a bake of an order that `change` changed departs in, from one that it did not.
+template <typename Change>
+std::string departures_after(const Change& change, bool view = false) {
+  BakeOrder other = order();
+  change(other);
+  const auto found = header_of(other), wanted = header_of(order());
+  return joined(view ? view_departures(found, wanted) : fluid_departures(found, wanted));
+}
+
+TEST(BakeOrder, EveryDepartureOfTheFluidIsNamed) {
+  const auto after = [](const auto& change) { return departures_after(change); };
+  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.scene = base::resource("data/scenes/faucet.toml"); }),
+              HasSubstr("scene Faucet"));
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.method = "Ours"; }), "method Ours instead of Ours-TSp");
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.n_star = "128"; }), "n_* 128 instead of 64");
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.content_step_s = 0.01; }),
+            "content step 0.01 s instead of 0.0166667 s");
+  EXPECT_EQ(after([](BakeOrder& o) { o.frames = 599; }), "599 frames instead of 600");
+  EXPECT_EQ(after([](BakeOrder& o) { o.frames = 601; }), "") << "more than are shown harm nothing";
+  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.fixed_rate->sd = 4; }), HasSubstr("tau of 20, 4 frames/s"));
+  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.model.a = 30; }), HasSubstr("a = 30"));
+  EXPECT_EQ(after([](BakeOrder& o) { o.scene_gaze = true; }),
+            "gaze along the scene's keys instead of gaze on the middle of the picture");
+}
+
+TEST(BakeOrder, EveryDepartureOfThePictureIsNamed) {
+  const auto after = [](const auto& change) { return departures_after(change, true); };
+  EXPECT_EQ(after([](BakeOrder& o) { o.size = {640, 360}; }), "picture 640x360 instead of 1280x720");
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.viewing.true_angle = true; }),
+            "camera angle 30 deg instead of 75 deg");
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.viewing = {}; }),
+            "angle of the eye's view not known instead of 30 deg");
+  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.overview = true; }), "") << "no picture is kept";
+}
+
+TEST(BakeOrder, TauWithoutAFrameRateIsRefused) {
+  BakeOrder other = order();
+  other.fluid.fixed_rate.reset();
+  try {
+    header_of(other);
+    FAIL() << "accepted";
+  } catch (const base::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--rate MEAN,SD"));
+  }
+}
+
+}  // namespace
+}  // namespace apps
