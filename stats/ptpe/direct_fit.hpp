@@ -95,7 +95,7 @@ struct DirectEstimate {
 
 /// By this factor a curve may run outside the frame rates shown at a delta and still be within reach, so that
 /// a curve that passes through the outermost of them is not left out by the toss of a coin.
-inline constexpr double reach_margin = 1.1;
+inline constexpr double reach_margin = 1.15;
 
 /// What within_reach found.
 struct Reach {
