@@ -59,8 +59,18 @@ std::unique_ptr<study::FeatureSource> make_features(const RunOptions& options,
   return features;
 }
 
-stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place) {
-  return ptpe ? sim::parse_ptpe_file(*ptpe, place).model : stats::PtpeModel{};
+/// tau of a scheduled cell follows from the cell's own mean, so it must be the mean of the model.
+stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
+                          const study::Protocol& protocol) {
+  if (!ptpe) return {};
+  const stats::PtpeModel model = sim::parse_ptpe_file(*ptpe, place).model;
+  if (protocol.design.timing != study::TimingSource::Native && model.mean != protocol.pacing.mean) {
+    throw base::Error(place,
+                      "was fitted to another mean of the frame rate than protocol '" + protocol.name +
+                          "' sets (pacing.mean)",
+                      "fit it again from a pilot of that mean, or change the protocol's");
+  }
+  return model;
 }
 
 }  // namespace
@@ -101,8 +111,8 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   }
   if (options.display != "none") setup.scenes = frame_scenes(protocol, viewing, size, options.bake);
   check_visible(setup.scenes);
-  setup.stimuli =
-      std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place), std::move(viewing));
+  setup.stimuli = std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place, protocol),
+                                                std::move(viewing));
   if (!options.observer.empty()) {
     setup.features = make_features(options, protocol, *setup.stimuli);
     setup.participant = study::make_observer(options.observer, *setup.features);
