@@ -125,11 +125,11 @@ TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
   EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
   // Frame i is shown 250 (i + 1) ms after the start; frames that are ready by 20 s are shown.
   EXPECT_EQ(row.frames, 81);
-  const auto ratings = read_ratings(folder / "study.db");
-  ASSERT_EQ(ratings.size(), 1u);
-  EXPECT_TRUE(ratings.at(0).rating.has_value());
-  EXPECT_EQ(ratings.at(0).timing->verdict, Verdict::Fail);
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr(": 81 of 500 frames shown"));
+  const auto trials = test::trials_of(folder / "study.db");
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_TRUE(trials.at(0).score().has_value());
+  EXPECT_EQ(trials.at(0).trial.first.verdict, Verdict::Fail);
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr(": 81 of 500 frames shown"));
   EXPECT_TRUE(Store(folder / "study.db", Open::Write).open_runs().empty());
 }
 
