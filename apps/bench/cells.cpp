@@ -66,7 +66,8 @@ void add_table_options(CLI::App& command, TableOptions& options) {
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
   command.add_option("--csv", options.csv, "File for the rows")->check(output_file());
   command.add_option("--markdown", options.markdown, "File for the same as a table")->check(output_file());
-  command.add_option("--svg", options.svg_folder, "Folder for figures; made when missing");
+  command.add_option("--svg", options.svg_folder, "Folder for figures; made when missing")
+      ->check(output_folder());
 }
 
 std::vector<CellScene> scenes_of(const std::string& word) {

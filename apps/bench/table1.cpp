@@ -146,8 +146,10 @@ void add_table1_command(CLI::App& app) {
   command->add_flag("--unperturbed", words->unperturbed,
                     "Starts are not moved: HiRes must equal itself (a check of the bench)");
   command->add_option("--size", words->size_word, "Pictures, px")->capture_default_str();
-  command->add_option("--pictures", words->pictures,
-                      "Folder for the methods side by side, painted by level below; made when missing");
+  command
+      ->add_option("--pictures", words->pictures,
+                   "Folder for the methods side by side, painted by level below; made when missing")
+      ->check(output_folder());
   command->callback([words] {
     words->checkpoints = checkpoints_of(words->checkpoints_word);
     words->size = parse_picture_size(words->size_word);

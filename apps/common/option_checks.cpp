@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
 
@@ -66,6 +67,25 @@ CLI::Validator output_file() {
     return "";
   };
   return CLI::Validator(check, "");
+}
+
+CLI::Validator output_folder() {
+  const auto check = [](std::string& path) -> std::string {
+    base::check_output_folder(path);
+    return "";
+  };
+  return CLI::Validator(check, "");
+}
+
+void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs) {
+  std::map<std::filesystem::path, std::string> taken{
+      {std::filesystem::weakly_canonical(database), "the database"}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
+    if (!added)
+      throw base::Error(option + " " + path, "is " + other->second, "give each output a place of its own");
+  }
 }
 
 void check_arguments(int argc, const char* const* argv) {

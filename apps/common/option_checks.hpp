@@ -3,6 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
 
 namespace apps {
 
@@ -15,6 +18,12 @@ CLI::Validator text_up_to(std::size_t most_bytes);
 /// Throws base::Error unless a file can be written there (base::check_output): before an hour of work, not
 /// after it.
 CLI::Validator output_file();
+
+/// The same of files in a folder (base::check_output_folder).
+CLI::Validator output_folder();
+
+/// Outputs by option, empty: not asked for. base::Error where one would overwrite the database or another.
+void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs);
 
 /// Throws CLI::ValidationError, which names the first argument that is not a plain line of UTF-8
 /// (base::is_plain_line): arguments come to stand in databases, JSON and messages.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -97,22 +96,6 @@ void print_fit(const PilotFit& fit) {
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }
 
-/// Outputs that would overwrite the database or each other are refused before anything is read.
-void check_outputs(const FitCommand& command) {
-  std::map<std::filesystem::path, std::string> taken{
-      {std::filesystem::weakly_canonical(command.database), "the database"}};
-  const auto history = command.out.empty() ? "" : history_of(command.out).string();
-  for (const auto& [option, path] : std::map<std::string, std::string>{{"--out", command.out},
-                                                                       {"the record of --out", history},
-                                                                       {"--json", command.json},
-                                                                       {"--svg", command.svg}}) {
-    if (path.empty()) continue;
-    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
-    if (!added)
-      throw base::Error(option + " " + path, "is " + other->second, "give each output a file of its own");
-  }
-}
-
 void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
@@ -191,7 +174,11 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
 }
 
 void fit_ptpe(FitCommand& command) {
-  check_outputs(command);
+  const auto history = command.out.empty() ? "" : history_of(command.out).string();
+  check_apart(command.database, {{"--out", command.out},
+                                 {"the record of --out", history},
+                                 {"--json", command.json},
+                                 {"--svg", command.svg}});
   std::optional<stats::PtpeModel> truth;
   if (!command.truth.empty()) truth = parse_truth(command.truth);
   if (!command.plan.empty()) command.selection.plan = read_plan(command.plan).plan;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/report/preregistration.hpp"
 
@@ -37,7 +38,7 @@ void add_preregister_command(CLI::App& app) {
   auto* sub =
       app.add_subcommand("preregister", "Freeze protocol, hypotheses, rules and seed into one hashed folder");
   sub->add_option("protocols", command->protocols, "Protocols of the study (TOML)")->required();
-  sub->add_option("--out", command->out, "Folder to be made")->required();
+  sub->add_option("--out", command->out, "Folder to be made")->required()->check(output_folder());
   sub->add_option("--plan", command->plan,
                   "Analysis plan (TOML): margins, level, exclusion rules; without: the defaults");
   sub->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's")

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,19 +27,6 @@ namespace {
 struct ReportCommand {
   std::string database, html, json, csv, plan, bundle;
 };
-
-/// Outputs that would overwrite the database or each other are refused before anything is read.
-void check_outputs(const ReportCommand& command) {
-  std::map<std::filesystem::path, std::string> taken{
-      {std::filesystem::weakly_canonical(command.database), "the database"}};
-  for (const auto& [option, path] : std::map<std::string, std::string>{
-           {"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}}) {
-    if (path.empty()) continue;
-    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
-    if (!added)
-      throw base::Error(option + " " + path, "is " + other->second, "give each output a place of its own");
-  }
-}
 
 Json document(const ReportCommand& command) {
   ResultsRequest request{command.database, {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", {}};
@@ -68,7 +54,7 @@ Json document(const ReportCommand& command) {
 }
 
 void write_report(const ReportCommand& command) {
-  check_outputs(command);
+  check_apart(command.database, {{"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}});
   const study::RegisteredFiles files(command.database);
   const Json json = document(command);
   if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
@@ -105,7 +91,7 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--html", command->html, "File for the page")->check(output_file());
   sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
       ->check(output_file());
-  sub->add_option("--csv", command->csv, "Folder for the same numbers as tables");
+  sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   auto* plan =
       sub->add_option("--plan", command->plan,
                       "Analysis plan (TOML): margins, level, exclusion rules, seed; without: the defaults");

@@ -132,8 +132,10 @@ void add_check_command(CLI::App& app) {
   command->add_option("--size", options->size, "Pixels of the participant's picture")->capture_default_str();
   command->add_option("--screen-width-mm", options->screen_width_mm, "Its width on the screen");
   command->add_option("--viewing-distance-mm", options->viewing_distance_mm, "From the eye to the screen");
-  command->add_option("--preview", options->preview,
-                      "Folder for a page that shows each scene as the participant will see it");
+  command
+      ->add_option("--preview", options->preview,
+                   "Folder for a page that shows each scene as the participant will see it")
+      ->check(output_folder());
   command->add_option("--json", options->json, "File for every number of the report")->check(output_file());
   command->callback([options] { check_protocol(*options); });
 }

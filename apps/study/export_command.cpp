@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/store/export_bids.hpp"
@@ -47,9 +48,12 @@ void add_export_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
   sub.add_option("--db", options->database, "Database of the study")->required();
   auto* formats = sub.add_option_group("formats");
-  formats->add_option("--csv", options->csv, "Folder of CSV files with a data dictionary");
-  formats->add_option("--bids", options->bids, "Folder of a BIDS data set (behaviour)");
-  formats->add_option("--psych-ds", options->psych_ds, "Folder of a Psych-DS data set");
+  formats->add_option("--csv", options->csv, "Folder of CSV files with a data dictionary")
+      ->check(output_folder());
+  formats->add_option("--bids", options->bids, "Folder of a BIDS data set (behaviour)")
+      ->check(output_folder());
+  formats->add_option("--psych-ds", options->psych_ds, "Folder of a Psych-DS data set")
+      ->check(output_folder());
   formats->require_option(1, 3);
   sub.add_flag("--words", options->words,
                "CSV: also free words of participants and the experimenter's notes");

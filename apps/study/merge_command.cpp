@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/merge.hpp"
@@ -37,7 +38,9 @@ void add_merge_command(CLI::App& app) {
   auto command = std::make_shared<MergeCommand>();
   CLI::App& sub = *app.add_subcommand("merge", "Join the databases of several stations");
   sub.add_option("databases", command->sources, "Databases to join; they stay as they are")->required();
-  sub.add_option("--into", command->into, "Database to make, or one that takes them in")->required();
+  sub.add_option("--into", command->into, "Database to make, or one that takes them in")
+      ->required()
+      ->check(output_file());
   sub.callback([command] { merge(*command); });
 }
 

@@ -38,7 +38,8 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   return protocol;
 }
 
-/// What is shown must be what was shown; a changed station is only noted.
+/// What is shown must be what was shown; a changed station is only noted, and how its display frames the
+/// scenes.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {
@@ -48,6 +49,13 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
                             "', which is now '" + setup.stimuli->description() + "'",
                         "put the same bake or scene back in its place");
     }
+    if (const std::string departure = setup.departure(); !departure.empty() && !session.plan.test_data) {
+      throw base::Error(place,
+                        "participant " + session.plan.participant + " would be shown " + departure +
+                            " on this display, which makes test data",
+                        "resume on the display where the session began");
+    }
+    store.add_framing(session.id, framing_record(setup.scenes));
     store.log(session.id, "resumed", study::describe_machine() + "; display " + setup.display->description(),
               setup.clock->now_ns());
   }
@@ -69,6 +77,7 @@ Played play(const PlayOptions& options) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     const RunOptions chosen = parse_run_options(run.options, place);
     SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place);
+    open_mirror(options, setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);
     check_unchanged(store, run, setup, place);
     played.end = std::max(played.end, play_run(store, run, protocol, setup, options));

@@ -148,6 +148,7 @@ void run(RunCommand& command) {
   const auto ptpe = read_ptpe(command.ptpe);
   SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
+  open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
   // Complete with today's defaults, which another version may change.
@@ -181,6 +182,9 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
                    "before the session, once for a station and build");
   command.add_flag("--events", options.events,
                    "Print a line for each step of a session once it is safe, without answers");
+  command.add_flag("--mirror", options.mirror,
+                   "Show the experimenter what the participant sees, in a second window on another monitor; "
+                   "this unblinds and is logged");
 }
 
 void add_run_command(CLI::App& app) {
@@ -188,6 +192,7 @@ void add_run_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand("run", "Run a protocol and keep everything in a database");
   sub.add_option("protocol", command->protocol, "Protocol file")->required();
   add_play_options(sub, command->play);
+  sub.get_option("--db")->check(output_file());
   auto* count = sub.add_option("--participants", command->participants,
                                "Run P01, P02, ... (default: as many as the protocol plans)");
   count->check(CLI::Range(1, 9999));

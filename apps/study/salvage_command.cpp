@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/common/option_checks.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/salvage.hpp"
 
@@ -55,7 +56,7 @@ void add_salvage_command(CLI::App& app) {
       "salvage", "Make a sound database from a damaged or lost one and its journal of answers");
   sub.add_option("--db", command->database, "Database of the study, which stays as it is; it may be gone")
       ->required();
-  sub.add_option("--into", command->into, "Database to make")->required();
+  sub.add_option("--into", command->into, "Database to make")->required()->check(output_file());
   sub.callback([command] { salvage(*command); });
 }
 

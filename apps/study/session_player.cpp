@@ -18,6 +18,7 @@
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/store/names.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/session_counts.hpp"
 #include "libstudy/store/status.hpp"
@@ -71,6 +72,14 @@ study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
     }
     return !StopSignals::stop_wished();
   };
+}
+
+void open_mirror(const PlayOptions& options, const SessionSetup& setup) {
+  if (!options.mirror) return;
+  if (!setup.open_mirror)
+    throw base::Error("--mirror", "there is no participant's window to mirror",
+                      "leave it out, or use --display window");
+  setup.open_mirror();
 }
 
 namespace {
@@ -235,6 +244,9 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   };
   for (const auto& session : run.sessions) {
     if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
+    if (options.mirror)
+      store.log(session.id, study::mirror_event, "the experimenter sees the participant's view",
+                setup.clock->now_ns());
     if (!setup.rates.cells.empty())
       store.log(session.id, "live rates", measured_table(setup.rates), setup.clock->now_ns());
     play(session);

@@ -37,7 +37,11 @@ struct PlayOptions {
   bool console = false;        ///< the experimenter's, in the terminal
   bool accept_slow = false;    ///< see RunOptions
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
+  bool mirror = false;         ///< the experimenter sees the participant's view in a second window
 };
+
+/// Opens the mirror where it is asked for. base::Error when there is no window, or no room for a second one.
+void open_mirror(const PlayOptions& options, const SessionSetup& setup);
 
 /// How a person's sessions ended, of several the last of these that fits one; those of observers are Done.
 enum class RunEnd {

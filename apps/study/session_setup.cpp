@@ -102,6 +102,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     }
     setup.wish = std::move(window.wish);
     setup.idle = std::move(window.idle);
+    setup.open_mirror = std::move(window.open_mirror);
     setup.poll = std::move(window.poll);
     setup.screen = window.screen;
     size = window.size;

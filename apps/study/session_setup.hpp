@@ -26,6 +26,7 @@ struct SessionSetup {
   std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
   WindowWish wish;                              ///< the window's, or empty
   std::function<std::optional<double>()> idle;  ///< likewise
+  std::function<void()> open_mirror;            ///< likewise
   std::function<void()> poll;                   ///< likewise
   std::optional<ScreenFacts> screen;            ///< likewise
   std::vector<FramedScene> scenes;              ///< as the display frames them; none: nothing is drawn

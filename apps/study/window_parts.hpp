@@ -27,6 +27,7 @@ struct WindowParts {
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
   std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
   WindowWish wish;
+  std::function<void()> open_mirror;  ///< for the experimenter; base::Error where there is no room for it
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
   /// Takes in what happened to the window while nothing is shown, so that it is not taken for dead.

@@ -43,7 +43,8 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames, "Frames to run (headless)")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing");
+  app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing")
+      ->check(apps::output_folder());
   app.add_option("--every", options.every, "A picture every so many frames")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();

@@ -1,7 +1,10 @@
 /// What scene, method and readings mean for each part of the solver.
 
+#include <algorithm>
+
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
+#include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -69,6 +72,17 @@ ActivationRules activation_rules(const Readings& readings) {
   out.least_work = readings.least_work_frames;
   out.speed_floor = static_cast<float>(readings.speed_floor);
   return out;
+}
+
+TargetSphere sphere_of(const TargetRegion& region) {
+  if (std::min(region.inside, region.outside) < 0 || std::max(region.inside, region.outside) >= most_levels) {
+    throw base::Error("forced targets", "name a level that does not exist", "use levels 0 to 3");
+  }
+  const auto f = [](double value) { return static_cast<float>(value); };
+  return {{f(region.centre_m[0]), f(region.centre_m[1]), f(region.centre_m[2])},
+          f(region.radius_m),
+          region.inside,
+          region.outside};
 }
 
 Walls walls_of(const Scene& scene, bool gate_closed) {

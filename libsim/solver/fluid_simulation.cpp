@@ -8,48 +8,12 @@
 #include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/account_keeper.hpp"
+#include "libsim/solver/readout.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
-
-/// One entry a particle; `parts` may be empty.
-void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
-                   const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out) {
-  out.resize(s.size());
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const SaliencyParts p = parts.empty() ? SaliencyParts{} : parts[i];
-    out[i] = {p.acuity, p.manifold, p.temporal, p.combined, s[i], target[i]};
-  }
-}
-
-TargetSphere sphere_of(const TargetRegion& region) {
-  if (std::min(region.inside, region.outside) < 0 || std::max(region.inside, region.outside) >= most_levels) {
-    throw base::Error("forced targets", "name a level that does not exist", "use levels 0 to 3");
-  }
-  const auto f = [](double value) { return static_cast<float>(value); };
-  return {{f(region.centre_m[0]), f(region.centre_m[1]), f(region.centre_m[2])},
-          f(region.radius_m),
-          region.inside,
-          region.outside};
-}
-
-LevelEvents events_of(const LevelCounts& counts) {
-  return {counts.splits,         counts.born,          counts.merges,
-          counts.split_deferred, counts.split_at_wall, counts.split_no_room,
-          counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
-}
-
-constexpr float radius_per_support = 0.25f;  // h = 4 r
-
-struct PackForDrawing {
-  const Vec4* position;
-  Vec4* out;
-  SIM_FN void operator()(int i) const {
-    out[i] = with_w(xyz(position[i]), radius_per_support * position[i].w);
-  }
-};
 
 class FluidSimulation final : public Simulation {
  public:
@@ -86,7 +50,8 @@ class FluidSimulation final : public Simulation {
       const double edge = static_cast<double>(state_.parameters.coarse_edge) * 2 * resolution_.spacing_m;
       check_extent(scene, options.method, options.n_star, edge);
       open(filled(scene, options, resolution_.level));
-      settle();
+      settle(state_, scene_, options_);
+      state_.one_level = !adaptive();
     }
   }
 
@@ -184,10 +149,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
-    out.resize(static_cast<std::size_t>(state_.particles.size()));
-    static_assert(sizeof(RenderParticle) == sizeof(Vec4));
-    copy_to_host(out.data(), state_.particles.position.data(), out.size() * sizeof(Vec4));
-    for (auto& particle : out) particle.radius_m *= radius_per_support;
+    render_particles_of(state_.particles, out);
   }
 
   std::vector<float> radii_m() const override {
@@ -232,25 +194,13 @@ class FluidSimulation final : public Simulation {
 
   std::vector<int> read_ids() const override { return state_.particles.id.to_host(); }
 
-  std::vector<ParticleState> read_state() const override {
-    const auto position = state_.particles.position.to_host();
-    const auto velocity = state_.particles.velocity.to_host();
-    const auto id = state_.particles.id.to_host();
-    const auto level = state_.particles.level.to_host();
-    std::vector<ParticleState> out(position.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = {id[i],         level[i],      position[i].x, position[i].y,
-                position[i].z, velocity[i].x, velocity[i].y, velocity[i].z};
-    }
-    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    return out;
-  }
+  std::vector<ParticleState> read_state() const override { return states_of(state_.particles); }
 
   bool copy_to_gl(const GlBufferRef& buffer) override {
     const int n = state_.particles.size();
     if (buffer.bytes < static_cast<std::size_t>(n) * sizeof(Vec4) || !gl_.accept({buffer})) return false;
     auto* target = static_cast<Vec4*>(gl_.map()[0]);
-    for_each("pack for drawing", n, PackForDrawing{state_.particles.position.data(), target});
+    pack_for_drawing(state_.particles, target);
     gl_.unmap();
     return true;
   }
@@ -312,77 +262,17 @@ class FluidSimulation final : public Simulation {
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
-    std::vector<Vec4> position;
-    std::vector<Vec4> velocity;
-    std::vector<int> id;
-    std::vector<std::uint8_t> level;
-    state_.mass_units = 0;
     keeper_.begin(start, finest_level_, coarsest_level_);
-    for (const auto& particle : start) {
-      state_.mass_units += std::int64_t{1} << particle.level;
-      const float h = state_.supports.h[particle.level];
-      position.push_back({particle.x_m, particle.y_m, particle.z_m, h});
-      velocity.push_back({particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0});
-      id.push_back(particle.id);
-      level.push_back(static_cast<std::uint8_t>(particle.level));
-    }
-    p.position.from_host(position);
-    p.velocity.from_host(velocity);
-    p.id.from_host(id);
-    p.level.from_host(level);
-    if (p.has(Column::Saliency)) p.saliency.zero();
-    if (p.has(Column::Unrest)) {
-      p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
-    }
+    put_in(state_, start);
     if (adaptive()) state_.levels.begin(p);
     state_.walls = walls_of(scene_, false);
-    set_jets();
+    begin_jets(state_, scene_, options_, resolution_, frame_);
   }
 
   void prepare_start() {
     relaxed_ = relax_start(state_, options_.start_projections);
     if (state_.particles.has(Column::Active)) start_velocity_grid(state_);
     // What was met on the way is not part of the run.
-    state_.guards.zero();
-  }
-
-  void set_jets() {
-    const auto f = [](double value) { return static_cast<float>(value); };
-    auto& jets = state_.jets;
-    jets.nozzles = scene_.nozzles;
-    jets.finest_spacing_m = resolution_.finest_spacing_m;
-    jets.frame_dt_s = options_.frame_dt_s > 0 ? options_.frame_dt_s : scene_.frame_dt_s;
-    jets.level = resolution_.level;
-    jets.by_target = state_.particles.has(Column::Target);
-    jets.before.clear();
-    for (const auto& nozzle : jets.nozzles)
-      jets.before.push_back(poured_before(nozzle, resolution_.spacing_m, frame_, jets.frame_dt_s));
-    jets.corners = {
-        {0, 0, 0}, {f(scene_.tank_size_m[0]), 0, f(scene_.tank_size_m[2])}, f(scene_.recirculation_corner_m)};
-  }
-
-  void settle() {
-    // Levels and activity wait until the water rests.
-    Demand demand;
-    demand.parameters = state_.parameters;
-    demand.settling = true;
-    state_.one_level = true;
-    const Schedule settling = compile_schedule(demand);
-    state_.walls = walls_of(scene_, scene_.gate);
-    for (int frame = 0; frame < scene_.settle_frames; ++frame) {
-      run_frame(settling, state_);
-      state_.neighbours.grow();
-      if (options_.settling) options_.settling(frame + 1, scene_.settle_frames);
-    }
-    state_.walls = walls_of(scene_, false);
-    state_.one_level = !adaptive();
-    state_.lists_hold = false;
-    if (const auto lost = state_.guards.to_host()[0].not_finite; lost > 0) {
-      throw base::Error("scene " + scene_.name + ", settling",
-                        std::to_string(lost) + " times a particle was not finite",
-                        "use a longer or shorter time step, or other numbers of the solver");
-    }
-    // What else was met on the way to rest is not part of the run.
     state_.guards.zero();
   }
 

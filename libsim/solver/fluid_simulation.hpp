@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "libsim/scene/fill.hpp"
 #include "libsim/simulation.hpp"
 #include "libsim/solver/schedule.hpp"
 
@@ -18,6 +19,8 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
 LevelRules level_rules(const SimulationOptions& options);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
+/// base::Error for a level that does not exist.
+TargetSphere sphere_of(const TargetRegion& region);
 /// Readings of temporal acceleration.
 ActivationRules activation_rules(const Readings& readings);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
@@ -41,6 +44,14 @@ std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& o
 void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive);
 /// The finest and the coarsest level of the particles; `level` twice when there are none.
 std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
+/// Particles of a start, in columns that have room for them, and the mass units that they make.
+void put_in(FluidState& state, const std::vector<ParticleState>& start);
+/// The scene's jets as they stand before `frame`.
+void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
+                const Resolution& resolution, int frame);
+/// Lets the water come to rest, at one level and behind the gate where there is one; the walls are the tank's
+/// then. base::Error when a particle was not finite.
+void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 1 %. Velocities stay.
 RelaxedStart relax_start(FluidState& state, int most);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
@@ -75,6 +76,71 @@ std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level
   const auto [least, most] = std::minmax_element(
       start.begin(), start.end(), [](const auto& a, const auto& b) { return a.level < b.level; });
   return {least->level, most->level};
+}
+
+void put_in(FluidState& state, const std::vector<ParticleState>& start) {
+  std::vector<Vec4> position;
+  std::vector<Vec4> velocity;
+  std::vector<int> id;
+  std::vector<std::uint8_t> level;
+  state.mass_units = 0;
+  for (const auto& particle : start) {
+    state.mass_units += std::int64_t{1} << particle.level;
+    const float h = state.supports.h[particle.level];
+    position.push_back({particle.x_m, particle.y_m, particle.z_m, h});
+    velocity.push_back({particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0});
+    id.push_back(particle.id);
+    level.push_back(static_cast<std::uint8_t>(particle.level));
+  }
+  auto& p = state.particles;
+  p.position.from_host(position);
+  p.velocity.from_host(velocity);
+  p.id.from_host(id);
+  p.level.from_host(level);
+  if (p.has(Column::Saliency)) p.saliency.zero();
+  if (p.has(Column::Unrest)) {
+    p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
+  }
+}
+
+void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
+                const Resolution& resolution, int frame) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  auto& jets = state.jets;
+  jets.nozzles = scene.nozzles;
+  jets.finest_spacing_m = resolution.finest_spacing_m;
+  jets.frame_dt_s = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  jets.level = resolution.level;
+  jets.by_target = state.particles.has(Column::Target);
+  jets.before.clear();
+  for (const auto& nozzle : jets.nozzles)
+    jets.before.push_back(poured_before(nozzle, resolution.spacing_m, frame, jets.frame_dt_s));
+  jets.corners = {
+      {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
+}
+
+void settle(FluidState& state, const Scene& scene, const SimulationOptions& options) {
+  // Levels and activity wait until the water rests.
+  Demand demand;
+  demand.parameters = state.parameters;
+  demand.settling = true;
+  state.one_level = true;
+  const Schedule settling = compile_schedule(demand);
+  state.walls = walls_of(scene, scene.gate);
+  for (int frame = 0; frame < scene.settle_frames; ++frame) {
+    run_frame(settling, state);
+    state.neighbours.grow();
+    if (options.settling) options.settling(frame + 1, scene.settle_frames);
+  }
+  state.walls = walls_of(scene, false);
+  state.lists_hold = false;
+  if (const auto lost = state.guards.to_host()[0].not_finite; lost > 0) {
+    throw base::Error("scene " + scene.name + ", settling",
+                      std::to_string(lost) + " times a particle was not finite",
+                      "use a longer or shorter time step, or other numbers of the solver");
+  }
+  // What else was met on the way to rest is not part of the run.
+  state.guards.zero();
 }
 
 RelaxedStart relax_start(FluidState& state, int most) {

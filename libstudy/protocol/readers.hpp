@@ -25,6 +25,10 @@ std::string shown(double value);
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 Design read_design(const base::TomlTable& table);
+/// Every combination of the factors, by scene, n_*, method and moments.
+std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing);
+/// A list of words, none empty or twice.
+std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
 PacingRules read_pacing(const base::TomlTable& table, const Design& design);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);

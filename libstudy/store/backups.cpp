@@ -34,7 +34,6 @@ constexpr const char* of_presentation =
 
 /// Children first.
 constexpr Dependant dependants[] = {
-    {"framing", of_session, 4},
     {"permission_change", of_session, 3},
     {"gaze", of_presentation, 3},
     {"event", of_session},
@@ -43,6 +42,7 @@ constexpr Dependant dependants[] = {
     {"response", "unit_id IN (SELECT unit_id FROM unit WHERE session_id IN temp.gone)", 2},
     {"frame", of_presentation},
     {"presentation", of_trial},
+    {"framing", of_session, 4},
     {"unit", of_session, 2},
     {"trial", of_session},
     {"session", of_session},

@@ -1,11 +1,15 @@
 #pragma once
-/// How verdicts and grades stand in the database, the certificate and the exports.
+/// How verdicts, grades and some events stand in the database, the certificate and the exports.
 
 #include <string>
 
 #include "libstudy/pacing/pacer.hpp"
 
 namespace study {
+
+/// Events after which the experimenter was not blind to a session.
+inline constexpr const char* revealed_event = "setting revealed";
+inline constexpr const char* mirror_event = "mirror opened";
 
 /// The inverse of verdict_name(); what the schema's CHECK keeps out counts as a failed trial.
 inline Verdict verdict_of(const std::string& name) {

@@ -22,6 +22,13 @@ std::size_t index_of(const Shape& shape, const std::string& column) {
   return static_cast<std::size_t>(found - shape.columns.begin());
 }
 
+/// The column that points to a row without which one of this table still says most of what it says; none:
+/// nullptr.
+const char* without_which(const std::string& table) {
+  if (table == "event") return "presentation_id";
+  return table == "presentation" ? "framing_id" : nullptr;
+}
+
 std::string text_of(const Shape& shape, const Values& values, const std::string& column) {
   const std::size_t index = index_of(shape, column);
   if (index == values.size()) return {};
@@ -132,8 +139,9 @@ void Rebuild::take_table(const Shape& shape, std::vector<Values> rows) {
   for (Values& row : rows) {
     if (shape.table == "session" && withdrew(text_of(shape, row, "person"))) continue;
     Inserted done = insert(shape, row);
-    if (done == Inserted::NoParent && shape.table == "event") {
-      row[index_of(shape, "presentation_id")] = std::monostate();
+    const char* const spared = without_which(shape.table);
+    if (done == Inserted::NoParent && spared) {
+      row[index_of(shape, spared)] = std::monostate();
       done = insert(shape, row);
     }
     if (done == Inserted::NoParent && withdrawn_.empty()) ++told_.rows_lost[shape.table];

@@ -1,5 +1,5 @@
 #pragma once
-/// What a database holds of one session, in counts. Read-only; errors as read_ratings().
+/// What a database holds of one session, in counts. Read-only; errors as read_tasks().
 
 #include <cstdint>
 #include <filesystem>

@@ -51,7 +51,7 @@ struct SicknessSession {
 /// Every session with an answer to either, by protocol, participant and visit. base::Error for an answer
 /// outside its scale.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
-/// base::Error as read_ratings().
+/// base::Error as read_tasks().
 std::vector<SicknessSession> read_sickness(const std::filesystem::path& database);
 
 }  // namespace study

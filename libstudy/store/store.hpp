@@ -132,6 +132,10 @@ class Store {
   /// another text.
   std::int64_t add_run(const RunPlan& run);
 
+  /// For a session that is resumed: how the display frames its scenes now, where that is not as it was. What
+  /// is shown from now on is known by it.
+  void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
+
   /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
   std::vector<OpenRun> open_runs();
 

@@ -19,10 +19,13 @@ constexpr const char* sessions_sql =
     "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
     "display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
     "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
-    "printf('camera %.4g degrees, eye ', camera_angle_deg) || iif(visual_angle_deg IS NULL, 'not known', "
-    "printf('%.4g degrees, ratio %.2f', visual_angle_deg, angle_ratio)) AS angles FROM framing f "
-    "WHERE f.session_id = session.session_id ORDER BY 1)) FROM session WHERE protocol_id = ? ORDER BY "
-    "participant, visit";
+    "iif(f.framing_id IS NULL, 'not known', printf('camera %.4g degrees, eye ', camera_angle_deg) || "
+    "iif(visual_angle_deg IS NULL, 'not known', printf('%.4g degrees, ratio %.2f', visual_angle_deg, "
+    "angle_ratio))) AS angles FROM trial t JOIN presentation p USING (trial_id) LEFT JOIN framing f USING "
+    "(framing_id) WHERE t.session_id = session.session_id AND p.state = 'played' AND display <> 'none' "
+    "ORDER BY 1)), (SELECT group_concat(kind, ' and ') FROM (SELECT "
+    "DISTINCT kind FROM event e WHERE e.session_id = session.session_id AND kind IN (?2, ?3) ORDER BY 1)) "
+    "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
     "SELECT t.trial_id, u.unit_id, t.position, u.kind, t.first_cell, t.second_cell, t.excluded, w.attempt "
@@ -64,7 +67,7 @@ class Reader {
 
   std::vector<TaskSession> sessions() {
     std::vector<TaskSession> out;
-    session_.bind(0, protocol_id_);
+    session_.bind(0, protocol_id_).bind(1, std::string(mirror_event)).bind(2, std::string(revealed_event));
     while (session_.step()) {
       TaskSession session{session_.text(1),
                           static_cast<int>(session_.integer(2)),
@@ -77,7 +80,8 @@ class Reader {
                           {},
                           {},
                           session_.is_null(9) ? "" : session_.text(9),
-                          session_.is_null(10) ? "" : session_.text(10)};
+                          session_.is_null(10) ? "" : session_.text(10),
+                          session_.is_null(11) ? "" : session_.text(11)};
       session.trials = trials(session_.integer(0));
       session.catches = catches(session_.integer(0));
       out.push_back(std::move(session));

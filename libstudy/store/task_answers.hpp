@@ -67,9 +67,11 @@ struct TaskSession {
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
   std::string first_answer_utc;  ///< of any page or trial, by the station's clock; empty: none yet
-  /// "camera 75 degrees, eye 27.4 degrees, ratio 0.37", for each pair of angles of its scenes; empty: not
-  /// stored.
+  /// "camera 75 degrees, eye 27.4 degrees, ratio 0.37", for each pair of angles of what was shown; "not
+  /// known": an earlier version showed it; empty: nothing was drawn.
   std::string angles;
+  /// "mirror opened", "setting revealed" or both, joined by " and "; empty: the experimenter stayed blind.
+  std::string unblinded;
 };
 
 /// A protocol with all its sessions by participant and visit.
@@ -90,8 +92,8 @@ struct TaskStudy {
   int withdrawn = 0;  ///< participants who withdrew, from whatever protocol
 };
 
-/// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error as
-/// read_ratings().
+/// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error
+/// naming the file: missing, not a database of this program, damaged, or newer than this program.
 TaskStudy read_tasks(const std::filesystem::path& database);
 
 }  // namespace study

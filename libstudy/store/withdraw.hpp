@@ -29,7 +29,7 @@ struct Withdrawal {
 /// it when it is opened.
 inline constexpr const char* withdrawal_wish = "withdrawal wished";
 
-/// Participants with such an event. base::Error as read_ratings().
+/// Participants with such an event. base::Error as read_tasks().
 std::vector<std::string> wished_withdrawals(const std::filesystem::path& database);
 std::vector<std::string> wished_withdrawals(sqlite::Connection& database);
 

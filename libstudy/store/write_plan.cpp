@@ -111,12 +111,17 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
   }
 }
 
-void add_framing(sqlite::Connection& database, std::int64_t session,
-                 const std::vector<SceneFraming>& framing) {
-  Statement insert(database,
-                   "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
-                   "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
-                   "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7)");
+/// What does not stand as the last of its scene.
+void insert_framing(sqlite::Connection& database, std::int64_t session,
+                    const std::vector<SceneFraming>& framing) {
+  Statement insert(
+      database,
+      "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
+      "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
+      "SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7 WHERE NOT EXISTS (SELECT 1 FROM framing "
+      "WHERE framing_id = (SELECT max(framing_id) FROM framing WHERE session_id = ?1 AND scene = "
+      "?2) AND (width_px, height_px, shown_width_px, shown_height_px, camera_angle_deg, "
+      "visual_angle_deg) IS (?3, ?4, ?5, ?6, ?7, ?8))");
   for (const SceneFraming& one : framing) {
     insert.bind(0, session).bind(1, one.scene).bind(2, one.width_px).bind(3, one.height_px);
     insert.bind(4, one.shown_width_px).bind(5, one.shown_height_px);
@@ -228,9 +233,15 @@ void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Pro
   insert.bind(10, plan.stimulus).bind(11, plan.machine).bind(12, plan.station).bind(13, plan.time_zone);
   insert.bind(14, plan.gaze_source).bind(15, plan.screen_width_mm).bind(16, plan.viewing_distance_mm);
   const std::int64_t session = insert.bind(17, plan.ptpe).bind(18, plan.refresh_hz).run();
-  add_framing(*database_, session, plan.framing);
+  insert_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);
   insert_event(session, {}, "planned", "program " + base::version(), {});
+}
+
+void Store::add_framing(std::int64_t session, const std::vector<SceneFraming>& framing) {
+  Transaction transaction(*database_);
+  insert_framing(*database_, session, framing);
+  commit(transaction);
 }
 
 std::vector<int> Store::taken_slots(const std::string& protocol_sha256) {

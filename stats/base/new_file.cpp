@@ -63,18 +63,28 @@ void remove_stale_drafts(const fs::path& path) {
   }
 }
 
+namespace {
+
+/// base::Error naming `output` unless one may write to the folder, or make it.
+void check_writable(fs::path folder, const fs::path& output) {
+  struct stat above {};
+  while (::stat(folder.c_str(), &above) != 0 && errno == ENOENT) folder = folder_of(folder);
+  if (S_ISDIR(above.st_mode) && ::access(folder.c_str(), W_OK | X_OK) == 0) return;
+  if (!S_ISDIR(above.st_mode) && above.st_mode != 0) errno = ENOTDIR;
+  throw Error(output.string(), std::string("cannot be created: ") + std::strerror(errno), mend);
+}
+
+}  // namespace
+
 void check_output(const fs::path& path) {
   struct stat standing {};
   if (::stat(path.c_str(), &standing) == 0 && !S_ISREG(standing.st_mode))
     throw Error(path.string(), "is a folder, a device or a pipe, which no file is written over",
                 "name a file");
-  struct stat above {};
-  fs::path folder = folder_of(path);
-  while (::stat(folder.c_str(), &above) != 0 && errno == ENOENT) folder = folder_of(folder);
-  if (S_ISDIR(above.st_mode) && ::access(folder.c_str(), W_OK | X_OK) == 0) return;
-  if (!S_ISDIR(above.st_mode) && above.st_mode != 0) errno = ENOTDIR;
-  throw Error(path.string(), std::string("cannot be created: ") + std::strerror(errno), mend);
+  check_writable(folder_of(path), path);
 }
+
+void check_output_folder(const fs::path& folder) { check_writable(folder, folder); }
 
 fs::path make_folder_of(const fs::path& path) {
   std::error_code problem;

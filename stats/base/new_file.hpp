@@ -24,6 +24,9 @@ void remove_stale_drafts(const std::filesystem::path& path);
 /// which the file would replace; in a folder that one may write to, or may make. Makes nothing.
 void check_output(const std::filesystem::path& path);
 
+/// The same of files in a folder that is there or is to be made.
+void check_output_folder(const std::filesystem::path& folder);
+
 /// Makes the folder that `path` is to stand in, with those above it, unless it is there; returns the topmost
 /// that was made, empty where none was. base::Error names `path`.
 std::filesystem::path make_folder_of(const std::filesystem::path& path);

@@ -67,7 +67,7 @@ const std::vector<Rule> rules{
     {{"tests/"}, {}},
     {{"sqlite3"}, {"libstudy/store/"}},
     {{"toml"}, {"stats/base/toml_parser.hpp"}},
-    {{"stats/base/toml_parser"}, {"stats/base/toml.cpp"}},
+    {{"stats/base/toml_parser", "stats/base/toml_state"}, {"stats/base/toml.cpp", "stats/base/toml_state"}},
     {{"gsl/"}, {"stats/"}},
     {{"nlohmann/"}, {"apps/", "libstudy/store/"}},
     {{"CLI/"}, {"apps/"}},

@@ -60,6 +60,29 @@ TEST_F(FramingE2e, TheCameraStaysAndBothAnglesAreStored) {
   EXPECT_EQ(stored("1.0 * shown_width_px"), 64);
 }
 
+// A window fills its monitor, which may be another one when the session is resumed.
+TEST_F(FramingE2e, ASessionResumedOnAnotherDisplayKeepsBothFramings) {
+  write_protocol("LoRes");
+  std::vector<std::string> arguments = desk_;
+  arguments.insert(arguments.end(), {"--accept-slow", "--clock", "real", "--display", "headless", "--backend",
+                                     "cpu", "--participants", "1"});
+  Process process(run_arguments(protocol_, database_, arguments));
+  while (const auto line = process.read_line())
+    if (line->find("done P01 1 ") == 0) break;
+  process.send(SIGINT);
+  ASSERT_EQ(process.wait().exit_code, 1);
+  study::sqlite::Connection(database_, study::sqlite::Open::Write)
+      .execute("UPDATE run SET options = replace(options, '\"width_px\":64', '\"width_px\":48')");
+  const Ended resumed = run_program({vip_study, "resume", "--db", database_});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM framing"), 2);
+  const std::string shown =
+      "SELECT count(*) FROM presentation JOIN framing USING (framing_id) WHERE width_px = ";
+  EXPECT_GT(count_in(database_, shown + "64"), 0);
+  EXPECT_GT(count_in(database_, shown + "48"), 0);
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM presentation WHERE framing_id IS NULL"), 0);
+}
+
 TEST_F(FramingE2e, WithoutAScreenTheVisualAngleIsNotKnownAndMethodsThatFollowTheGazeAreTold) {
   write_protocol("FovFluid");
   const Ended ended = run({"--size", "64x36"});

@@ -45,6 +45,7 @@ inline study::TaskSession session(const std::string& participant, const std::str
   out.state = "done";
   out.gaze_source = gaze;
   out.display = "window";
+  out.angles = "camera 75 degrees, eye 27.4 degrees, ratio 0.37";
   return out;
 }
 
@@ -54,7 +55,7 @@ inline int rounded(double value, int min, int max) {
   return std::clamp(static_cast<int>(std::lround(value)), min, max);
 }
 
-/// One scene at each n_*, five showings each.
+/// One scene at each n_*, five showings each. The experimenter was not blind to the second participant.
 inline study::TaskProtocol task1(int participants, const std::string& gaze = "tracked", unsigned seed = 1) {
   study::TaskProtocol out{"task1", "1.0",   std::string(64, '1'), false, participants,
                           scenes,  methods, {"16k", "32k"},       {},    {}};
@@ -78,6 +79,7 @@ inline study::TaskProtocol task1(int participants, const std::string& gaze = "tr
         trial.answers.push_back({item, rounded(0.8 - 0.5 * quality[method] + 0.7 * normal(generator), 0, 3)});
       visit.trials.push_back(trial);
     }
+    if (person == 1) visit.unblinded = "mirror opened and setting revealed";
     out.sessions.push_back(visit);
   }
   return out;

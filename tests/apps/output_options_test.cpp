@@ -65,7 +65,12 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-study export --db " + database_ + " --psych-ds ",
             "vip-stats report " + database_ + " --html " + page_ + " --csv ",
             "vip-stats task2 " + database_ + " --csv ",
-            "vip-stats preregister protocols/task2.toml --out "};
+            "vip-stats preregister protocols/task2.toml --out ",
+            "vip-study check protocols/task2.toml --size 64x36 --preview ",
+            "vip-bench table1 --scene SingleDam --n-star 64 --svg ",
+            "vip-bench table1 --scene SingleDam --n-star 64 --pictures ",
+            "vip-bench table2 --scene SingleDam --n-star 64 --svg ",
+            "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --png "};
   }
 
   /// place: what is to be named.
@@ -93,6 +98,28 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
     expect_refused(line, full, "/full");
     expect_refused(line, below, file);  // a folder is made with those above it
   }
+}
+
+// What is wrong with the input is found by the work, the place of an output before it.
+TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
+  base::write_file_atomically(folder_ / "empty", "");
+  const std::string input = folder_ / "empty", below = folder_ / "file/out";
+  auto all = file_options();
+  for (const std::string& line : folder_options()) all.push_back(line);
+  int checked = 0;
+  for (std::string line : all) {
+    for (const std::string& read :
+         {database_, std::string("protocols/task2.toml"), std::string("data/scenes/single_dam.toml")}) {
+      if (const auto at = line.find(read); at != std::string::npos) line.replace(at, read.size(), input);
+    }
+    // table1 and table2 read no file that is named; bake looks at its scene first.
+    if (line.find(input) == std::string::npos || line.find("bake") != std::string::npos) continue;
+    ++checked;
+    const Ended ended = run_shell("timeout 60 " VIP_BIN_DIR "/" + line + below);
+    EXPECT_EQ(ended.exit_code, 1) << line << "\n" << ended.out;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr(folder_ / "file"), ::testing::Not(HasSubstr(input)))) << line;
+  }
+  EXPECT_GT(checked, 20);
 }
 
 TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {

@@ -63,8 +63,9 @@ inline std::vector<Case> head_and_methods() {
       {"Sessions of # with analysed answers by source of gaze: *#; by display: *#.",
        in_each("/study/protocols", "gaze", Json::object())},
       {"Sessions of # with analysed answers by vertical angle: *#.",
-       in_each("/study/protocols", "angles", Json::object()),
-       in_each("/study/protocols", "angles", {{"camera 75 degrees, eye 27.4 degrees, ratio 0.37", 26}})},
+       in_each("/study/protocols", "angles", Json::object())},
+      {"Sessions of # with analysed answers to which the experimenter was not blind: *#.",
+       in_each("/study/protocols", "unblinded", Json::object())},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",

@@ -68,6 +68,11 @@ TEST_F(StudyCommandsE2e, ARunInRealTimeSaysHowLongBeforeItStarts) {
   EXPECT_THAT(run({"--participant", "P41"}).err, ::testing::Not(HasSubstr("real time")));
 }
 
+TEST_F(StudyCommandsE2e, AMirrorNeedsAWindow) {
+  expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "P01", "--mirror"}),
+               "--mirror: there is no participant's window");
+}
+
 TEST_F(StudyCommandsE2e, ShortenedTrialsAreTestData) {
   ASSERT_EQ(run({"--participants", "1", "--trial-seconds", "2"}).exit_code, 0);
   EXPECT_EQ(count_in(database_, "SELECT count(*) FROM session WHERE test_data = 1"), 1);

@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "libstudy/store/ratings.hpp"
+#include "libstudy/store/sickness.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
+#include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/fuzz/attempt.hpp"
@@ -23,7 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::fclose(out);
   }
   fuzz::attempt([&] { study::read_status(file); });
-  fuzz::attempt([&] { study::read_ratings(file); });
+  fuzz::attempt([&] { study::read_tasks(file); });
+  fuzz::attempt([&] { study::read_sickness(file); });
   // Reading leaves the file as it was.
   if (base::read_file(file, size + 1) != bytes) std::abort();
   fuzz::attempt([&] { study::Store(file, study::sqlite::Open::Write).open_runs(); });

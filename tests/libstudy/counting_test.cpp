@@ -7,7 +7,6 @@
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "tests/common/tables.hpp"
@@ -104,39 +103,27 @@ const std::map<std::pair<int, int>, std::string> expected{{{practice, 1}, "pract
                                                           {{parted, 1}, ""},
                                                           {{parted, 2}, ""}};
 
-TEST_F(Counting, RatingsAndTasksTellTheSameOfEveryTrial) {
-  std::map<int, const RatingRow*> ratings;
-  const auto rows = read_ratings(path_);
-  for (const RatingRow& row : rows) {
-    if (row.question == "realism") ratings[row.position] = &row;
-  }
-  const auto study = read_tasks(path_);
-  const auto& trials = study.protocols.at(0).sessions.at(0).trials;
-  ASSERT_EQ(trials.size(), ratings.size());
-  for (const TaskTrial& trial : trials) {
-    SCOPED_TRACE(trial.position);
-    const RatingRow& row = *ratings.at(trial.position);
-    EXPECT_EQ(trial.answers.at(0).score, row.rating);
-    EXPECT_EQ(trial.first.verdict.has_value(), row.timing.has_value());
-    if (row.timing) {
-      EXPECT_EQ(trial.first.reason, row.timing->reason);
-    }
-    EXPECT_EQ(trial.excluded.has_value(), row.excluded);
-  }
-  EXPECT_FALSE(ratings.at(set_aside)->timing) << "set aside, so nothing of it is known";
-  EXPECT_EQ(ratings.at(unanswered)->timing->reason, "attempt 1");
-  EXPECT_EQ(ratings.at(repeated)->timing->reason, "attempt 2");
-  EXPECT_EQ(ratings.at(parted)->timing->reason, "attempt 1");
-}
-
-TEST_F(Counting, EachAnswerIsKnownByTheShowingThatItJudged) {
-  for (const RatingRow& row : read_ratings(path_)) {
-    if (row.position != parted) continue;
-    EXPECT_EQ(row.timing->reason, row.question == "fms" ? "attempt 2" : "attempt 1");
-  }
-  const TaskTrial trial = read_tasks(path_).protocols.at(0).sessions.at(0).trials.at(parted);
-  EXPECT_EQ(trial.first.reason, "attempt 1") << "the trial is known by the showing judged first";
-  EXPECT_EQ(trial.answers.at(5).score, 7);
+TEST_F(Counting, EachTrialIsKnownByTheShowingThatWasJudgedFirst) {
+  const auto trials = read_tasks(path_).protocols.at(0).sessions.at(0).trials;
+  const auto reason = [&](int position) {
+    return trials.at(static_cast<std::size_t>(position)).first.reason;
+  };
+  const auto realism = [&](int position) {
+    return trials.at(static_cast<std::size_t>(position)).answers.at(0).score;
+  };
+  EXPECT_EQ(realism(plain), 3);
+  EXPECT_FALSE(realism(unanswered));
+  EXPECT_EQ(reason(unanswered), "attempt 1");
+  EXPECT_FALSE(realism(set_aside));
+  EXPECT_FALSE(trials.at(set_aside).first.verdict) << "set aside, so nothing of it is known";
+  EXPECT_EQ(realism(repeated), 6);
+  EXPECT_EQ(reason(repeated), "attempt 2");
+  EXPECT_EQ(trials.at(excluded).excluded, "sneezed");
+  EXPECT_FALSE(trials.at(plain).excluded);
+  EXPECT_FALSE(trials.at(cut).first.played);
+  EXPECT_EQ(reason(again), "attempt 2");
+  EXPECT_EQ(reason(parted), "attempt 1");
+  EXPECT_EQ(trials.at(parted).answers.at(5).score, 7) << "given after the second";
 }
 
 TEST_F(Counting, TheCertificateIsOfJudgedShowingsAlone) {

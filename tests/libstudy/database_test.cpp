@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/salvage.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 #include "tests/libstudy/version_1.hpp"
 
 namespace study {
@@ -118,7 +118,7 @@ TEST(Database, FullLaterKeepsWhatWasCommitted) {
   EXPECT_THAT([&] { store.add_frames(id, 0, test::frames(0, 20000)); },
               ThrowsMessage<base::Error>(HasSubstr("no room left")));
   EXPECT_EQ(store.open_runs().at(0).sessions.at(0).units.size(), 24u);
-  EXPECT_EQ(read_ratings(folder / "study.db").size(), 21u);
+  EXPECT_EQ(test::trials_of(folder / "study.db").size(), 21u);
 }
 
 TEST(Database, UpgradeKeepsACopyAndTheData) {
@@ -142,7 +142,7 @@ TEST(Database, UpgradeKeepsACopyAndTheData) {
     if (entry.path().extension() == ".bak") copy = entry.path();
   }
   ASSERT_THAT(copy.string(), HasSubstr("study.db.v" + version));
-  EXPECT_EQ(read_ratings(copy).size(), 21u);
+  EXPECT_EQ(test::trials_of(copy).size(), 21u);
 }
 
 TEST(Database, FailedUpgradeChangesNothing) {
@@ -153,7 +153,7 @@ TEST(Database, FailedUpgradeChangesNothing) {
   steps.push_back("DROP TABLE response; CREATE TABLE trial (again);");
   EXPECT_THROW(open_database(path, Open::Write, steps), base::Error);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(read_ratings(path).size(), 21u);
+  EXPECT_EQ(test::trials_of(path).size(), 21u);
 }
 
 TEST(Database, AStepThatLosesRowsChangesNothing) {
@@ -171,7 +171,7 @@ TEST(Database, ReadingLeavesNothingBehind) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);
   const std::string before = test::bytes_of(path);
-  EXPECT_EQ(read_ratings(path).size(), 21u);
+  EXPECT_EQ(test::trials_of(path).size(), 21u);
   EXPECT_TRUE(test::bytes_of(path) == before);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // and its journal
 }
@@ -217,12 +217,12 @@ TEST(Database, Version1IsReadWithoutBeingChanged) {
   const fs::path path = folder / "study.db";
   test::write_version_1(path);
   const std::string before = test::bytes_of(path);
-  const auto rows = read_ratings(path);
+  const auto rows = test::trials_of(path);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
   ASSERT_EQ(rows.size(), 4u);
-  EXPECT_EQ(rows[0].rating, 5);
-  EXPECT_TRUE(rows[2].practice);
-  EXPECT_FALSE(rows[3].rating);
+  EXPECT_EQ(rows[0].score(), 5);
+  EXPECT_EQ(rows[2].trial.kind, "practice");
+  EXPECT_FALSE(rows[3].score());
   EXPECT_TRUE(test::bytes_of(path) == before);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
@@ -322,11 +322,12 @@ TEST(Database, EveryReleasedSchemaIsStillOpened) {
     EXPECT_EQ(Store(copy, Open::Write).open_runs().empty(), finished);
     EXPECT_FALSE(read_status(copy).sessions.empty());
     if (!finished) continue;
-    const auto rows = read_ratings(copy);
+    const auto rows = test::trials_of(copy);
     ASSERT_EQ(rows.size(), 4u);
-    for (const RatingRow& row : rows) {
-      ASSERT_TRUE(row.rating && row.timing);
-      EXPECT_NEAR(row.timing->realised.mean, row.nominal.mean, 1e-6);
+    for (const test::TrialOf& row : rows) {
+      const TaskShowing& shown = row.trial.first;
+      ASSERT_TRUE(row.score() && shown.verdict);
+      EXPECT_NEAR(shown.realised.mean, shown.nominal.mean, 1e-6);
       EXPECT_EQ(row.observer, "ptpe:a=31,b=0.035,slope=0.14,noise=1,participant_sd=0.5");
     }
   }

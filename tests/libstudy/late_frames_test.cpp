@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "libstudy/store/ratings.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libstudy/session_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 
 namespace study {
 namespace {
@@ -102,8 +102,8 @@ TEST(LateFrames, OneFrameLateByTwoMillisecondsDegradesTheTrial) {
   EXPECT_NEAR(row.mean, 50, 1e-9);
   const double slow = 1 / 0.022 - 50, fast = 1 / 0.018 - 50;
   EXPECT_NEAR(row.sd, std::sqrt((slow * slow + fast * fast) / 500 - std::pow((slow + fast) / 500, 2)), 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("1 late frame, the worst by 2 ms"));
+  const auto trials = test::trials_of(folder / "study.db");
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr("1 late frame, the worst by 2 ms"));
 }
 
 TEST(LateFrames, SustainedLoadFailsTheTrial) {
@@ -115,8 +115,8 @@ TEST(LateFrames, SustainedLoadFailsTheTrial) {
   EXPECT_NEAR(row.worst_late_ms, 25 * 500 - 20 * 499, 1e-6);
   EXPECT_NEAR(row.mean, 500 / (499 * 0.025 + 0.020), 1e-9);
   EXPECT_NEAR(row.sd, 10 * std::sqrt(499.0) / 500, 1e-9);
-  const auto ratings = read_ratings(folder / "study.db");
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
+  const auto trials = test::trials_of(folder / "study.db");
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
 }
 
 TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
@@ -125,11 +125,11 @@ TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
   EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
   // Frame i is shown 250 (i + 1) ms after the start; frames that are ready by 20 s are shown.
   EXPECT_EQ(row.frames, 81);
-  const auto ratings = read_ratings(folder / "study.db");
-  ASSERT_EQ(ratings.size(), 1u);
-  EXPECT_TRUE(ratings.at(0).rating.has_value());
-  EXPECT_EQ(ratings.at(0).timing->verdict, Verdict::Fail);
-  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr(": 81 of 500 frames shown"));
+  const auto trials = test::trials_of(folder / "study.db");
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_TRUE(trials.at(0).score().has_value());
+  EXPECT_EQ(trials.at(0).trial.first.verdict, Verdict::Fail);
+  EXPECT_THAT(trials.at(0).trial.first.reason, testing::HasSubstr(": 81 of 500 frames shown"));
   EXPECT_TRUE(Store(folder / "study.db", Open::Write).open_runs().empty());
 }
 

@@ -12,7 +12,6 @@
 #include <functional>
 
 #include "libstudy/store/database.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"

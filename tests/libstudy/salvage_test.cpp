@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"

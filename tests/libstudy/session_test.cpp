@@ -11,11 +11,11 @@
 #include "libstudy/display/null.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/session/frame_journal.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libstudy/session_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 
 namespace study {
 namespace {
@@ -46,9 +46,10 @@ constexpr std::int64_t no_limit = 1'000'000'000;
 /// Participant, position, score and realised moments of every trial.
 auto answers(const std::filesystem::path& path) {
   std::vector<std::tuple<std::string, int, int, double, double>> rows;
-  for (const RatingRow& row : read_ratings(path)) {
-    rows.emplace_back(row.participant, row.position, row.rating.value_or(0),
-                      row.timing ? row.timing->realised.mean : 0, row.timing ? row.timing->realised.sd : 0);
+  for (const test::TrialOf& row : test::trials_of(path)) {
+    const auto& realised = row.trial.first.realised;  // 0 where nothing was shown
+    rows.emplace_back(row.participant, row.trial.position, row.score().value_or(0), realised.mean,
+                      realised.sd);
   }
   return rows;
 }
@@ -59,12 +60,13 @@ TEST(Session, PlaysThePlanAndTheRealisedMomentsAreTheNominalOnes) {
   Store store(folder / "study.db", Open::Create);
   const auto run = store.add_run(test::run_plan(protocol, {"P01"}));
   play(store, protocol, no_limit);
-  for (const RatingRow& row : read_ratings(folder / "study.db")) {
-    ASSERT_TRUE(row.rating && row.timing);
-    EXPECT_EQ(row.timing->verdict, Verdict::Pass) << row.timing->reason;
-    EXPECT_NEAR(row.timing->realised.mean, row.nominal.mean, 1e-6 * row.nominal.mean);
-    EXPECT_NEAR(row.timing->realised.sd, row.nominal.sd, 1e-6 * row.nominal.mean);
-    EXPECT_EQ(static_cast<std::int64_t>(row.timing->realised.frames), frame_count(row.nominal));
+  for (const test::TrialOf& row : test::trials_of(folder / "study.db")) {
+    const TaskShowing& shown = row.trial.first;
+    ASSERT_TRUE(row.score());
+    EXPECT_EQ(shown.verdict, Verdict::Pass) << shown.reason;
+    EXPECT_NEAR(shown.realised.mean, shown.nominal.mean, 1e-6 * shown.nominal.mean);
+    EXPECT_NEAR(shown.realised.sd, shown.nominal.sd, 1e-6 * shown.nominal.mean);
+    EXPECT_EQ(static_cast<std::int64_t>(shown.realised.frames), frame_count(shown.nominal));
   }
   const auto certificate = read_certificate(folder / "study.db", run, FpsMean::Harmonic);
   ASSERT_EQ(certificate.size(), 21u);

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "libstudy/store/database.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 
 namespace study {
 namespace {
@@ -155,7 +155,38 @@ TEST(Store, KeepsHowTheDisplayFramedEachScene) {
   EXPECT_TRUE(row.is_null(7));
 }
 
-TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
+TEST(Store, ASessionResumedOnAnotherDisplayHasItsFramingTooAndEachShowingItsOwn) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  const OpenSession session = store.open_runs().at(0).sessions.at(0);
+  const auto trials = [&session] {
+    std::vector<OpenUnit> out;
+    for (const OpenUnit& unit : session.units)
+      if (unit.trial) out.push_back(unit);
+    return out;
+  }();
+  const auto count = [&](const std::string& rows) {
+    return sqlite::Connection(folder / "study.db", Open::Read).integer("SELECT count(*) FROM " + rows);
+  };
+  std::vector<SceneFraming> framing = test::session_plan(test::pilot(), "P01").framing;
+  test::show(store, session, trials.at(0));
+  store.add_framing(session.id, framing);
+  EXPECT_EQ(count("framing"), 1) << "the same display";
+  framing[0].visual_angle_deg = 20;
+  store.add_framing(session.id, framing);
+  test::show(store, session, trials.at(1));
+  framing[0].visual_angle_deg.reset();
+  store.add_framing(session.id, framing);
+  test::show(store, session, trials.at(2));
+  EXPECT_EQ(count("framing"), 3);
+  const std::string shown = "presentation JOIN framing USING (framing_id) WHERE ";
+  EXPECT_EQ(count(shown + "visual_angle_deg = 27"), 1);
+  EXPECT_EQ(count(shown + "visual_angle_deg = 20"), 1);
+  EXPECT_EQ(count(shown + "visual_angle_deg IS NULL"), 1);
+}
+
+TEST(Store, TrialsHoldWhatWasShownAndAnswered) {
   const test::TemporaryFolder folder;
   const Protocol protocol = test::pilot();
   {
@@ -164,29 +195,27 @@ TEST(Store, RatingsHoldWhatWasShownAndAnswered) {
     const auto session = only_session(store);
     test::answer_one(store, session, first_trial(session), "satisfaction", test::score(6));
   }
-  const auto rows = read_ratings(folder / "study.db");
+  EXPECT_EQ(read_tasks(folder / "study.db").protocols.at(0).sha256, protocol.sha256);
+  const auto rows = test::trials_of(folder / "study.db");
   ASSERT_EQ(rows.size(), 21u);
-  const RatingRow& row = rows[0];
-  EXPECT_EQ(row.participant, "P01");
-  EXPECT_EQ(row.observer, "ptpe:a=31,b=0.035");
-  EXPECT_EQ(row.protocol_sha256, protocol.sha256);
-  EXPECT_FALSE(row.test_data);
-  EXPECT_EQ(row.question, "satisfaction");
-  EXPECT_EQ(row.rating, 6);
-  EXPECT_EQ(row.scale_max, 7);
-  ASSERT_TRUE(row.timing);
-  const TimingVerdict& timing = *row.timing;
-  EXPECT_EQ(timing.verdict, Verdict::Degraded);
-  EXPECT_EQ(timing.grade, TimingGrade::DisplayFeedback);
-  EXPECT_EQ(timing.realised.frames, 40u);
-  EXPECT_EQ(timing.realised.mean, 49.5);
-  EXPECT_EQ(timing.realised.mean_arithmetic, 50.5);
-  EXPECT_EQ(timing.realised.sd, 3.25);
-  EXPECT_EQ(timing.lag1, -0.125);
-  EXPECT_EQ(timing.late, 1);
-  EXPECT_EQ(timing.reason, "one frame late");
-  EXPECT_FALSE(rows[1].rating);
-  EXPECT_FALSE(rows[1].timing);
+  EXPECT_EQ(rows[0].participant, "P01");
+  EXPECT_EQ(rows[0].observer, "ptpe:a=31,b=0.035");
+  EXPECT_EQ(rows[0].trial.answers.at(0).question, "satisfaction");
+  EXPECT_EQ(rows[0].score(), 6);
+  const TaskShowing& shown = rows[0].trial.first;
+  EXPECT_EQ(shown.verdict, Verdict::Degraded);
+  EXPECT_EQ(shown.grade, TimingGrade::DisplayFeedback);
+  EXPECT_EQ(shown.realised.frames, 40u);
+  EXPECT_EQ(shown.realised.mean, 49.5);
+  EXPECT_EQ(shown.realised.mean_arithmetic, 50.5);
+  EXPECT_EQ(shown.realised.sd, 3.25);
+  EXPECT_EQ(shown.late, 1);
+  EXPECT_EQ(shown.reason, "one frame late");
+  EXPECT_FALSE(rows[1].score());
+  EXPECT_FALSE(rows[1].trial.first.played);
+  EXPECT_FALSE(rows[1].trial.first.verdict);
+  sqlite::Connection look(folder / "study.db", Open::Read);
+  EXPECT_EQ(look.text("SELECT lag1 FROM presentation"), "-0.125");
 }
 
 TEST(Store, FramesComeBackAsTheyWereRecorded) {
@@ -348,9 +377,9 @@ TEST(Store, ARepeatedTrialIsAskedAgainAndItsLastAnswerCounts) {
   EXPECT_EQ(open.units[0].id, unit.id);
   EXPECT_EQ(open.units[0].attempts, 1);
   EXPECT_THAT(open.units[0].answered, IsEmpty());
-  EXPECT_FALSE(read_ratings(path)[0].rating) << "set aside, and not answered anew";
+  EXPECT_FALSE(test::trials_of(path)[0].score()) << "set aside, and not answered anew";
   test::answer_one(store, open, open.units[0], "satisfaction", test::score(7));
-  EXPECT_EQ(read_ratings(path)[0].rating, 7);
+  EXPECT_EQ(test::trials_of(path)[0].score(), 7);
   EXPECT_TRUE(store.open_runs().empty());
   sqlite::Connection look(path, Open::Read);
   EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 22);
@@ -368,9 +397,9 @@ TEST(Store, ExcludedTrialsAreMarkedWithTheReason) {
   EXPECT_THROW(store.exclude_trial(session.id, trial, ""), base::Error);
   EXPECT_THROW(store.exclude_trial(session.id + 1, trial, "x"), base::Error);
   store.exclude_trial(session.id, trial, "the phone rang");
-  const auto rows = read_ratings(folder / "study.db");
-  EXPECT_TRUE(rows[0].excluded);
-  EXPECT_FALSE(rows[1].excluded);
+  const auto rows = test::trials_of(folder / "study.db");
+  EXPECT_EQ(rows[0].trial.excluded, "the phone rang");
+  EXPECT_FALSE(rows[1].trial.excluded);
   EXPECT_EQ(read_status(folder / "study.db").sessions.at(0).excluded, 1);
 }
 

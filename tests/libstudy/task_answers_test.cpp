@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
+#include "libstudy/store/names.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -212,6 +214,52 @@ TEST_F(LabSession, ExclusionsCarryTheExperimentersReason) {
   EXPECT_FALSE(session.trials.at(4).excluded.has_value());
 }
 
+TEST(TaskAnswers, WhatUnblindedTheExperimenterStandsWithTheSession) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  store.log(sessions.at(0).id, "resumed", "");
+  store.log(sessions.at(1).id, mirror_event, "");
+  store.log(sessions.at(2).id, revealed_event, "");
+  store.log(sessions.at(2).id, revealed_event, "");
+  store.log(sessions.at(2).id, mirror_event, "");
+  const auto read = read_tasks(folder / "study.db").protocols.at(0).sessions;
+  EXPECT_EQ(read.at(0).unblinded, "");
+  EXPECT_EQ(read.at(1).unblinded, "mirror opened");
+  EXPECT_EQ(read.at(2).unblinded, "mirror opened and setting revealed");
+}
+
+TEST(TaskAnswers, AnglesAreThoseOfWhatWasShown) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  RunPlan run = test::run_plan(test::pilot(), {"P01", "P02", "P03"});
+  for (auto& session : run.sessions) session.display = "window";
+  run.sessions[1].framing.clear();
+  run.sessions[2].display = "none";
+  store.add_run(run);
+  const auto sessions = store.open_runs().at(0).sessions;
+  const auto is_trial = [](const OpenUnit& unit) { return unit.trial.has_value(); };
+  for (const OpenSession& session : sessions) {
+    const auto unit = std::find_if(session.units.begin(), session.units.end(), is_trial);
+    test::show(store, session, *unit);
+  }
+  const auto angles = [&](std::size_t session) {
+    return read_tasks(folder / "study.db").protocols.at(0).sessions.at(session).angles;
+  };
+  const std::string first = "camera 75 degrees, eye 27 degrees, ratio 0.36";
+  EXPECT_EQ(angles(0), first);
+  EXPECT_EQ(angles(1), "not known") << "as an earlier version wrote it";
+  EXPECT_EQ(angles(2), "") << "nothing was drawn";
+  auto framing = run.sessions[0].framing;
+  framing[0].visual_angle_deg = 20;
+  store.add_framing(sessions[0].id, framing);
+  EXPECT_EQ(angles(0), first) << "nothing was shown on it yet";
+  const auto& units = sessions[0].units;
+  test::show(store, sessions[0], *std::find_if(units.rbegin(), units.rend(), is_trial));
+  EXPECT_EQ(angles(0), "camera 75 degrees, eye 20 degrees, ratio 0.27; " + first);
+}
+
 TEST(TaskAnswers, APilotShowsOneMethodAtManySettings) {
   const test::TemporaryFolder folder;
   Store(folder / "study.db", Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
@@ -240,6 +288,17 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   EXPECT_EQ(trials[0].first.nominal.sd, 5);
   EXPECT_EQ(trials[0].answers.at(0).score, 5);
   EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
+}
+
+// A later version knows no angles of what an earlier one drew, before the upgrade and after it.
+TEST(TaskAnswers, AnEarlierVersionsAnglesAreNotKnown) {
+  const test::TemporaryFolder folder;
+  test::write_version_1(folder / "old.db");
+  sqlite::Connection(folder / "old.db", Open::Write).execute("UPDATE session SET display = 'headless'");
+  const auto angles = [&] { return read_tasks(folder / "old.db").protocols.at(0).sessions.at(0).angles; };
+  EXPECT_EQ(angles(), "not known");
+  Store(folder / "old.db", Open::Write);
+  EXPECT_EQ(angles(), "not known");
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "libstudy/store/personal.hpp"
-#include "libstudy/store/ratings.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
+#include "tests/libstudy/trials_of.hpp"
 #include "tests/libstudy/version_1.hpp"
 
 namespace study {
@@ -132,10 +132,10 @@ TEST(Withdraw, CleansBackupsOfBothSchemas) {
   EXPECT_TRUE(done.beside.left.empty());
   EXPECT_EQ(occurrences(folder.path(), telling_bytes), 0);
   for (const fs::path& backup : done.beside.cleaned) {
-    const auto rows = read_ratings(backup);
+    const auto rows = test::trials_of(backup);
     ASSERT_EQ(rows.size(), 2u) << backup;
     EXPECT_EQ(rows[0].participant, "P01");
-    EXPECT_EQ(rows[1].rating, 2);
+    EXPECT_EQ(rows[1].score(), 2);
     Connection look(backup, Open::Write);
     EXPECT_EQ(look.integer("SELECT count(*) FROM session"), 1);
     EXPECT_THROW(look.execute("DELETE FROM event WHERE event_id = 1"), base::Error);

@@ -22,6 +22,9 @@ std::string protocols_text(const Field& study) {
     if (!protocol["angles"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by vertical angle: " + counts(protocol["angles"]) + ". ";
+    if (!protocol["unblinded"].members().empty())
+      out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
+             counts(protocol["unblinded"]) + ". ";
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/study/desk/console_text.hpp"
+#include "libstudy/store/names.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 
@@ -269,7 +270,7 @@ void Console::reveal() {
   keep(
       shows ? "that method and setting are shown" : "that method and setting are hidden",
       [=, this] {
-        store_.log(session, shows ? "setting revealed" : "setting hidden", "to the experimenter");
+        store_.log(session, shows ? study::revealed_event : "setting hidden", "to the experimenter");
       },
       [=, this] {
         revealed_ = shows;

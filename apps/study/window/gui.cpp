@@ -104,6 +104,12 @@ void Gui::end() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
+void draw_wrapped(const std::string& words, unsigned colour) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(words.c_str(), words.c_str() + words.size());
+  ImGui::PopStyleColor();
+}
+
 float draw_centred(const std::string& words, ImVec2 at, float width, unsigned colour) {
   std::istringstream all(words);
   std::string line;

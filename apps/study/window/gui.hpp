@@ -42,6 +42,9 @@ class Gui {
   float size_px_ = 0;
 };
 
+/// Words at ImGui's cursor, wrapped at its position for that.
+void draw_wrapped(const std::string& words, unsigned colour);
+
 /// Words centred about x, wrapped to a width, from y down; returns the y below them.
 float draw_centred(const std::string& words, ImVec2 top_centre, float width, unsigned colour);
 

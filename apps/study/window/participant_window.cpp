@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/study/window/page_keys.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
 
@@ -24,41 +25,6 @@ constexpr unsigned black = IM_COL32(0, 0, 0, 255);
 WindowChoice as_window(const ParticipantWindowOptions& options) {
   return {"vip-study", options.width_px, options.height_px, options.monitor,
           "use --display headless or none on a machine without a screen"};
-}
-
-int digit_of(int key) {
-  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
-  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;
-  return -1;
-}
-
-std::optional<PageKey> page_key(int key, bool shift) {
-  switch (key) {
-    case GLFW_KEY_LEFT:
-      return PageKey::Left;
-    case GLFW_KEY_RIGHT:
-      return PageKey::Right;
-    case GLFW_KEY_UP:
-      return PageKey::Up;
-    case GLFW_KEY_DOWN:
-      return PageKey::Down;
-    case GLFW_KEY_TAB:
-      return shift ? PageKey::Previous : PageKey::Next;
-    case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER:
-    case GLFW_KEY_SPACE:
-      return PageKey::Enter;
-    case GLFW_KEY_BACKSPACE:
-      return PageKey::Erase;
-    default:
-      return {};
-  }
-}
-
-float lines_of(int key) {
-  if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
-  if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;
-  return 0;
 }
 
 /// Thrown out of the question whether to stop when the session ends for another reason.
@@ -122,6 +88,18 @@ void ParticipantWindow::show_black() {
   gui_.begin(black);
   gui_.end();
   glfwSwapBuffers(window_.get());
+  if (mirror_) mirror_->take_black();
+}
+
+void ParticipantWindow::swap() {
+  if (mirror_) mirror_->take(0);
+  glfwSwapBuffers(window_.get());
+}
+
+void ParticipantWindow::open_mirror() { mirror_ = std::make_unique<MirrorWindow>(window_); }
+
+void ParticipantWindow::mirror(unsigned framebuffer) {
+  if (mirror_) mirror_->take_some(framebuffer);
 }
 
 void ParticipantWindow::draw(PageView& view, PageState& state, std::int64_t now_ns) {
@@ -158,7 +136,7 @@ std::vector<study::TimedAnswer> ParticipantWindow::run_page(PageText text,
   // Drawn twice before it is shown: the first time measures.
   PageState unseen(questions, least_s, clock.now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen, clock.now_ns());
-  glfwSwapBuffers(window_.get());
+  swap();
   forget_input();
   PageState state(questions, least_s, clock.now_ns());
   while (!state.confirmed()) {
@@ -172,7 +150,7 @@ std::vector<study::TimedAnswer> ParticipantWindow::run_page(PageText text,
       continue;
     }
     draw(view, state, now_ns);
-    glfwSwapBuffers(window_.get());
+    swap();
   }
   show_black();
   window_.take_minimised();  // that the page was away for a while does no harm
@@ -195,7 +173,7 @@ std::optional<bool> ParticipantWindow::ask_first(const DeskChoice& choice, const
     check();
     if (handle_keys(state, view, clock.now_ns()) && !state.guarded(clock.now_ns())) return {};
     draw(view, state, clock.now_ns());
-    glfwSwapBuffers(window_.get());
+    swap();
   }
   return state.answers()[0].answer.score == 1;
 }
@@ -238,7 +216,7 @@ void ParticipantWindow::wait(const PauseWords& words, std::int64_t until_ns, con
     gui_.begin(black);
     draw_countdown(gui_, words, whole_s, corner());
     gui_.end();
-    glfwSwapBuffers(window_.get());
+    swap();
   }
   forget_input();
   if (drawn_s >= 0) show_black();
@@ -253,7 +231,7 @@ void ParticipantWindow::show_words(const PauseWords& words, const std::function<
       gui_.begin(black);
       draw_words(gui_, words, corner());
       gui_.end();
-      glfwSwapBuffers(window_.get());
+      swap();
     }
     drawn = !look_up(poll_s, clock, check);
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "apps/study/desk/words.hpp"
 #include "apps/study/window/gamepad.hpp"
 #include "apps/study/window/gui.hpp"
+#include "apps/study/window/mirror_window.hpp"
 #include "apps/study/window/page_view.hpp"
 #include "libstudy/session/session.hpp"
 
@@ -46,6 +48,11 @@ class ParticipantWindow {
   void set_over(bool over);
   /// Black, handed over now.
   void show_black();
+  /// From now on the experimenter sees the participant's view too. base::Error as MirrorWindow.
+  void open_mirror();
+  /// For the mirror, where one is open: the picture of a stimulus in this framebuffer object, which was just
+  /// handed over.
+  void mirror(unsigned framebuffer);
 
   /// Takes in what happened to the window, waiting up to wait_s for it. base::Error when it was closed or the
   /// display is gone.
@@ -73,6 +80,8 @@ class ParticipantWindow {
   /// Waits a moment; true when Esc was pressed, and answered with the wish to stop or not.
   bool look_up(double wait_s, const study::Clock& clock, const study::Check& check);
   std::string corner() const { return over_ ? std::string() : words_.corner; }
+  /// Hands over what was drawn.
+  void swap();
   void show_cursor(bool shown);
   void forget_input();
   /// Until the window is back, or others wish the end.
@@ -87,6 +96,7 @@ class ParticipantWindow {
   bool stop_wished_ = false;
   bool over_ = false;  ///< see set_over()
   bool away_ = false;  ///< the last wish was NotShown: the window may still be minimised
+  std::unique_ptr<MirrorWindow> mirror_;
 };
 
 }  // namespace apps

@@ -91,6 +91,7 @@ study::PresentTimes WindowDisplay::present(const study::Clock& clock) {
   times.predicted_display_ns = next_beat(refresh_, times.submitted_ns);
   glfwSwapBuffers(window_->window().get());
   window_->poll(0);
+  window_->mirror(picture_.framebuffer());
   return times;
 }
 

@@ -54,6 +54,7 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   parts.mouse = std::make_unique<WindowMouse>(window);
   parts.poll = [window] { window->poll(0); };
   parts.idle = [window] { return window->window().idle_s(); };
+  parts.open_mirror = [window] { window->open_mirror(); };
   parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
   return parts;
 }

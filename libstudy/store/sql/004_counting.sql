@@ -125,8 +125,8 @@ UPDATE session SET state = 'refused' WHERE state = 'not eligible' AND EXISTS (SE
   WHERE n.session_id = session.session_id AND u.kind = 'consent' AND n.words = 'block ' || u.block);
 CREATE INDEX session_of_person ON session (person);
 
--- How each session's display framed each scene of its protocol. No row: nothing was drawn, or an earlier version, which did not
--- write it.
+-- How each session's display framed each scene of its protocol; another row of a scene where the session was resumed on a display
+-- that frames it otherwise. No row: nothing was drawn, or an earlier version, which did not write it.
 CREATE TABLE framing (
   framing_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -137,6 +137,8 @@ CREATE TABLE framing (
   shown_height_px INTEGER NOT NULL CHECK (shown_height_px > 0), -- likewise its height, px
   camera_angle_deg REAL NOT NULL CHECK (camera_angle_deg > 0 AND camera_angle_deg < 180), -- vertical angle of the camera, degrees
   visual_angle_deg REAL CHECK (visual_angle_deg > 0 AND visual_angle_deg < 180), -- vertical angle that the picture fills of the eye's view, in which eccentricity is taken; empty: not known, then it is taken in the camera's, degrees
-  angle_ratio REAL CHECK (angle_ratio > 0), -- visual_angle_deg by camera_angle_deg; empty: not known
-  UNIQUE (session_id, scene)
+  angle_ratio REAL CHECK (angle_ratio > 0) -- visual_angle_deg by camera_angle_deg; empty: not known
 ) STRICT;
+CREATE INDEX framing_of_scene ON framing (session_id, scene);
+-- framing_id: how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
+ALTER TABLE presentation ADD COLUMN framing_id INTEGER REFERENCES framing;

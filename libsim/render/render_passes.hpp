@@ -1,0 +1,65 @@
+#pragma once
+/// What stands behind a FluidRenderer: its programs and buffers, and the passes of a draw. Seen by
+/// fluid_renderer.cpp alone.
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <initializer_list>
+
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/render/gl_program.hpp"
+#include "libsim/render/pass_timer.hpp"
+#include "libsim/render/view_targets.hpp"
+
+namespace sim {
+
+inline constexpr std::size_t most_views = 2;
+
+/// A program of one compute shader.
+GlProgram compute_program(const char* file, const char* defines = "");
+
+/// The buffers become shader storage 0, 1, ...; 0 leaves one as it is.
+void bind_storage(std::initializer_list<unsigned> buffers);
+
+struct FluidRenderer::State {
+  RenderOptions options;
+  std::array<float, 4> tank;
+  PassTimer timer;
+  GlProgram splat = compute_program("splat.comp");
+  GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
+  GlProgram block_depth = compute_program("block_depth.comp");
+  GlProgram splat_wide = compute_program("splat_wide.comp");
+  GlProgram front = compute_program("front.comp");
+  GlProgram front_wide = compute_program("splat_wide.comp", "#define FRONT\n");
+  GlProgram filter_depth = compute_program("filter_depth.comp");
+  GlProgram clean_depth = compute_program("clean_depth.comp");
+  GlProgram normals = compute_program("normals.comp");
+  GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
+  GlProgram thickness_second = compute_program("smooth_thickness.comp");
+  GlProgram composite{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "composite.frag"}};
+  GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
+  GlBuffer counters, wide_list, no_particles, values;
+  GLuint vertex_array = 0;
+  std::array<ViewTargets, most_views> targets;
+  std::size_t views_drawn = 0;
+  std::int64_t particles_drawn = 0;  // over all views
+
+  State(const Scene& scene, const RenderOptions& chosen);
+  ~State();
+
+  /// A view of the last draw, ready to be read.
+  const ViewTargets& drawn(std::size_t view) const;
+  void write_block(ViewTargets& t) const;
+  void clear(ViewTargets& t, std::int64_t count);
+  void splat_particles(ViewTargets& t, unsigned particles, std::int64_t count);
+  void splat_round(int second_round, std::int64_t count);
+  void dispatch_wide(const GlProgram& program, std::int64_t count, int all_items) const;
+  void find_front(std::int64_t count);
+  void smooth_depth(ViewTargets& t, unsigned particles);
+  void smooth_thickness(ViewTargets& t, unsigned particles);
+  void shade(const ViewTargets& t, unsigned framebuffer);
+  void draw_view(ViewTargets& t, const ParticleBuffer& particles, unsigned framebuffer);
+};
+
+}  // namespace sim

@@ -1,0 +1,59 @@
+#include "libsim/solver/readout.hpp"
+
+#include <algorithm>
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct PackForDrawing {
+  const Vec4* position;
+  Vec4* out;
+  SIM_FN void operator()(int i) const {
+    out[i] = with_w(xyz(position[i]), radius_per_support * position[i].w);
+  }
+};
+
+}  // namespace
+
+void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
+                   const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out) {
+  out.resize(s.size());
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const SaliencyParts p = parts.empty() ? SaliencyParts{} : parts[i];
+    out[i] = {p.acuity, p.manifold, p.temporal, p.combined, s[i], target[i]};
+  }
+}
+
+LevelEvents events_of(const LevelCounts& counts) {
+  return {counts.splits,         counts.born,          counts.merges,
+          counts.split_deferred, counts.split_at_wall, counts.split_no_room,
+          counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
+}
+
+std::vector<ParticleState> states_of(const Particles& particles) {
+  const auto position = particles.position.to_host();
+  const auto velocity = particles.velocity.to_host();
+  const auto id = particles.id.to_host();
+  const auto level = particles.level.to_host();
+  std::vector<ParticleState> out(position.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = {id[i],         level[i],      position[i].x, position[i].y,
+              position[i].z, velocity[i].x, velocity[i].y, velocity[i].z};
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return out;
+}
+
+void render_particles_of(const Particles& particles, std::vector<RenderParticle>& out) {
+  out.resize(static_cast<std::size_t>(particles.size()));
+  static_assert(sizeof(RenderParticle) == sizeof(Vec4));
+  copy_to_host(out.data(), particles.position.data(), out.size() * sizeof(Vec4));
+  for (auto& particle : out) particle.radius_m *= radius_per_support;
+}
+
+void pack_for_drawing(const Particles& particles, Vec4* out) {
+  for_each("pack for drawing", particles.size(), PackForDrawing{particles.position.data(), out});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,28 @@
+#pragma once
+/// What a run's particles are told as.
+
+#include <cstdint>
+#include <vector>
+
+#include "libsim/simulation.hpp"
+#include "libsim/stages/fluid_state.hpp"
+
+namespace sim::SIM_BACKEND {
+
+constexpr float radius_per_support = 0.25f;  ///< h = 4 r
+
+/// One entry a particle; `parts` may be empty.
+void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
+                   const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out);
+
+LevelEvents events_of(const LevelCounts& counts);
+
+/// By id.
+std::vector<ParticleState> states_of(const Particles& particles);
+
+/// Place and radius of each, in the present order.
+void render_particles_of(const Particles& particles, std::vector<RenderParticle>& out);
+/// The same in the back end's memory, one entry a particle.
+void pack_for_drawing(const Particles& particles, Vec4* out);
+
+}  // namespace sim::SIM_BACKEND

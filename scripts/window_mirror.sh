@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# The experimenter's mirror of the participant's view on a virtual screen: both windows are there and show the same page, picture
+# and black, the database says so, and without --mirror there is neither. Fails when one of these is not so.
+# usage: scripts/window_mirror.sh [FOLDER]    default: out/window_mirror. Takes half a minute.
+# Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=${1:-out/window_mirror}
+study=${VIP_STUDY:-build/dev/bin/vip-study}
+size=1600x900  # the participant's 800x450 in one corner, the mirror's 640x360 in the opposite one
+
+. scripts/window_lib.sh
+db=$out/study.db
+rm -f "$out"/study.db* "$out"/*.png "$out"/*.{events,log}
+bake_dam "$out/dam.bake"
+screen_of "$out/screen" "$size"
+DISPLAY=:$(cat "$out/screen")
+export DISPLAY
+# The pilot with one long setting.
+sed -e 's/^mean_fps = .*/mean_fps = [20]/' -e 's/^sd_fps = .*/sd_fps = [5]/' protocols/ptpe_pilot.toml >"$out/protocol.toml"
+
+begin() {  # begin CODE [OPTION ...]: a person's session, up to its first page
+  code=$1 events=$out/$1.events
+  shift
+  "$study" run "$out/protocol.toml" --db "$db" --participant "$code" --display window --size 800x450 --stimulus "$out/dam.bake" \
+    --trial-seconds 8 --events "$@" >"$events" 2>"$out/$code.log" </dev/null &
+  session=$!
+  until_begins instructions
+}
+until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms are over
+  local give_up=$((SECONDS + 60))
+  until tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; do
+    [ $SECONDS -lt $give_up ] && alive || { cat "$out/$code.log" >&2; echo "window_mirror: $code comes to no $1" >&2; exit 1; }
+    sleep 0.05
+  done
+  sleep 1
+}
+finish() { kill -INT "$session"; wait "$session" || true; session=; }
+ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
+windows() { xdotool search --onlyvisible --name '^vip-study' | wc -l; }
+mirrored() { ask "select count(*) from event join session using (session_id) where participant = '$code' and kind = 'mirror opened'"; }
+# Mean and spread of grey, 0 to 100, of the participant's picture and of the mirror's.
+greys() { convert "$out/$1.png" -crop "$2" -colorspace Gray -format '%[fx:round(100*mean)] %[fx:round(100*standard_deviation)]' info:; }
+same() {  # same WHAT: on a picture of the screen, and more than one grey
+  shoot "$1"
+  set -- "$1" $(greys "$1" 800x450+0+0) $(greys "$1" 640x360+960+540)
+  expect "the mirror shows the $1 (mean and spread: $2 $3, $4 $5)" yes \
+    "$(awk -v a="$2" -v b="$3" -v c="$4" -v d="$5" 'BEGIN { print (b > 0 && (a - c)^2 <= 4 && (b - d)^2 <= 4) ? "yes" : "no" }')"
+}
+
+begin P01 --mirror
+expect "windows with --mirror" 2 "$(windows)"
+expect "a page's grey in the mirror" "38 38 40" "$(pixel 962 542)"
+same page
+sleep 3
+key Return
+until_begins consent
+key 1 Return
+until_begins stimulus
+until [ "$(ask "select count(*) from presentation where state = 'running'")" = 1 ]; do sleep 0.1; done
+sleep 2
+same stimulus
+expect "the keyboard stays the participant's" "$(xdotool search --onlyvisible --name '^vip-study$')" "$(xdotool getwindowfocus)"
+until [ "$(ask "select count(*) from presentation where state = 'played'")" = 1 ]; do sleep 0.1; done
+sleep 1
+same questions
+finish
+expect "events with --mirror" 1 "$(mirrored)"
+
+begin P02
+expect "windows without" 1 "$(windows)"
+finish
+expect "events without" 0 "$(mirrored)"
+exit $failed

@@ -1,0 +1,139 @@
+/// How the sessions of a run end, and the exit status that says so.
+#include "apps/study/session_player.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tests/libstudy/session_fixture.hpp"
+
+namespace apps {
+namespace {
+
+using study::test::Scripted;
+using ::testing::HasSubstr;
+
+constexpr const char* consent_toml = R"(
+[[block]]
+kind = "consent"
+id = "consent"
+text = "Read this."
+
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I take part."
+anchors = {0 = "no", 1 = "yes"}
+accept = [1, 1]
+
+)";
+
+/// Consent, then pairs.
+study::Protocol consented() {
+  std::string text = study::test::paced_pairs().text;
+  text.insert(text.find("[[block]]"), consent_toml);
+  return study::parse_protocol(text, "consented.toml");
+}
+
+/// Played like a window's sessions, without the window.
+class Played : public ::testing::Test {
+ protected:
+  Played() {
+    setup_.virtual_clock = true;
+    setup_.clock = std::make_unique<study::VirtualClock>();
+    setup_.display = std::make_unique<study::NullDisplay>();
+    RunOptions options;
+    options.display = "none";
+    setup_.stimuli = std::make_unique<CellStimuli>(options, protocol_, stats::PtpeModel{}, Viewing{});
+    auto person = std::make_unique<Scripted>();
+    person_ = person.get();
+    person_->says = {{"age", study::test::score(40)}, {"remarks", study::test::words("")}};
+    setup_.participant = std::move(person);
+    play_.database = folder_ / "study.db";
+  }
+
+  /// Exit status of the command; `observer`: who answers by the plan, none for a person.
+  int play(const std::optional<std::string>& observer = {}, const std::vector<std::string>& codes = {"P01"}) {
+    study::RunPlan plan = study::test::run_plan(protocol_, codes);
+    for (auto& session : plan.sessions) session.observer = observer;
+    study::Store store(play_.database, study::sqlite::Open::Create);
+    store.add_run(plan);
+    ::testing::internal::CaptureStdout();
+    const RunEnd end = play_run(store, store.open_runs().at(0), protocol_, setup_, play_);
+    out_ = ::testing::internal::GetCapturedStdout();
+    try {
+      end_command(play_.database, {end, {}});
+      return 0;
+    } catch (const CLI::RuntimeError& ended) {
+      return ended.get_exit_code();
+    }
+  }
+  std::string state(const std::string& code) {
+    for (const auto& row : study::read_status(play_.database).sessions) {
+      if (row.participant == code) return row.state;
+    }
+    return "none";
+  }
+
+  ::test::TemporaryFolder folder_;
+  const study::Protocol protocol_ = consented();
+  SessionSetup setup_;
+  Scripted* person_ = nullptr;  ///< of setup_
+  PlayOptions play_;
+  std::string out_;  ///< what was printed
+};
+
+TEST_F(Played, ASessionThatIsDoneIsNought) {
+  EXPECT_EQ(play(), 0);
+  EXPECT_EQ(state("P01"), "done");
+  EXPECT_THAT(out_, ::testing::Not(HasSubstr("the session is over")));
+}
+
+TEST_F(Played, AStoppedSessionIsThree) {
+  setup_.wish = [](const auto&) { return study::Wish::EndSession; };
+  EXPECT_EQ(play(), 3);
+  EXPECT_EQ(state("P01"), "stopped");
+  EXPECT_THAT(out_, HasSubstr("P01 stopped before the end: the session is over"));
+}
+
+TEST_F(Played, ARefusedConsentIsFour) {
+  person_->says["take_part"] = study::test::score(0);
+  EXPECT_EQ(play(), 4);
+  EXPECT_EQ(state("P01"), "refused");
+  EXPECT_THAT(out_, HasSubstr("P01 did not consent: the session is over"));
+}
+
+TEST_F(Played, OfSeveralSessionsAStopIsTold) {
+  setup_.wish = [this](const auto&) {
+    if (!person_->seen.empty() && person_->seen.back() == "tell refused")  // the second one's turn
+      person_->says["take_part"] = study::test::score(1);
+    return state("P01") == "refused" ? study::Wish::EndSession : study::Wish::GoOn;
+  };
+  person_->says["take_part"] = study::test::score(0);
+  EXPECT_EQ(play({}, {"P01", "P02"}), 3);
+  EXPECT_EQ(state("P01"), "refused");
+  EXPECT_EQ(state("P02"), "stopped");
+}
+
+TEST_F(Played, AnObserversRefusalIsNoNewsToAnyone) {
+  person_->says["take_part"] = study::test::score(0);
+  EXPECT_EQ(play("scripted"), 0);
+  EXPECT_EQ(state("P01"), "refused");
+}
+
+TEST_F(Played, AMirrorIsAnEventOfEachSessionAndNoneWithoutIt) {
+  const auto mirrored = [&] {
+    return study::sqlite::Connection(play_.database, study::sqlite::Open::Read)
+        .integer("SELECT count(DISTINCT session_id) FROM event WHERE kind = 'mirror opened'");
+  };
+  ASSERT_EQ(play(), 0);
+  EXPECT_EQ(mirrored(), 0);
+  play_.database = folder_ / "mirrored.db";
+  play_.mirror = true;
+  ASSERT_EQ(play({}, {"P01", "P02"}), 0);
+  EXPECT_EQ(mirrored(), 2);
+}
+
+}  // namespace
+}  // namespace apps
