@@ -21,7 +21,11 @@ constexpr const char* sessions_sql =
     "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
     "printf('camera %.4g degrees, eye ', camera_angle_deg) || iif(visual_angle_deg IS NULL, 'not known', "
     "printf('%.4g degrees, ratio %.2f', visual_angle_deg, angle_ratio)) AS angles FROM framing f "
-    "WHERE f.session_id = session.session_id ORDER BY 1)) FROM session WHERE protocol_id = ? ORDER BY "
+    "WHERE f.session_id = session.session_id ORDER BY 1)), (SELECT group_concat(words, '; ') FROM (SELECT "
+    "scene || ': ' || group_concat(printf('%dx%d px at %.4g degrees by %s', width_px, height_px, "
+    "camera_angle_deg, coalesce(renderer, 'a renderer not known')), ' and ') AS words FROM framing f WHERE "
+    "f.session_id = session.session_id GROUP BY scene HAVING count(*) > 1 ORDER BY scene)) FROM session "
+    "WHERE protocol_id = ? ORDER BY "
     "participant, visit";
 
 constexpr const char* trials_sql =
@@ -77,7 +81,8 @@ class Reader {
                           {},
                           {},
                           session_.is_null(9) ? "" : session_.text(9),
-                          session_.is_null(10) ? "" : session_.text(10)};
+                          session_.is_null(10) ? "" : session_.text(10),
+                          session_.is_null(11) ? "" : session_.text(11)};
       session.trials = trials(session_.integer(0));
       session.catches = catches(session_.integer(0));
       out.push_back(std::move(session));

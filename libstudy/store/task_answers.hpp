@@ -62,7 +62,7 @@ struct TaskSession {
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
   std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
-  std::string gaze_source;  ///< "tracked", "mouse", "fixed" or "none"
+  std::string gaze_source;  ///< "tracked", "mouse", "fixed", "fixation" or "none"
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
@@ -70,6 +70,9 @@ struct TaskSession {
   /// "camera 75 degrees, eye 27.4 degrees, ratio 0.37", for each pair of angles of its scenes; empty: not
   /// stored.
   std::string angles;
+  /// "a.toml: 640x360 px at 75 degrees by R and 64x36 px at 75 degrees by S", for each scene whose pictures
+  /// differed in renderer, size or angle; empty: none did, or not stored.
+  std::string mixed_pictures;
 };
 
 /// A protocol with all its sessions by participant and visit.

@@ -111,16 +111,24 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
   }
 }
 
+std::string listed(const std::vector<int>& cells) {
+  std::string out;
+  for (const int cell : cells) out += (out.empty() ? "" : " ") + std::to_string(cell);
+  return out;
+}
+
 void add_framing(sqlite::Connection& database, std::int64_t session,
                  const std::vector<SceneFraming>& framing) {
-  Statement insert(database,
-                   "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
-                   "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
-                   "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7)");
+  Statement insert(
+      database,
+      "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
+      "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio, cells, copied, renderer) "
+      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7, ?9, nullif(?10, ''), nullif(?11, ''))");
   for (const SceneFraming& one : framing) {
     insert.bind(0, session).bind(1, one.scene).bind(2, one.width_px).bind(3, one.height_px);
     insert.bind(4, one.shown_width_px).bind(5, one.shown_height_px);
-    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg).run();
+    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg);
+    insert.bind(8, listed(one.cells)).bind(9, listed(one.copied)).bind(10, one.renderer).run();
   }
 }
 

@@ -32,7 +32,8 @@ inline SessionPlan session_plan(const Protocol& protocol, const std::string& par
   plan.machine = "test";
   plan.time_zone = "UTC";
   plan.station = "north";
-  plan.framing = {{protocol.design.cells.front().stimulus.scene, 640, 360, 640, 360, 75, 27.0}};
+  plan.framing = {
+      {protocol.design.cells.front().stimulus.scene, 640, 360, 640, 360, 75, 27.0, {0}, {}, "test"}};
   plan.plan = make_plan(protocol, participant, seed, slot);
   return plan;
 }

@@ -22,6 +22,11 @@ std::string protocols_text(const Field& study) {
     if (!protocol["angles"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by vertical angle: " + counts(protocol["angles"]) + ". ";
+    if (!protocol["mixed_pictures"].members().empty())
+      out += "Sessions of " + title +
+             " with analysed answers in which pictures of one scene were compared though they differ in "
+             "renderer, size or angle, as the protocol accepts: " +
+             counts(protocol["mixed_pictures"]) + ". ";
   }
   return out;
 }

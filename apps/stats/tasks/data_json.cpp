@@ -29,7 +29,8 @@ Json protocol_json(const TaskData& data) {
       {"gaze", data.gaze},
       {"stations", data.stations},
       {"displays", data.displays},
-      {"angles", data.angles}};
+      {"angles", data.angles},
+      {"mixed_pictures", data.mixed_pictures}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
