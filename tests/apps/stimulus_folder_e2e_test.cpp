@@ -93,8 +93,8 @@ TEST_F(StimulusFolderE2e, UnderFixationABakeHoldsTheFramesOfALiveSession) {
   more.insert(more.end(), {"--stimulus", bakes_});
   const Ended ended = run(database_, more);
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM frame WHERE active_fraction < 1 AND tau_fps < 0"), 9)
-      << "all but the start";
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM frame WHERE tau_fps < 0"), 9) << "all but the start";
+  EXPECT_GT(count_in(database_, "SELECT count(*) FROM frame WHERE active_fraction < 1"), 0);
   EXPECT_EQ(found(frames), found(live, frames));
   EXPECT_EQ(found("SELECT gaze_source FROM session"), "fixation\n");
   EXPECT_EQ(count_in(database_, "SELECT test_data FROM session"), 0);
