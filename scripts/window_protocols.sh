@@ -38,7 +38,7 @@ DISPLAY=:$(cat "$out/screen")
 export DISPLAY
 begun=$SECONDS
 "$study" run "$out/$protocol.toml" --db "$db" --participant P01 --display window --gaze mouse --station test \
-  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds "$seconds" "${stimulus[@]}" --seed 5 --events \
+  --screen-width-mm 520 --viewing-distance-mm 600 --trial-seconds "$seconds" "${stimulus[@]}" --seed 5 --events --accept-slow \
   >"$out/events" 2>"$out/log" </dev/null &
 session=$!
 

@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/common/headless_display.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/live_rates.hpp"
 #include "apps/study/preview.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/scene/scene.hpp"
@@ -26,8 +28,7 @@ struct CheckOptions {
   std::string json;
   bool compare = false;
   bool measure = false;
-  MeasureOptions measuring;
-  std::string size = "1920x1080", preview;
+  std::string backend = "auto", size = "1920x1080", preview;
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
@@ -54,26 +55,38 @@ std::vector<RefreshCheck> check_common(const study::Protocol& protocol) {
   return checks;
 }
 
+/// Anew, on a display without a window.
+MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report, const Viewing& viewing) {
+  const study::Protocol& protocol = report.protocol;
+  RunOptions choice;
+  choice.display = "headless";
+  choice.backend = options.backend;
+  const PictureSize size = parse_picture_size(options.size);
+  HeadlessDisplay display(size.width, size.height);
+  CellStimuli stimuli(choice, protocol, {}, viewing);
+  const auto measured =
+      measure_live(protocol, stimuli, {display, report.scenes, options.refresh_hz, true, {}});
+  return judge_measured(protocol, measured, options.refresh_hz, [&](const study::FpsSetting& setting) {
+    return intervals_on(*report.refresh, report.settings, setting);
+  });
+}
+
 CheckReport make_report(const CheckOptions& options, const study::Protocol& protocol) {
-  CheckReport report{
-      protocol,
-      outline_session(protocol),
-      check_balance(protocol),
-      checked_settings(protocol),
-      {},
-      {},
-      {},
-      frame_scenes(protocol,
-                   screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle),
-                   parse_picture_size(options.size))};
+  const Viewing viewing =
+      screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle);
+  CheckReport report{protocol,
+                     outline_session(protocol),
+                     check_balance(protocol),
+                     checked_settings(protocol),
+                     {},
+                     {},
+                     {},
+                     frame_scenes(protocol, viewing, parse_picture_size(options.size))};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
   std::int64_t frames = 0;
   for (const auto& one : report.settings) frames += study::frame_count(one.setting);
   if (frames > 0 && (frames <= most_compared || options.compare)) report.common = check_common(protocol);
-  if (options.measure) {
-    report.measured =
-        judge_measured(protocol, measure_stimuli(protocol, options.measuring), options.refresh_hz);
-  }
+  if (options.measure) report.measured = measure_here(options, report, viewing);
   return report;
 }
 
@@ -109,11 +122,11 @@ void add_check_command(CLI::App& app) {
                    "The display's refresh in Hz: what it makes of each setting")
       ->check(number_in(10, 1000));
   command->add_flag("--compare", options->compare, "Look at all common refresh rates, however long it takes");
-  command->add_flag("--measure", options->measure, "Run each method for some frames on this machine");
-  command->add_option("--frames", options->measuring.frames, "Frames of each that are measured")
-      ->check(CLI::Range(2, 10000))
-      ->capture_default_str();
-  command->add_option("--backend", options->measuring.backend, "Computes the fluid")
+  command->add_flag(
+      "--measure", options->measure,
+      "Run each live stimulus through a trial on this machine, at --size: what run does before a "
+      "session, which then need not");
+  command->add_option("--backend", options->backend, "Computes the fluid")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
   command->add_option("--size", options->size, "Pixels of the participant's picture")->capture_default_str();

@@ -32,11 +32,6 @@ const char* timing_name(const study::Design& design) {
   }
 }
 
-/// "HiRes single_dam 32k".
-std::string stimulus_name(const study::StimulusSpec& what) {
-  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star;
-}
-
 /// Why a setting is not exact, with the stimulus where each has settings of its own.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
@@ -49,6 +44,12 @@ std::string remark_of(const CheckReport& report, std::size_t setting, const std:
 
 double longest_ms(const RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
+}
+
+/// Of all showings: they are equally long.
+double overrun_s(const study::Protocol& protocol) {
+  const double duration_s = protocol.design.cells.front().setting.duration_s;
+  return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
 }
 
 void print_session(const CheckReport& report) {
@@ -68,6 +69,8 @@ void print_session(const CheckReport& report) {
       all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, quick_pace.answer_s,
       slow_pace.answer_s, all.trials_s.least / 60, all.trials_s.most / 60,
       protocol.design.groups * study::trials_of_group(protocol.design));
+  std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
+              protocol.design.cells.front().setting.duration_s);
   std::printf("balance: %s\n", describe_balance(protocol, report.balance).c_str());
 }
 
@@ -166,14 +169,6 @@ void print_framing(const CheckReport& report) {
     std::printf("  %s\n", note.c_str());
 }
 
-void print_measured(const MeasuredReport& measured) {
-  std::printf("\nmeasured here:\n%-30s %9s %8s %8s %8s\n", "stimulus", "frames/s", "sd", "p95 ms", "tau min");
-  for (const auto& one : measured.stimuli) {
-    std::printf("%-30s %9.1f %8.2f %8.1f %8.2f  %s\n", stimulus_name(one.what).c_str(), one.fps.mean,
-                one.fps.sd, one.p95_ms, one.tau_min, one.words.c_str());
-  }
-}
-
 nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
                                     double refresh_hz) {
   nlohmann::ordered_json json{{"mean_fps", checked.setting.mean},
@@ -240,14 +235,17 @@ void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
 void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
   json["too_slow"] = measured.too_slow;
   json["collapse"] = measured.collapse;
-  for (const auto& one : measured.stimuli) {
+  for (const auto& one : measured.cells) {
     json["measured"].push_back({{"scene", one.what.scene},
                                 {"method", one.what.method},
                                 {"n_star", one.what.n_star},
+                                {"asked_mean_fps", one.setting.mean},
+                                {"asked_sd_fps", one.setting.sd},
                                 {"fps_mean", one.fps.mean},
                                 {"fps_sd", one.fps.sd},
                                 {"p95_ms", one.p95_ms},
                                 {"tau_min", one.tau_min},
+                                {"showing_s", one.showing_s},
                                 {"too_slow", one.too_slow},
                                 {"words", one.words}});
   }
@@ -265,7 +263,7 @@ void print_report(const CheckReport& report) {
   print_speed(report);
   print_stimuli(report);
   print_framing(report);
-  if (report.measured) print_measured(*report.measured);
+  if (report.measured) std::printf("\nmeasured here:\n%s", measured_table(*report.measured).c_str());
 }
 
 nlohmann::ordered_json report_json(const CheckReport& report) {
@@ -279,6 +277,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
       {"needs_gaze", protocol.needs_gaze},
       {"units", report.outline.units},
       {"trials", report.outline.trials},
+      {"overrun_s", overrun_s(protocol)},
       {"plan_s", report.outline.shown_s},
       {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
       {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};

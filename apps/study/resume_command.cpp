@@ -4,6 +4,7 @@
 
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "libstudy/session/interruptions.hpp"
 #include "libstudy/session/machine.hpp"
@@ -66,8 +67,9 @@ Played play(const PlayOptions& options) {
   if (runs.empty()) std::printf("%s: nothing is left to do\n", place.c_str());
   for (const study::OpenRun& run : runs) {
     const study::Protocol protocol = rebuild_protocol(run, place);
-    SessionSetup setup = make_session_setup(parse_run_options(run.options, place), protocol,
-                                            run.sessions.front().plan.ptpe, place);
+    const RunOptions chosen = parse_run_options(run.options, place);
+    SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place);
+    setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);
     check_unchanged(store, run, setup, place);
     played.end = std::max(played.end, play_run(store, run, protocol, setup, options));
     print_certificate(options.database, run, protocol);

@@ -9,6 +9,7 @@
 #include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/session/machine.hpp"
@@ -148,6 +149,8 @@ void run(RunCommand& command) {
   const auto ptpe = read_ptpe(command.ptpe);
   SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
+  setup.rates = check_live(protocol, setup, command.play.accept_slow);
+  command.run.accept_slow = command.play.accept_slow;
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
@@ -176,6 +179,9 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
       ->check(CLI::PositiveNumber);
   command.add_flag("--console", options.console,
                    "Experimenter's console in this terminal: plan, timing and keys to steer the session");
+  command.add_flag("--accept-slow", options.accept_slow,
+                   "Also play live cells that this station does not show at their setting: they are measured "
+                   "before the session, once for a station and build");
   command.add_flag("--events", options.events,
                    "Print a line for each step of a session once it is safe, without answers");
 }

@@ -54,6 +54,7 @@ std::string format_run_options(const RunOptions& options) {
                                 {"bake", options.bake},
                                 {"backend", options.backend},
                                 {"gaze", options.gaze},
+                                {"accept_slow", options.accept_slow},
                                 {"station", options.station},
                                 {"screen_width_mm", number_or_null(options.screen_width_mm)},
                                 {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}}
@@ -77,6 +78,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.bake = json.at("bake");
     options.backend = json.at("backend");
     options.gaze = json.at("gaze");
+    options.accept_slow = json.value("accept_slow", false);
     options.station = json.at("station");
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));
     options.viewing_distance_mm = optional_number(json.at("viewing_distance_mm"));

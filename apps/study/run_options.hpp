@@ -15,7 +15,8 @@ struct RunOptions {
   int monitor = 0;                      ///< of a window; 0: the primary one
   std::string bake;                     ///< absolute path of the bake played; empty = none
   std::string backend = "auto";
-  std::string gaze;  ///< "fixed": the middle of the picture, "mouse", or "none": not known
+  std::string gaze;          ///< "fixed": the middle of the picture, "mouse", or "none": not known
+  bool accept_slow = false;  ///< live cells that this machine does not show at their setting are played
   std::string station;
   std::optional<double> screen_width_mm, viewing_distance_mm;
 

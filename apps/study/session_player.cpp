@@ -97,7 +97,7 @@ class Steering {
            const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
       : protocol_(protocol), window_(setup.wish), events_(options.events), warnings_(std::move(warnings)) {
     if (options.console) {
-      console_.emplace(protocol, store, options.database, setup.idle);
+      console_.emplace(protocol, store, options.database, setup.idle, showing_times(protocol, setup.rates));
       terminal_.emplace(*console_);
     } else {
       progress_.emplace("session steps", units_left(run));
@@ -163,9 +163,11 @@ std::vector<std::string> check_station(study::Store& store, const study::OpenSes
 }
 
 /// On stderr, before the first step: how long what is left takes in real time.
-void tell_length(const study::OpenRun& run, const study::Protocol& protocol, bool person) {
+void tell_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
+  const bool person = !setup.participant->simulated();
+  const auto showing_s = showing_times(protocol, setup.rates);
   double seconds = 0;
-  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person);
+  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person, showing_s);
   std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", protocol.name.c_str(),
                run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
                base::duration_words(seconds).c_str());
@@ -215,7 +217,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) {
     real_time.emplace();
-    tell_length(run, protocol, !setup.participant->simulated());
+    tell_length(run, protocol, setup);
   }
   std::optional<study::PersonalFile> personal;
   if (asks_personal(protocol)) personal.emplace(options.database);
@@ -225,6 +227,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   parts.gaze = setup.gaze.get();
   std::vector<std::string> warnings;
   for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
+  if (setup.rates.too_slow) warnings.emplace_back("live cells: not all reach their setting on this station");
   Steering steering(store, run, protocol, setup, options, warnings);
   const auto play = [&](const study::OpenSession& session) {
     const auto ending = study::run_session(protocol, session, parts, steering.hooks(session));
@@ -232,6 +235,8 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   };
   for (const auto& session : run.sessions) {
     if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
+    if (!setup.rates.cells.empty())
+      store.log(session.id, "live rates", measured_table(setup.rates), setup.clock->now_ns());
     play(session);
     while (steering.take_reopened()) {
       if (const auto again = read_again(store, session.id)) play(*again);

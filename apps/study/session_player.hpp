@@ -35,6 +35,7 @@ struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
   bool console = false;        ///< the experimenter's, in the terminal
+  bool accept_slow = false;    ///< see RunOptions
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
 };
 

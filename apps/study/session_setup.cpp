@@ -96,6 +96,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     }
     setup.wish = std::move(window.wish);
     setup.idle = std::move(window.idle);
+    setup.poll = std::move(window.poll);
     setup.screen = window.screen;
     size = window.size;
   } else {

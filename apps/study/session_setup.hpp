@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/study/cell_stimuli.hpp"
+#include "apps/study/check/measured_check.hpp"
 #include "apps/study/run_options.hpp"
 #include "apps/study/session_framing.hpp"
 #include "apps/study/window_parts.hpp"
@@ -25,8 +26,10 @@ struct SessionSetup {
   std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
   WindowWish wish;                              ///< the window's, or empty
   std::function<std::optional<double>()> idle;  ///< likewise
+  std::function<void()> poll;                   ///< likewise
   std::optional<ScreenFacts> screen;            ///< likewise
   std::vector<FramedScene> scenes;              ///< as the display frames them; none: nothing is drawn
+  MeasuredReport rates;                         ///< of live cells on this station; none: nothing was measured
 
   /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
   /// test data.

@@ -29,6 +29,8 @@ struct WindowParts {
   WindowWish wish;
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
+  /// Takes in what happened to the window while nothing is shown, so that it is not taken for dead.
+  std::function<void()> poll;
   ScreenFacts screen;
   PictureSize size;  ///< of the window
 };

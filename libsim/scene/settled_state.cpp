@@ -36,11 +36,6 @@ bool is_sound(const std::vector<ParticleState>& state) {
 
 fs::path file_of(const fs::path& folder, const std::string& key) { return folder / (key + suffix); }
 
-const std::string& program_digest() {
-  static const std::string digest = base::sha256_hex(base::read_file("/proc/self/exe", std::size_t{1} << 32));
-  return digest;
-}
-
 void forget_old(const fs::path& folder) {
   const auto now = fs::file_time_type::clock::now();
   std::error_code ignored;
@@ -52,6 +47,11 @@ void forget_old(const fs::path& folder) {
 }
 
 }  // namespace
+
+const std::string& program_digest() {
+  static const std::string digest = base::sha256_hex(base::read_file("/proc/self/exe", std::size_t{1} << 32));
+  return digest;
+}
 
 fs::path default_cache_folder() {
   const auto variable = [](const char* name) {

@@ -12,6 +12,7 @@ namespace study {
 namespace {
 
 constexpr double ms = 1e-6;  // nanoseconds to milliseconds
+constexpr double least_overrun_s = 5;
 
 bool has_display_times(const PlayedTrial& played, TimingGrade grade) {
   return (grade == TimingGrade::Photodiode || grade == TimingGrade::DisplayFeedback) &&
@@ -82,6 +83,17 @@ void describe_intervals(TimingVerdict& trial, const std::vector<double>& interva
   trial.lag1 = lag1(rates);
 }
 
+void judge_cut(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& played) {
+  if (!played.cut) return;
+  trial.cut = true;
+  const auto shown = static_cast<std::int64_t>(played.frames.size());
+  const double after_s = 1e-9 * static_cast<double>(played.end_ns - played.frames.front().scheduled_ns);
+  std::string reason = format("cut %.3g s after its start", after_s, 0);
+  if (*played.cut > 0)
+    reason += ": " + std::to_string(shown) + " of " + std::to_string(shown + *played.cut) + " frames shown";
+  judgement.add(Verdict::Fail, reason);
+}
+
 /// False when the onsets do not ascend.
 bool measure(TimingVerdict& trial, const PlayedTrial& played) {
   const auto intervals_s = realised_intervals(played, trial.grade);
@@ -102,6 +114,11 @@ TimingVerdict blank_verdict(const FpsSetting& nominal, const PlayedTrial& played
 
 }  // namespace
 
+ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s) {
+  return {std::llround(1e6 * tolerance.late_after_ms),
+          std::llround(1e9 * tolerance.overrun_s.value_or(std::max(duration_s, least_overrun_s)))};
+}
+
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade) {
   const bool shown = has_display_times(played, grade);
   const auto onset = [&](const FrameRecord& frame) {
@@ -119,6 +136,7 @@ TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, c
                           const TimingTolerance& tolerance, TimingGrade grade) {
   TimingVerdict trial = blank_verdict(nominal, played, grade);
   Judgement judgement;
+  judge_cut(judgement, trial, played);
   judge_lateness(judgement, trial, played, tolerance);
   if (measure(trial, played)) {
     const double mean =
@@ -134,8 +152,10 @@ TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, c
 
 TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade) {
   TimingVerdict trial = blank_verdict({0, 0, 0}, played, grade);
-  trial.verdict = Verdict::Pass;
-  if (!measure(trial, played)) trial.reason = "the onsets do not ascend";
+  Judgement judgement;
+  judge_cut(judgement, trial, played);
+  trial.verdict = judgement.verdict();
+  trial.reason = measure(trial, played) ? judgement.reason() : "the onsets do not ascend";
   return trial;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,24 +40,34 @@ struct FrameRecord {
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
+  std::optional<std::int64_t> cut;  ///< it went on for too long: scheduled frames that were not shown
+};
+
+/// What a trial is held to while it is shown.
+struct ShowingBounds {
+  std::int64_t late_after_ns = 0;  ///< of submitted - scheduled; beyond it a frame is late
+  std::int64_t overrun_ns = 0;     ///< past the planned end; a trial that goes on for longer is cut
 };
 
 /// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
 /// Deadlines are absolute: they are counted from the first frame, and a late frame, which is shown at once,
 /// moves none of them. No frame and no content step is skipped. The last frame stays on until the end of its
-/// interval, or for its whole interval when it came after that end. late_after_ns: bound on submitted -
-/// scheduled. `each` (may be empty) is called after every frame, for the journal. base::Error when there is
-/// no interval, one is not positive, or the content ends before start_frame.
+/// interval, or for its whole interval when it came after that end. A frame that is ready only after the
+/// overrun is not shown: the trial is cut, and ends once the last one has had its interval. `each` (may be
+/// empty) is called after every frame, for the journal. base::Error when there is no interval, one is not
+/// positive, or the content ends before start_frame.
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
-                       Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
+                       Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,
                        const std::function<void(const FrameRecord&)>& each);
 
 /// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
 /// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays
-/// on until the one after it, which is no longer shown, is ready. base::Error when the clock stands still
-/// meanwhile (VirtualClock) or the content ends before start_frame.
+/// on until the one after it, which is no longer shown, is ready; when that takes longer than the overrun the
+/// trial counts as cut. base::Error when the clock stands still meanwhile (VirtualClock) or the content ends
+/// before start_frame.
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
-                        Clock& clock, const std::function<void(const FrameRecord&)>& each);
+                        Clock& clock, std::int64_t overrun_ns,
+                        const std::function<void(const FrameRecord&)>& each);
 
 /// Tolerances of a protocol.
 struct TimingTolerance {
@@ -67,7 +78,13 @@ struct TimingTolerance {
   double fail_mean_relative = 0.05;  ///< beyond this the trial has failed, not only degraded
   double fail_sd_relative = 0.20;
   double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two counts here too
+  /// How long a trial may go on past its planned end before it is cut; none: as long as the trial, at least
+  /// 5 s.
+  std::optional<double> overrun_s;
 };
+
+/// What a trial of this length is held to.
+ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s);
 
 enum class Verdict { Pass, Degraded, Fail };
 
@@ -81,6 +98,7 @@ struct TimingVerdict {
   double lag1 = 0;  ///< autocorrelation of 1/dt at lag 1; 0 when delta is 0
   std::int64_t late = 0;
   double worst_late_ms = 0;
+  bool cut = false;    ///< it went on for too long
   std::string reason;  ///< why it is not a pass
 };
 
@@ -88,14 +106,14 @@ struct TimingVerdict {
 /// times when the grade is A or B and every frame has one, submission times otherwise.
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
 
-/// pass: no frame late and both realised moments within tolerance. fail: a moment beyond the fail_ bounds.
-/// degraded: everything between. The mean is the one the rules name. Needs at least one frame; onsets that do
-/// not ascend are a fail with that reason.
+/// pass: no frame late and both realised moments within tolerance. fail: cut, or a moment beyond the fail_
+/// bounds. degraded: everything between. The mean is the one the rules name. Needs at least one frame; onsets
+/// that do not ascend are a fail with that reason.
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade);
 
-/// What was shown without a schedule: realised moments and intervals; the nominal moments are 0 and `verdict`
-/// says nothing.
+/// What was shown without a schedule: realised moments and intervals; the nominal moments are 0. A trial that
+/// was cut is a fail, else `verdict` says nothing.
 TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade);
 
 /// "pass", "degraded" or "fail".

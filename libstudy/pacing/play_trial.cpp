@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "libstudy/pacing/pacer.hpp"
 #include "stats/base/error.hpp"
@@ -79,34 +80,42 @@ void check_intervals(const std::vector<std::int64_t>& intervals_ns) {
 }  // namespace
 
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
-                       Stimulus& stimulus, Display& display, Clock& clock, std::int64_t late_after_ns,
+                       Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,
                        const std::function<void(const FrameRecord&)>& each) {
   check_intervals(intervals_ns);
   ContentCourse course(content, stimulus);
   PlayedTrial played;
   played.frames.reserve(intervals_ns.size());
+  const std::int64_t length_ns = std::accumulate(intervals_ns.begin(), intervals_ns.end(), std::int64_t{0});
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
     FrameRecord record = make_frame(static_cast<std::int64_t>(i), onset_ns, course, stimulus, display);
     if (i == 0) first_ns = display.first_onset(clock.now_ns() + lead_ns);
+    if (i > 0 && clock.now_ns() - first_ns > length_ns + bounds.overrun_ns) {
+      played.cut = static_cast<std::int64_t>(intervals_ns.size() - i);
+      clock.wait_until(played.frames.back().times.submitted_ns + intervals_ns[i - 1]);
+      played.end_ns = clock.now_ns();
+      return played;
+    }
     record.scheduled_ns = first_ns + onset_ns;
     clock.wait_until(record.scheduled_ns);
     record.times = display.present(clock);
-    record.late = record.times.submitted_ns - record.scheduled_ns > late_after_ns;
+    record.late = record.times.submitted_ns - record.scheduled_ns > bounds.late_after_ns;
     played.frames.push_back(record);
     if (each) each(record);
     onset_ns += intervals_ns[i];
   }
   const std::int64_t last_ns = played.frames.back().times.submitted_ns;
-  const std::int64_t planned_end_ns = first_ns + onset_ns;
+  const std::int64_t planned_end_ns = first_ns + length_ns;
   clock.wait_until(last_ns < planned_end_ns ? planned_end_ns : last_ns + intervals_ns.back());
   played.end_ns = clock.now_ns();
   return played;
 }
 
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
-                        Clock& clock, const std::function<void(const FrameRecord&)>& each) {
+                        Clock& clock, std::int64_t overrun_ns,
+                        const std::function<void(const FrameRecord&)>& each) {
   ContentCourse course(content, stimulus);
   PlayedTrial played;
   const auto duration_ns = static_cast<std::int64_t>(1e9 * duration_s);
@@ -117,8 +126,11 @@ PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus
     if (index > 0 && record.scheduled_ns <= played.frames.back().scheduled_ns) {
       throw base::Error("native timing", "needs a clock that runs while frames are made", "use --clock real");
     }
-    if (index > 0 && record.scheduled_ns - played.frames[0].scheduled_ns >= duration_ns) {
+    const std::int64_t gone_ns =
+        played.frames.empty() ? 0 : record.scheduled_ns - played.frames[0].scheduled_ns;
+    if (index > 0 && gone_ns >= duration_ns) {
       played.end_ns = record.scheduled_ns;
+      if (gone_ns - duration_ns > overrun_ns) played.cut = 0;
       return played;
     }
     record.times = display.present(clock);

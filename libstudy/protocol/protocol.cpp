@@ -32,6 +32,7 @@ TimingTolerance read_timing(const base::TomlTable& table) {
       table.number_or("fail_mean_relative", timing.fail_mean_relative, tolerance_range);
   timing.fail_sd_relative = table.number_or("fail_sd_relative", timing.fail_sd_relative, tolerance_range);
   timing.fail_sd_absolute = table.number_or("fail_sd_absolute_fps", timing.fail_sd_absolute, {0, 1000});
+  if (table.has("overrun_s")) timing.overrun_s = table.number("overrun_s", pause_range);
   if (timing.fail_mean_relative < timing.mean_relative)
     table.fail("fail_mean_relative", "is tighter than mean_relative", "make it at least as wide");
   if (timing.fail_sd_relative < timing.sd_relative)

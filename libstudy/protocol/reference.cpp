@@ -175,6 +175,9 @@ const std::vector<KeyReference>& protocol_reference() {
       {"timing", "fail_sd_relative", "number", "[0, 1]", "0.2",
        "at least sd_relative; the wider of the two counts"},
       {"timing", "fail_sd_absolute_fps", "number", "[0, 1000]", "2.5", "at least sd_absolute_fps, frames/s"},
+      {"timing", "overrun_s", "number", "[0, 3600]", "duration_s, at least 5",
+       "a showing that goes on for longer than this past its planned end is cut and has failed; its "
+       "questions are asked, s"},
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "

@@ -182,12 +182,13 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     heed(run_, true);
   };
   try {
-    const auto late_after_ns = std::llround(run_.protocol.timing.late_after_ms * 1e6);
+    const double duration_s = cell.setting.duration_s;
+    const ShowingBounds bounds = showing_bounds(run_.protocol.timing, duration_s);
     const ContentRules& content = run_.protocol.content;
     const PlayedTrial played =
         intervals.empty()
-            ? play_native(cell.setting.duration_s, content, stimulus, parts.display, parts.clock, each)
-            : play_trial(intervals, content, stimulus, parts.display, parts.clock, late_after_ns, each);
+            ? play_native(duration_s, content, stimulus, parts.display, parts.clock, bounds.overrun_ns, each)
+            : play_trial(intervals, content, stimulus, parts.display, parts.clock, bounds, each);
     const TimingVerdict verdict = judge(cell, played);
     parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(gaze.take()), verdict);
     shown.realised = verdict.realised;

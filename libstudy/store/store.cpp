@@ -108,7 +108,8 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
   insert_frames(presentation, start_ns, frames);
   Statement& end = statements_->end;
   end.bind(0, end_ns).bind_null(1).bind(2, grade_name(verdict.grade)).bind_null(3);
-  if (verdict.nominal.mean > 0) end.bind(1, verdict_name(verdict.verdict)).bind(3, verdict.reason);
+  if (verdict.nominal.mean > 0 || verdict.cut)
+    end.bind(1, verdict_name(verdict.verdict)).bind(3, verdict.reason);
   end.bind(4, static_cast<std::int64_t>(verdict.realised.frames));
   end.bind(5, verdict.realised.mean).bind(6, verdict.realised.mean_arithmetic).bind(7, verdict.realised.sd);
   end.bind(8, verdict.p95_ms)

@@ -160,8 +160,8 @@ class Store {
   /// participant allows it.
   void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
                 std::span<const GazeSample> samples);
-  /// Commits the rest of the frames and the verdict; no verdict is kept where nothing was scheduled
-  /// (nominal mean 0).
+  /// Commits the rest of the frames and the verdict; where nothing was scheduled (nominal mean 0) it
+  /// is kept of a trial that was cut alone.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                         std::span<const FrameRecord> frames, const TimingVerdict& verdict);
   /// Commits that a presentation was cut short; its frames stay.

@@ -13,6 +13,7 @@
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/refresh.hpp"
 #include "apps/study/desk/words.hpp"
+#include "stats/base/duration.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace apps {
@@ -414,6 +415,19 @@ TEST_F(ConsoleTest, AFailedVerdictSaysWhatToDoNextAndWarningsStay) {
   EXPECT_THAT(view.plan, HasSubstr("1 of "));
 }
 
+TEST_F(ConsoleTest, ATrialThatWasCutIsToldApartFromOneThatFailed) {
+  console_.begins(first_trial());
+  study::TimingVerdict cut = study::test::verdict();
+  cut.verdict = study::Verdict::Fail;
+  cut.cut = true;
+  console_.done({"P01", first_trial().plan, 1, {study::test::verdict(), cut}});
+  EXPECT_THAT(console_.view(steady_ns()).alarms, ElementsAre(HasSubstr("trial 1: CUT")));
+  cut.nominal = {};
+  cut.reason = "cut 20 s after its start";
+  console_.done({"P01", first_trial().plan, 1, {cut}});
+  EXPECT_THAT(console_.view(steady_ns()).last, HasSubstr("timing fail: cut 20 s"));
+}
+
 TEST(ConsoleScreen, FillsEightyByTwentyFourAndNoLineIsLonger) {
   ConsoleView view;
   view.title = "P01, visit 1: task1 1.0";
@@ -453,6 +467,19 @@ TEST(ConsoleScreen, FitsEveryTerminal) {
   EXPECT_EQ(render_console(view, 80, 24)[12], "Alarms   none");
 }
 
+TEST_F(ConsoleTest, TellsTheTimeLeftByWhatWasMeasured) {
+  const auto left = [](const Console& console) { return console.view(steady_ns()).plan; };
+  Console slow(protocol_, store_, folder_.path() / "s.db", {},
+               std::vector<double>(protocol_.design.cells.size(), 300));
+  slow.begin(session());
+  EXPECT_THAT(left(console_), AllOf(HasSubstr("about "), HasSubstr(" min")));
+  EXPECT_THAT(
+      left(slow),
+      HasSubstr(base::duration_words(expected_s(protocol_, session().units, true,
+                                                std::vector<double>(protocol_.design.cells.size(), 300)))));
+  EXPECT_NE(left(slow), left(console_));
+}
+
 TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   const study::OpenUnit& trial = first_trial();
   EXPECT_DOUBLE_EQ(expected_s(protocol_, trial), 3 + 10 + 5);  // black 3, stimulus 10, one question
@@ -462,6 +489,10 @@ TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   EXPECT_GT(sum, 21 * 18);
   EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, false), 3 + 10) << "an observer answers at once";
   EXPECT_LT(expected_s(protocol_, session().units, false), sum);
+  std::vector<double> showing_s(protocol_.design.cells.size(), 10);
+  showing_s.at(static_cast<std::size_t>(trial.trial->first)) = 20;
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, true, showing_s), 3 + 20 + 5) << "as it was measured here";
+  EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units, true, showing_s), sum + 10);
   // 21 settings of 10 s with a mean of 26.67 frames/s.
   EXPECT_GT(expected_bytes(protocol_, session().units), 64u * 21 * 200);
 }

@@ -70,8 +70,10 @@ TEST(VipStudyCheckE2e, ReportsBlocksBalanceAndStimuliOfTask1) {
   EXPECT_THAT(outcome.out, testing::HasSubstr("does not divide by 12: 24 or 36 would"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("Ours-TSp faucet 32k"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("gaze: needed"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("cut, and fails, when it goes on for 30 s past its 30 s"));
   const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
   EXPECT_EQ(json.at("timing"), "table2");
+  EXPECT_EQ(json.at("overrun_s"), 30);
   EXPECT_EQ(json.at("trials"), 10);
   EXPECT_EQ(json.at("blocks").size(), 4u);
   EXPECT_EQ(json.at("stimuli").size(), 30u);
@@ -155,13 +157,25 @@ TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
   EXPECT_EQ(apps::check_balance(shipped("ptpe_pilot")).even, 1);
 }
 
-/// Frames that all take 1 / fps seconds.
+/// Every step takes 1 / fps seconds, half of them to draw.
+apps::StepTimes steps_at(double fps, std::size_t steps = 60) {
+  return {std::vector<double>(steps, 0.5 / fps), std::vector<double>(steps, 0.5 / fps)};
+}
+
+/// Each cell measured by itself.
 std::vector<apps::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
   std::vector<apps::MeasuredStimulus> out;
-  for (const auto& what : apps::stimuli_of(protocol)) {
-    out.push_back({what, what.method == "Ours-TSp", std::vector<double>(60, 1 / fps)});
+  for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
+    const bool temporal = protocol.design.cells[i].stimulus.method == "Ours-TSp";
+    out.push_back({{static_cast<int>(i)}, temporal, steps_at(fps)});
   }
   return out;
+}
+
+apps::MeasuredReport judged(const study::Protocol& protocol,
+                            const std::vector<apps::MeasuredStimulus>& measured) {
+  return apps::judge_measured(protocol, measured, 90,
+                              [](const auto&) { return std::vector<std::int64_t>(); });
 }
 
 study::Protocol native_task1() {
@@ -173,34 +187,33 @@ study::Protocol native_task1() {
 
 TEST(MeasuredCheck, FastMachinesEraseTheConditionsOfNative) {
   const auto protocol = native_task1();
-  const auto report = apps::judge_measured(protocol, all_at(protocol, 300), 90);
+  const auto report = judged(protocol, all_at(protocol, 300));
   EXPECT_THAT(report.collapse, testing::HasSubstr("every method reaches the 90 Hz"));
   EXPECT_FALSE(report.too_slow);
-  EXPECT_NEAR(report.stimuli.front().fps.mean, 90, 1e-9);
-  EXPECT_NEAR(report.stimuli.front().tau_min, 90 - 23.68, 1e-9);
+  EXPECT_NEAR(report.cells.front().fps.mean, 90, 1e-9);
+  EXPECT_NEAR(report.cells.front().tau_min, 90 - 23.68, 1e-9);
 }
 
 TEST(MeasuredCheck, AccelerationThatNeverStartsIsACollapseToo) {
   const auto protocol = native_task1();
   auto frames = all_at(protocol, 60);
-  frames.front().frame_s.assign(60, 1.0 / 40);
-  EXPECT_THAT(apps::judge_measured(protocol, frames, 90).collapse,
-              testing::HasSubstr("never falls below zero"));
+  frames.front().times = steps_at(40);
+  EXPECT_THAT(judged(protocol, frames).collapse, testing::HasSubstr("never falls below zero"));
   for (auto& one : frames) {
-    if (one.temporal) one.frame_s.assign(60, 1.0 / 20);
+    if (one.temporal) one.times = steps_at(20);
   }
-  EXPECT_EQ(apps::judge_measured(protocol, frames, 90).collapse, "");
+  EXPECT_EQ(judged(protocol, frames).collapse, "");
 }
 
 TEST(MeasuredCheck, SlowMachinesAreNamedWithTheirRates) {
   const auto protocol = shipped("task1");
-  const auto slow = apps::judge_measured(protocol, all_at(protocol, 30), 90);
+  const auto slow = judged(protocol, all_at(protocol, 30));
   EXPECT_TRUE(slow.too_slow);
   EXPECT_EQ(slow.collapse, "");  // only native can collapse
-  EXPECT_THAT(slow.stimuli.front().words, testing::HasSubstr("30 frames/s where 55.25 are asked for"));
-  EXPECT_FALSE(apps::judge_measured(protocol, all_at(protocol, 80), 90).too_slow);
+  EXPECT_THAT(slow.cells.front().words, testing::HasSubstr("30 frames/s where 55.25 are asked for"));
+  EXPECT_FALSE(judged(protocol, all_at(protocol, 80)).too_slow);
   const auto native = native_task1();
-  EXPECT_TRUE(apps::judge_measured(native, all_at(native, 3), 90).too_slow);
+  EXPECT_TRUE(judged(native, all_at(native, 3)).too_slow);
 }
 
 TEST(RefreshCheck, CellsOfEqualMomentsAreOneSetting) {

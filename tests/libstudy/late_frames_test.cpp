@@ -49,6 +49,7 @@ using Delay = std::function<std::int64_t(std::int64_t)>;
 const Delay punctual = [](std::int64_t) { return 0; };
 const Delay frame_100_is_2_ms_late = [](std::int64_t frame) { return frame == 100 ? 2'000'000 : 0; };
 const Delay each_takes_25_ms = [](std::int64_t) { return 25'000'000; };
+const Delay each_takes_250_ms = [](std::int64_t) { return 250'000'000; };
 
 /// A run of one trial a participant, each at a display of its own; the certificate's only row.
 CertificateRow certificate_of(const std::filesystem::path& path, const std::vector<Delay>& delays) {
@@ -116,6 +117,36 @@ TEST(LateFrames, SustainedLoadFailsTheTrial) {
   EXPECT_NEAR(row.sd, 10 * std::sqrt(499.0) / 500, 1e-9);
   const auto ratings = read_ratings(folder / "study.db");
   EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr("mean 40.02 frames/s is off by 20 %"));
+}
+
+TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
+  const test::TemporaryFolder folder;
+  const CertificateRow row = certificate_of(folder / "study.db", {each_takes_250_ms});
+  EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
+  // Frame i is shown 250 (i + 1) ms after the start; frames that are ready by 20 s are shown.
+  EXPECT_EQ(row.frames, 81);
+  const auto ratings = read_ratings(folder / "study.db");
+  ASSERT_EQ(ratings.size(), 1u);
+  EXPECT_TRUE(ratings.at(0).rating.has_value());
+  EXPECT_EQ(ratings.at(0).timing->verdict, Verdict::Fail);
+  EXPECT_THAT(ratings.at(0).timing->reason, testing::HasSubstr(": 81 of 500 frames shown"));
+  EXPECT_TRUE(Store(folder / "study.db", Open::Write).open_runs().empty());
+}
+
+TEST(LateFrames, APairOfWhichOneIsCutIsShownWholeAndJudged) {
+  test::OneSession one(test::paced_pairs());
+  VirtualClock clock;
+  // The first showing of 1 s is cut 5 s past its end, before its eighth frame.
+  LateDisplay display(clock, [](std::int64_t frame) { return frame < 7 ? 1'000'000'000 : 0; });
+  test::NullStimuli stimuli(one.protocol.content.content_step_s);
+  const auto runs = one.open();
+  run_session(one.protocol, runs.at(0).sessions.at(0),
+              {clock, display, stimuli, one.person, one.store, &one.personal, true}, {});
+  EXPECT_EQ(one.count("presentation WHERE verdict = 'fail'"), 1);
+  EXPECT_EQ(one.count("presentation WHERE verdict = 'fail' AND reason LIKE 'cut % 7 of 20 frames shown%'"),
+            1);
+  EXPECT_EQ(one.count("presentation"), 2 * one.count("trial"));
+  EXPECT_EQ(one.count("trial WHERE state = 'answered'"), one.count("trial"));
 }
 
 TEST(LateFrames, ACellCountsEachVerdict) {

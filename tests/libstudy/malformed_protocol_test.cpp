@@ -177,6 +177,8 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{pilot, "fps_max = \"none\"", "fps_max = 3", "= |3", "is below fps_min", "raise"},
         Malformed{pilot, "fps_max = \"none\"", "fps_max = \"high\"", "= |\"high", "is not a known choice",
                   "refresh"},
+        Malformed{pilot, "fail_sd_relative = 0.2", "overrun_s = -1", "overrun_s = |-1", "is out of range",
+                  "[0, 3600]"},
         Malformed{pilot, "fail_sd_relative = 0.2", "fail_sd_relative = 0.01", "fail_sd_relative = |0.01",
                   "is tighter than sd_relative", "at least as wide"}));
 

@@ -18,6 +18,7 @@ using study::Verdict;
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t half_ms = 500'000;
+constexpr study::ShowingBounds bounds{half_ms, 10'000 * ms};
 
 /// A process whose steps take time on a virtual clock.
 class TimedStimulus final : public study::Stimulus {
@@ -65,7 +66,7 @@ struct Stage {
   study::ContentRules content;
 
   study::PlayedTrial play(const std::vector<std::int64_t>& intervals_ns) {
-    return study::play_trial(intervals_ns, content, stimulus, display, clock, half_ms, {});
+    return study::play_trial(intervals_ns, content, stimulus, display, clock, bounds, {});
   }
 };
 
@@ -145,7 +146,7 @@ TEST(PlayTrial, ContentLoopsOrHolds) {
     study::ContentRules content;
     content.start_frame = 1;
     content.at_end = at_end;
-    study::play_trial(std::vector<std::int64_t>(7, ms), content, stimulus, display, clock, half_ms, {});
+    study::play_trial(std::vector<std::int64_t>(7, ms), content, stimulus, display, clock, bounds, {});
     if (at_end == study::AtEnd::Loop) {
       EXPECT_THAT(stimulus.steps, testing::ElementsAre(1, 2, 3, 1, 2, 3, 1));
       EXPECT_THAT(stimulus.starts, testing::ElementsAre(1, 1, 1));
@@ -169,7 +170,7 @@ TEST(PlayTrial, TellsTheJournalOfEveryFrameInOrder) {
   Stage stage;
   std::vector<std::int64_t> told;
   const auto played =
-      study::play_trial({ms, ms, ms}, stage.content, stage.stimulus, stage.display, stage.clock, half_ms,
+      study::play_trial({ms, ms, ms}, stage.content, stage.stimulus, stage.display, stage.clock, bounds,
                         [&](const auto& frame) { told.push_back(frame.index); });
   EXPECT_THAT(told, testing::ElementsAre(0, 1, 2));
   EXPECT_EQ(stage.display.rendered, 3);
@@ -181,9 +182,59 @@ TEST(PlayTrial, RefusesBadSchedulesAndShortContent) {
   EXPECT_THROW(stage.play({ms, 0}), base::Error);
   TimedStimulus brief(stage.clock, 10);
   stage.content.start_frame = 10;
-  EXPECT_THROW(study::play_trial({ms}, stage.content, brief, stage.display, stage.clock, half_ms, {}),
+  EXPECT_THROW(study::play_trial({ms}, stage.content, brief, stage.display, stage.clock, bounds, {}),
                base::Error);
   EXPECT_TRUE(brief.steps.empty());
+}
+
+/// Five frames of 20 ms, each of which takes this long, cut 50 ms past the planned end.
+study::PlayedTrial played_at(std::int64_t cost_ns) {
+  Stage stage;
+  for (std::int64_t i = 1; i < 5; ++i) stage.stimulus.cost_ns[i] = cost_ns;
+  return study::play_trial(std::vector<std::int64_t>(5, 20 * ms), stage.content, stage.stimulus,
+                           stage.display, stage.clock, {half_ms, 50 * ms}, {});
+}
+
+TEST(PlayTrial, IsCutWhenItGoesOnForTooLong) {
+  const auto played = played_at(60 * ms);  // the fourth frame is ready at 180 ms, 80 past the planned end
+  EXPECT_EQ(onsets(played), (std::vector<std::int64_t>{0, 60 * ms, 120 * ms}));
+  EXPECT_EQ(played.cut, 2);
+  EXPECT_EQ(played.end_ns - played.frames.front().scheduled_ns, 180 * ms);
+  const auto verdict = study::judge_trial({50, 0, 0.1}, {}, played, {}, TimingGrade::CpuSubmit);
+  EXPECT_EQ(verdict.verdict, Verdict::Fail);
+  EXPECT_TRUE(verdict.cut);
+  EXPECT_THAT(verdict.reason, testing::StartsWith("cut 0.18 s after its start: 3 of 5 frames shown; "));
+}
+
+TEST(PlayTrial, IsNotCutWhileALateFrameStillComesInTime) {
+  const auto played = played_at(37 * ms);  // the last frame is ready at 148 ms of 150
+  EXPECT_EQ(played.frames.size(), 5u);
+  EXPECT_FALSE(played.cut);
+  EXPECT_FALSE(study::judge_trial({50, 0, 0.1}, {}, played, {}, TimingGrade::CpuSubmit).cut);
+}
+
+TEST(PlayTrial, MayGoOnForItsOwnLengthAndAtLeastFiveSeconds) {
+  EXPECT_EQ(study::showing_bounds({}, 30).overrun_ns, 30'000 * ms);
+  EXPECT_EQ(study::showing_bounds({}, 2).overrun_ns, 5'000 * ms);
+  study::TimingTolerance tolerance;
+  tolerance.overrun_s = 0.25;
+  EXPECT_EQ(study::showing_bounds(tolerance, 30).overrun_ns, 250 * ms);
+  EXPECT_EQ(study::showing_bounds(tolerance, 30).late_after_ns, half_ms);
+}
+
+TEST(PlayNative, IsCutWhenItsLastFrameTakesTooLong) {
+  for (const std::int64_t last_ms : {60, 61}) {
+    Stage stage;
+    for (std::int64_t i = 1; i < 3; ++i) stage.stimulus.cost_ns[i] = 40 * ms;
+    stage.stimulus.cost_ns[3] = last_ms * ms;  // 80 ms are gone of 90
+    const auto played =
+        study::play_native(0.09, stage.content, stage.stimulus, stage.display, stage.clock, 50 * ms, {});
+    EXPECT_EQ(played.frames.size(), 3u);
+    const auto verdict = study::describe_trial(played, TimingGrade::CpuSubmit);
+    EXPECT_EQ(verdict.cut, last_ms == 61);
+    EXPECT_EQ(verdict.verdict, last_ms == 61 ? Verdict::Fail : Verdict::Pass);
+    EXPECT_EQ(verdict.reason, last_ms == 61 ? "cut 0.141 s after its start" : "");
+  }
 }
 
 study::PlayedTrial played_with(const std::vector<std::int64_t>& intervals_ns,

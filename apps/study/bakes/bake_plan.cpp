@@ -1,10 +1,10 @@
 #include "apps/study/bakes/bake_plan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/study/check/rehearsal.hpp"
 #include "libsim/bake/layout.hpp"
 #include "libsim/methods/method.hpp"
 #include "stats/base/file.hpp"
@@ -18,10 +18,7 @@ bool same_rate(const study::FpsSetting& a, const study::FpsSetting& b) {
 }
 
 std::int64_t frames_of(const study::Protocol& protocol, const study::Cell& cell) {
-  const double steps = protocol.content.real_time
-                           ? std::ceil(cell.setting.duration_s / protocol.content.content_step_s)
-                           : static_cast<double>(study::frame_count(cell.setting));
-  return protocol.content.start_frame + static_cast<std::int64_t>(steps);
+  return protocol.content.start_frame + content_steps(protocol, cell.setting, 0);
 }
 
 std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 
-#include "stats/fps_window.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
@@ -15,19 +15,14 @@ namespace {
 /// Of the refresh: a method this near to it shows what the display shows.
 constexpr double at_refresh = 0.98;
 
-std::string format(const char* pattern, double a, double b) {
-  char out[160];
-  std::snprintf(out, sizeof out, pattern, a, b);
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char out[240];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  std::snprintf(out, sizeof out, pattern, values...);
+#pragma GCC diagnostic pop
   return out;
-}
-
-/// The highest mean rate that cells of this stimulus ask for; 0 under Native.
-double asked_fps(const study::Protocol& protocol, const study::StimulusSpec& what) {
-  double fps = 0;
-  for (const auto& cell : protocol.design.cells) {
-    if (cell.stimulus == what) fps = std::max(fps, cell.setting.mean);
-  }
-  return fps;
 }
 
 /// Least tau over windows of 30 frames, as the solver sees it.
@@ -42,46 +37,62 @@ double least_tau(const std::vector<double>& intervals_s) {
   return least;
 }
 
-MeasuredVerdict judge(const study::Protocol& protocol, const MeasuredStimulus& measured, double refresh_hz) {
-  MeasuredVerdict out;
-  out.what = measured.what;
-  std::vector<double> shown_s, sorted = measured.frame_s;
-  for (const double s : measured.frame_s) shown_s.push_back(std::max(s, 1 / refresh_hz));
-  out.fps = stats::fps_moments(shown_s);
-  out.tau_min = least_tau(shown_s);
-  std::sort(sorted.begin(), sorted.end());
-  out.p95_ms = 1000 * sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
-  const double asked = asked_fps(protocol, measured.what);
-  const double alone = stats::fps_moments(measured.frame_s).mean;
+void judge_rate(MeasuredCell& out, const study::Protocol& protocol, double alone) {
+  const double asked = out.setting.mean;
   if (asked > 0 && alone < asked) {
     out.too_slow = true;
     out.words = format("too slow live: %.3g frames/s where %.4g are asked for", alone, asked);
   } else if (asked == 0 && alone < protocol.pacing.fps_min) {
     out.too_slow = true;
     out.words = format("too slow live: %.3g frames/s, below fps_min = %.4g", alone, protocol.pacing.fps_min);
-  } else if (asked > 0 && out.p95_ms > 1000 / asked) {
-    out.words = format("some frames late: 5 %% take over %.1f ms, the mean interval is %.1f ms", out.p95_ms,
-                       1000 / asked);
   }
+}
+
+/// What the trial's own rules say of it.
+void judge_showing(MeasuredCell& out, const study::Protocol& protocol, const study::PlayedTrial& played,
+                   double refresh_hz) {
+  if (out.too_slow) return;
+  const auto verdict = study::judge_trial(out.setting, study::for_display(protocol.pacing, refresh_hz),
+                                          played, protocol.timing, study::TimingGrade::CpuSubmit);
+  out.too_slow = verdict.verdict == study::Verdict::Fail;
+  if (verdict.verdict != study::Verdict::Pass)
+    out.words = "a trial would " + std::string(out.too_slow ? "fail: " : "be degraded: ") + verdict.reason;
+}
+
+MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& measured, int index,
+                   double refresh_hz, const IntervalsOf& intervals_of) {
+  const study::Cell& cell = protocol.design.cells.at(static_cast<std::size_t>(index));
+  const auto intervals_ns = cell.setting.mean > 0 ? intervals_of(cell.setting) : std::vector<std::int64_t>();
+  const Rehearsal rehearsal = rehearse(protocol, cell.setting, measured.times, intervals_ns, refresh_hz);
+  MeasuredCell out;
+  out.cell = index;
+  out.what = cell.stimulus;
+  out.setting = cell.setting;
+  out.showing_s = rehearsal.showing_s;
+  if (rehearsal.frame_s.empty()) return out;  // a trial of one frame
+  std::vector<double> shown_s, sorted = rehearsal.frame_s;
+  for (const double s : rehearsal.frame_s)
+    shown_s.push_back(refresh_hz > 0 ? std::max(s, 1 / refresh_hz) : s);
+  out.fps = stats::fps_moments(shown_s);
+  out.tau_min = least_tau(shown_s);
+  std::sort(sorted.begin(), sorted.end());
+  out.p95_ms = 1000 * sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
+  judge_rate(out, protocol, stats::fps_moments(rehearsal.frame_s).mean);
+  if (!intervals_ns.empty()) judge_showing(out, protocol, rehearsal.played, refresh_hz);
   return out;
 }
 
-std::string collapse_of(const std::vector<MeasuredStimulus>& measured,
-                        const std::vector<MeasuredVerdict>& verdicts, double refresh_hz) {
-  std::map<std::pair<std::string, std::string>, bool> all_reach;  // by scene and n_*
-  bool temporal = false, accelerates = false;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const auto& what = measured[i].what;
-    const bool reaches = verdicts[i].fps.mean >= at_refresh * refresh_hz;
-    auto& all = all_reach.try_emplace({what.scene, what.n_star}, true).first->second;
-    all = all && reaches;
-    temporal = temporal || measured[i].temporal;
-    accelerates = accelerates || (measured[i].temporal && verdicts[i].tau_min < 0);
+/// temporal: by cell of the report.
+std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<int, bool>& temporal,
+                        double refresh_hz) {
+  bool all_reach = true, any_temporal = false, accelerates = false;
+  for (const MeasuredCell& one : cells) {
+    all_reach = all_reach && one.fps.mean >= at_refresh * refresh_hz;
+    any_temporal = any_temporal || temporal.at(one.cell);
+    accelerates = accelerates || (temporal.at(one.cell) && one.tau_min < 0);
   }
-  const bool reach =
-      std::all_of(all_reach.begin(), all_reach.end(), [](const auto& one) { return one.second; });
-  if (reach) return format("every method reaches the %g Hz of the display", refresh_hz, 0);
-  if (temporal && !accelerates) return "tau of the accelerated methods never falls below zero";
+  if (all_reach) return format("every method reaches the %g Hz of the display", refresh_hz);
+  if (any_temporal && !accelerates) return "tau of the accelerated methods never falls below zero";
   return {};
 }
 
@@ -96,13 +107,43 @@ std::vector<study::StimulusSpec> stimuli_of(const study::Protocol& protocol) {
 }
 
 MeasuredReport judge_measured(const study::Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
-                              double refresh_hz) {
+                              double refresh_hz, const IntervalsOf& intervals_of) {
   MeasuredReport out;
-  for (const auto& one : measured) out.stimuli.push_back(judge(protocol, one, refresh_hz));
+  std::map<int, bool> temporal;
+  for (const auto& one : measured) {
+    for (const int cell : one.cells) {
+      temporal[cell] = one.temporal;
+      out.cells.push_back(judge(protocol, one, cell, refresh_hz, intervals_of));
+    }
+  }
+  std::sort(out.cells.begin(), out.cells.end(), [](const auto& a, const auto& b) { return a.cell < b.cell; });
   out.too_slow =
-      std::any_of(out.stimuli.begin(), out.stimuli.end(), [](const auto& one) { return one.too_slow; });
-  if (protocol.design.timing == study::TimingSource::Native)
-    out.collapse = collapse_of(measured, out.stimuli, refresh_hz);
+      std::any_of(out.cells.begin(), out.cells.end(), [](const auto& one) { return one.too_slow; });
+  if (protocol.design.timing == study::TimingSource::Native && refresh_hz > 0 && !out.cells.empty())
+    out.collapse = collapse_of(out.cells, temporal, refresh_hz);
+  return out;
+}
+
+std::string stimulus_name(const study::StimulusSpec& what) {
+  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star;
+}
+
+std::string measured_table(const MeasuredReport& report) {
+  std::string out =
+      format("%-28s %-15s %9s %8s %8s %8s\n", "stimulus", "asked", "frames/s", "sd", "p95 ms", "tau min");
+  for (const MeasuredCell& one : report.cells) {
+    const std::string asked = one.setting.mean > 0 ? study::setting_name(one.setting) : "as it runs";
+    out += format("%-28s %-15s %9.1f %8.2f %8.1f %8.2f  ", stimulus_name(one.what).c_str(), asked.c_str(),
+                  one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
+           one.words + "\n";
+  }
+  return out;
+}
+
+std::vector<double> showing_times(const study::Protocol& protocol, const MeasuredReport& report) {
+  std::vector<double> out;
+  for (const study::Cell& cell : protocol.design.cells) out.push_back(cell.setting.duration_s);
+  for (const MeasuredCell& one : report.cells) out[static_cast<std::size_t>(one.cell)] = one.showing_s;
   return out;
 }
 

@@ -5,21 +5,36 @@
 
 namespace apps {
 
+namespace {
+
+bool same(const study::FpsSetting& a, const study::FpsSetting& b) {
+  return a.mean == b.mean && a.sd == b.sd && a.duration_s == b.duration_s;
+}
+
+}  // namespace
+
 std::vector<CheckedSetting> checked_settings(const study::Protocol& protocol) {
   std::vector<CheckedSetting> out;
   if (protocol.design.timing == study::TimingSource::Native) return out;
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
     const study::FpsSetting& setting = protocol.design.cells[i].setting;
-    const auto same = std::find_if(out.begin(), out.end(), [&](const CheckedSetting& other) {
-      return other.setting.mean == setting.mean && other.setting.sd == setting.sd &&
-             other.setting.duration_s == setting.duration_s;
-    });
-    if (same == out.end())
+    const auto known = std::find_if(
+        out.begin(), out.end(), [&](const CheckedSetting& other) { return same(other.setting, setting); });
+    if (known == out.end())
       out.push_back({setting, {static_cast<int>(i)}});
     else
-      same->cells.push_back(static_cast<int>(i));
+      known->cells.push_back(static_cast<int>(i));
   }
   return out;
+}
+
+std::vector<std::int64_t> intervals_on(const RefreshCheck& check, const std::vector<CheckedSetting>& settings,
+                                       const study::FpsSetting& setting) {
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (!same(settings[i].setting, setting) || check.verdicts[i].holds.empty()) continue;
+    return study::schedule_of_holds(check.verdicts[i].holds, check.refresh_hz).intervals_ns;
+  }
+  return {};
 }
 
 RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz) {

@@ -25,6 +25,10 @@ struct RefreshCheck {
   double distance = 0;  ///< mean distance to the unquantised rates over the reachable settings, frames/s
 };
 
+/// The schedule of one of these settings by its verdict, nanoseconds; empty where it has none.
+std::vector<std::int64_t> intervals_on(const RefreshCheck& check, const std::vector<CheckedSetting>& settings,
+                                       const study::FpsSetting& setting);
+
 RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz);
 
 /// Refresh rates that displays and headsets commonly have, Hz.

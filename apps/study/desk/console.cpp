@@ -34,8 +34,12 @@ char strip_sign(double shown_s, double scheduled_s) {
 }
 
 Console::Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database,
-                 Idle idle)
-    : protocol_(protocol), store_(store), database_(std::move(database)), idle_(std::move(idle)) {}
+                 Idle idle, std::vector<double> showing_s)
+    : protocol_(protocol),
+      store_(store),
+      database_(std::move(database)),
+      idle_(std::move(idle)),
+      showing_s_(std::move(showing_s)) {}
 
 void Console::begin(const study::OpenSession& session) {
   const Guard guard(mutex_);

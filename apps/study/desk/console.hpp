@@ -25,8 +25,9 @@ class Console {
   /// Seconds since the participant's last key, button or movement of the mouse; none: not known.
   using Idle = std::function<std::optional<double>()>;
 
+  /// showing_s: see expected_s(); empty: showings take as long as planned.
   Console(const study::Protocol& protocol, study::Store& store, std::filesystem::path database,
-          Idle idle = {});
+          Idle idle = {}, std::vector<double> showing_s = {});
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
@@ -85,6 +86,7 @@ class Console {
   study::Store& store_;
   std::filesystem::path database_;
   Idle idle_;
+  std::vector<double> showing_s_;
 
   std::mutex acting_;         ///< while a key has its effect; taken before mutex_
   mutable std::mutex mutex_;  ///< of all that follows

@@ -24,12 +24,23 @@ std::string words_of(const study::Ending& ending) {
   return "INELIGIBLE: nothing more is asked; thank them";
 }
 
+/// What failed of a trial's timing; null: nothing.
+const char* failure_of(const std::vector<study::TimingVerdict>& verdicts) {
+  const char* failure = nullptr;
+  for (const study::TimingVerdict& one : verdicts) {
+    if (one.cut) return "CUT, for it went on for too long: the machine is too slow for it";
+    if (one.verdict == study::Verdict::Fail) failure = "timing FAILED";
+  }
+  return failure;
+}
+
 }  // namespace
 
 std::string Console::left() const {
   const auto& units = session_->units;
   const std::size_t done = std::min(done_, units.size());
-  return "about " + base::duration_words(expected_s(protocol_, std::span(units).subspan(done)));
+  return "about " +
+         base::duration_words(expected_s(protocol_, std::span(units).subspan(done), true, showing_s_));
 }
 
 std::string Console::describe(const study::OpenUnit& unit) const {
@@ -55,7 +66,8 @@ std::string Console::describe_cells(const study::PlannedTrial& trial) const {
 
 /// Hidden, it says only how far the trial was from its schedule.
 std::string Console::describe(const study::TimingVerdict& verdict) const {
-  if (!(verdict.nominal.mean > 0)) return "timing: no schedule";
+  if (!(verdict.nominal.mean > 0))
+    return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";
   std::string line =
       "timing " + study::verdict_name(verdict.verdict) +
       text(", grade %c: mean %+.2f %%, late %lld, worst %.2f ms", static_cast<char>(verdict.grade),
@@ -108,12 +120,9 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
   if (ending_) all.push_back(words_of(*ending_));
   if (disk_mb >= 0 && disk_mb < little_disk_mb)
     all.push_back(text("disk: only %.0f MB are free; free space before the next trial", disk_mb));
-  const bool failed = std::any_of(verdicts_.begin(), verdicts_.end(), [](const study::TimingVerdict& one) {
-    return one.verdict == study::Verdict::Fail;
-  });
-  if (failed)
-    all.push_back(text("trial %d: timing FAILED; r shows it again, else it is left out by the timing rule",
-                       last_trial_->trial->position + 1));
+  if (const char* failure = failure_of(verdicts_))
+    all.push_back(text("trial %d: ", last_trial_->trial->position + 1) + failure +
+                  "; r shows it again, else it is left out by the timing rule");
   if (!unit_done_ && course_.late > 0)
     all.push_back(text("%lld late frame%s in this showing; close other programs",
                        static_cast<long long>(course_.late), course_.late == 1 ? "" : "s"));

@@ -28,17 +28,20 @@ const study::Block& block_of(const study::Protocol& protocol, const study::OpenU
   return protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
 }
 
-const study::Cell& cell_of(const study::Protocol& protocol, const study::PlannedTrial& trial, int interval) {
-  const int cell = interval == 0 ? trial.first : trial.second.value_or(trial.first);
-  return protocol.design.cells.at(static_cast<std::size_t>(cell));
+std::size_t cell_of(const study::PlannedTrial& trial, int interval) {
+  return static_cast<std::size_t>(interval == 0 ? trial.first : trial.second.value_or(trial.first));
 }
 
-double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person) {
+double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person,
+               std::span<const double> showing_s) {
+  const auto shown_s = [&](std::size_t cell) {
+    return showing_s.empty() ? protocol.design.cells.at(cell).setting.duration_s : showing_s[cell];
+  };
   double total = 0;
   for (const study::TrialStep& step : block_of(protocol, unit).steps) {
     if (step.kind == StepKind::Black || step.kind == StepKind::Rest) total += step.seconds;
     if (step.kind == StepKind::Stimulus)
-      total += cell_of(protocol, *unit.trial, step.interval).setting.duration_s +
+      total += shown_s(cell_of(*unit.trial, step.interval)) +
                (unit.trial->second ? study::word_s + study::after_word_s : 0);
     if (step.kind == StepKind::Ask && person) total += 5 * static_cast<double>(step.asks.size());
   }
@@ -47,8 +50,9 @@ double trial_s(const study::Protocol& protocol, const study::OpenUnit& unit, boo
 
 }  // namespace
 
-double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person) {
-  if (unit.trial) return trial_s(protocol, unit, person);
+double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person,
+                  std::span<const double> showing_s) {
+  if (unit.trial) return trial_s(protocol, unit, person, showing_s);
   const study::Block& block = block_of(protocol, unit);
   switch (block.kind) {
     case BlockKind::Rest:
@@ -67,9 +71,10 @@ double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, 
   }
 }
 
-double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units, bool person) {
+double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units, bool person,
+                  std::span<const double> showing_s) {
   double total = 0;
-  for (const study::OpenUnit& unit : units) total += expected_s(protocol, unit, person);
+  for (const study::OpenUnit& unit : units) total += expected_s(protocol, unit, person, showing_s);
   return total;
 }
 
@@ -79,7 +84,8 @@ std::uint64_t expected_bytes(const study::Protocol& protocol, std::span<const st
     if (!unit.trial) continue;
     for (const study::TrialStep& step : block_of(protocol, unit).steps) {
       if (step.kind != StepKind::Stimulus) continue;
-      const study::FpsSetting& setting = cell_of(protocol, *unit.trial, step.interval).setting;
+      const study::FpsSetting& setting =
+          protocol.design.cells.at(cell_of(*unit.trial, step.interval)).setting;
       frames += setting.duration_s * (setting.mean > 0 ? setting.mean : 60);  // native: as a screen at most
     }
   }

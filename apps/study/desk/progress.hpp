@@ -10,9 +10,11 @@ namespace apps {
 
 /// Seconds that a unit is expected to take: what its block says, 3.5 words a second for reading, 5 s for each
 /// question to choose in, 10 s for a number and 30 s for words. A simulated person reads and answers at once.
-double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person = true);
-double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units,
-                  bool person = true);
+/// showing_s: what a showing of each cell of the design takes here; empty: as planned.
+double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, bool person = true,
+                  std::span<const double> showing_s = {});
+double expected_s(const study::Protocol& protocol, std::span<const study::OpenUnit> units, bool person = true,
+                  std::span<const double> showing_s = {});
 
 /// Bytes that the units will add to a database, about: its frames, 64 bytes each, and 4 KiB for each unit.
 std::uint64_t expected_bytes(const study::Protocol& protocol, std::span<const study::OpenUnit> units);

@@ -52,6 +52,7 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
                                                      [screen] { screen->find_beat(); });
   parts.gaze = [window](int, int) { return window->mouse(); };
   parts.mouse = std::make_unique<WindowMouse>(window);
+  parts.poll = [window] { window->poll(0); };
   parts.idle = [window] { return window->window().idle_s(); };
   parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
   return parts;

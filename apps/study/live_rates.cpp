@@ -1,0 +1,150 @@
+#include "apps/study/live_rates.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "apps/common/program.hpp"
+#include "apps/study/bakes/bake_plan.hpp"
+#include "apps/study/check/kept_times.hpp"
+#include "apps/study/check/measuring.hpp"
+#include "apps/study/session_player.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "libsim/scene/settled_state.hpp"
+#include "libstudy/session/machine.hpp"
+#include "stats/base/duration.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+const study::Cell& first_cell(const study::Protocol& protocol, const MeasuredStimulus& one) {
+  return protocol.design.cells.at(static_cast<std::size_t>(one.cells.front()));
+}
+
+/// Of a stimulus with some live cells, those.
+std::vector<MeasuredStimulus> live_stimuli(const study::Protocol& protocol, const CellStimuli& stimuli) {
+  std::vector<MeasuredStimulus> out;
+  for (const PlannedStimulus& planned : plan_bakes(protocol)) {
+    MeasuredStimulus one{{}, sim::traits_of(sim::parse_method(planned.what.method)).temporal, {}};
+    for (const int cell : planned.cells) {
+      if (stimuli.is_live(protocol.design.cells.at(static_cast<std::size_t>(cell))))
+        one.cells.push_back(cell);
+    }
+    if (!one.cells.empty()) out.push_back(std::move(one));
+  }
+  return out;
+}
+
+const FramedScene& framed(int cell, const MeasuringPlace& place) {
+  for (const FramedScene& scene : place.scenes) {
+    if (std::find(scene.cells.begin(), scene.cells.end(), cell) != scene.cells.end()) return scene;
+  }
+  throw std::logic_error("measure_live: a scene that was not framed");
+}
+
+/// Everything that the times depend on: what is computed, how it is seen, on what, and how far.
+std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, const MeasuredStimulus& one,
+                   const std::string& description, const MeasuringPlace& place) {
+  const study::Cell& cell = first_cell(protocol, one);
+  const FramedScene& scene = framed(one.cells.front(), place);
+  std::ostringstream key;
+  key << description << "; " << scene.view.viewport.width << 'x' << scene.view.viewport.height << ", camera "
+      << scene.framing.camera_deg << ", eye " << scene.framing.visual_deg.value_or(0) << "; from step "
+      << protocol.content.start_frame << " by " << protocol.content.content_step_s << " s";
+  for (const int index : one.cells) {
+    const auto& setting = protocol.design.cells.at(static_cast<std::size_t>(index)).setting;
+    key << ", " << content_steps(protocol, setting, place.refresh_hz) << " in " << setting.duration_s << " s";
+  }
+  const StimulusChoice choice = stimuli.choice_of(cell);
+  if (const auto& rate = choice.fixed_rate; rate && one.temporal)
+    key << "; tau " << stats::ptpe_tolerance(choice.model, rate->mean, rate->sd);
+  key << "; " << study::describe_machine() << "; " << sim::gl_description() << "; program "
+      << sim::program_digest();
+  return key.str();
+}
+
+void tell_length(const study::Protocol& protocol, const std::vector<const MeasuredStimulus*>& open,
+                 const MeasuringPlace& place) {
+  double seconds = 0;
+  for (const MeasuredStimulus* one : open) seconds += longest_measuring_s(protocol, *one);
+  const auto& drawn = place.scenes.front().view.viewport;
+  std::fprintf(
+      stderr,
+      "%s: measuring %zu live stimul%s at %dx%d, up to %s and their making, once for this station and "
+      "build\n",
+      protocol.name.c_str(), open.size(), open.size() == 1 ? "us" : "i", drawn.width, drawn.height,
+      base::duration_words(seconds).c_str());
+}
+
+/// "3 of 30 live cells do not reach their setting, HiRes faucet 32k at (17, 4): ...".
+std::string refusal(const MeasuredReport& report) {
+  const auto slow = [](const MeasuredCell& one) { return one.too_slow; };
+  const auto count = std::count_if(report.cells.begin(), report.cells.end(), slow);
+  const MeasuredCell& first = *std::find_if(report.cells.begin(), report.cells.end(), slow);
+  return std::to_string(count) + " of " + std::to_string(report.cells.size()) +
+         " live cells do not reach their setting, " + stimulus_name(first.what) +
+         (first.setting.mean > 0 ? " at " + study::setting_name(first.setting) : "") + ": " + first.words;
+}
+
+}  // namespace
+
+std::vector<MeasuredStimulus> measure_live(const study::Protocol& protocol, CellStimuli& stimuli,
+                                           const MeasuringPlace& place) {
+  auto all = live_stimuli(protocol, stimuli);
+  const std::filesystem::path folder = sim::default_cache_folder();
+  std::vector<MeasuredStimulus*> open;
+  const auto key = [&](const MeasuredStimulus& one) {
+    const auto& what = stimuli.stimulus(first_cell(protocol, one));
+    return key_of(protocol, stimuli, one, what.description(), place);
+  };
+  for (MeasuredStimulus& one : all) {
+    const auto kept = place.anew ? std::nullopt : read_step_times(folder, key(one));
+    if (kept)
+      one.times = *kept;
+    else
+      open.push_back(&one);
+  }
+  if (open.empty()) return all;
+  tell_length(protocol, {open.begin(), open.end()}, place);
+  study::RealClock clock;
+  Progress progress("stimuli measured", open.size());
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    study::Stimulus& stimulus = stimuli.stimulus(first_cell(protocol, *open[i]));
+    open[i]->times =
+        measure(protocol, open[i]->cells, stimulus, place.display, clock, place.refresh_hz, place.each);
+    keep_step_times(folder, key(*open[i]), open[i]->times);
+    progress.update(i + 1);
+  }
+  return all;
+}
+
+MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, bool accept_slow) {
+  if (setup.virtual_clock) return {};
+  const auto each = [&setup, &protocol] {
+    if (setup.poll) setup.poll();
+    if (StopSignals::stop_wished())
+      throw base::Error(protocol.name, "stopped while live cells were measured; nothing was shown",
+                        "start it again");
+  };
+  const double refresh_hz = setup.display->refresh_hz();
+  const auto measured =
+      measure_live(protocol, *setup.stimuli, {*setup.display, setup.scenes, refresh_hz, false, each});
+  const MeasuredReport report =
+      judge_measured(protocol, measured, refresh_hz, [&](const study::FpsSetting& setting) {
+        return study::trial_intervals(protocol, setting, *setup.display, 0);
+      });
+  if (report.cells.empty()) return report;
+  std::fprintf(stderr, "%s: live on this station\n%s", protocol.name.c_str(), measured_table(report).c_str());
+  if (!report.collapse.empty())
+    std::fprintf(stderr, "%s: timing = \"native\" compares equal stimuli here: %s\n", protocol.name.c_str(),
+                 report.collapse.c_str());
+  if (report.too_slow && !accept_slow)
+    throw base::Error(protocol.name + " on this station", refusal(report),
+                      "bake what may be baked, make the picture smaller, use a faster machine, or add "
+                      "--accept-slow; vip-study check --measure measures anew");
+  return report;
+}
+
+}  // namespace apps

@@ -1,0 +1,124 @@
+/// What vip-study run does about live cells that the station cannot show, from the outside.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class LiveRatesE2e : public ::testing::Test {
+ protected:
+  LiveRatesE2e() {
+    const std::string scene = base::read_file(base::resource("data/scenes/faucet.toml"), 1 << 20);
+    base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
+  }
+  /// A protocol of one trial at this frame rate.
+  void write_protocol(const std::string& mean_fps, const std::string& duration_s) {
+    std::string text = replaced(short_protocol(duration_s), "data/scenes/single_dam.toml", scene_);
+    text = replaced(text, "mean_fps = [20, 50]", "mean_fps = [" + mean_fps + "]");
+    text = replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
+    text = replaced(text, "fps_min = 4 ", "fps_min = 1 ");
+    text = replaced(text, "max_interval_ms = 250 ", "max_interval_ms = 1000 ");
+    text = replaced(text, "method = [\"HiRes\"]", "method = [\"LoRes\"]");
+    base::write_file_atomically(protocol_, replaced(text, "n_star = [\"32k\"]", "n_star = [\"64\"]"));
+  }
+  /// No machine makes a thousand such frames a second.
+  void write_too_fast() { write_protocol("1000", "0.5"); }
+  std::function<void()> own_cache() {
+    return [this] { ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1); };
+  }
+  std::vector<std::string> live(const std::vector<std::string>& more) const {
+    std::vector<std::string> all{"--participants", "1",    "--display", "headless", "--backend", "cpu",
+                                 "--clock",        clock_, "--size",    size_};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_arguments(protocol_, database_, all);
+  }
+  Ended run() { return run_program(live({}), own_cache()); }
+
+  TemporaryFolder folder_;
+  std::string scene_ = folder_ / "faucet.toml", protocol_ = folder_ / "short.toml";
+  std::string database_ = folder_ / "study.db", size_ = "640x360", clock_ = "real";
+};
+
+TEST_F(LiveRatesE2e, CellsThatAreNotReachedAreRefusedBeforeAnythingIsWritten) {
+  write_too_fast();
+  const Ended first = run();
+  EXPECT_EQ(first.exit_code, 1);
+  EXPECT_THAT(first.err,
+              AllOf(HasSubstr("measuring 1 live stimulus at 640x360, up to 5 s"),
+                    HasSubstr("LoRes faucet 64"), HasSubstr("where 1000 are asked for"),
+                    HasSubstr("1 of 1 live cells do not reach their setting"), HasSubstr("--accept-slow")));
+  EXPECT_FALSE(fs::exists(database_));
+  const Ended again = run();
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, AllOf(HasSubstr("where 1000 are asked for"), Not(HasSubstr("measuring"))));
+}
+
+TEST_F(LiveRatesE2e, TheyArePlayedWhereThatIsAcceptedAlsoByResumeAndCutWithTheirAnswersKept) {
+  write_too_fast();
+  Process stopped(live({"--accept-slow"}), own_cache());
+  for (auto line = stopped.read_line(); line && line->find(" stimulus ") == std::string::npos;)
+    line = stopped.read_line();
+  stopped.send(SIGINT);
+  EXPECT_THAT(stopped.wait().err, HasSubstr("continue with vip-study resume"));
+  const Ended resumed = run_program({vip_study, "resume", "--db", database_}, own_cache());
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, Not(HasSubstr("measuring")));
+  EXPECT_EQ(count_in(database_,
+                     "SELECT count(*) FROM presentation WHERE state = 'played' AND "
+                     "verdict = 'fail' AND reason LIKE 'cut %frames shown%'"),
+            1);
+  EXPECT_EQ(count_in(database_,
+                     "SELECT count(*) FROM response JOIN unit USING (unit_id) WHERE trial_id IS NOT NULL"),
+            1);
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM showing WHERE counts"), 1);
+  EXPECT_EQ(count_in(database_,
+                     "SELECT count(*) FROM event WHERE kind = 'live rates' AND detail LIKE "
+                     "'%LoRes faucet 64%'"),
+            2);
+}
+
+TEST_F(LiveRatesE2e, WhatIsReachedIsToldAndPlayed) {
+  write_protocol("1", "2");
+  size_ = "64x36";
+  const Ended ended = run();
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("live on this station"), HasSubstr("(1, 0)")));
+}
+
+TEST_F(LiveRatesE2e, CheckMeasuresForTheSessionsOfItsSize) {
+  write_protocol("1", "2");
+  const auto check = [&] {
+    return run_program({vip_study, "check", protocol_, "--refresh", "90", "--measure", "--backend", "cpu",
+                        "--size", size_, "--json", folder_ / "check.json"},
+                       own_cache());
+  };
+  const Ended checked = check();
+  ASSERT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("measured here:"));
+  const auto json = nlohmann::json::parse(base::read_file(folder_ / "check.json", 1 << 20));
+  EXPECT_EQ(json.at("measured").at(0).at("asked_mean_fps"), 1);
+  EXPECT_GT(json.at("measured").at(0).at("fps_mean"), 0);
+  EXPECT_THAT(run().err, AllOf(HasSubstr("live on this station"), Not(HasSubstr("measuring"))));
+  EXPECT_THAT(check().err, HasSubstr("measuring")) << "check measures anew";
+}
+
+TEST_F(LiveRatesE2e, ASessionWithoutWaitingIsNotMeasured) {
+  write_protocol("1000", "0.1");
+  clock_ = "virtual", size_ = "64x36";
+  const Ended ended = run();
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.err, Not(HasSubstr("live on this station")));
+}
+
+}  // namespace
+}  // namespace apps::test
