@@ -8,6 +8,9 @@
 
 namespace stats {
 
+/// Which mean of the frame rate is meant by mu.
+enum class FpsMean { Harmonic, Arithmetic };
+
 /// Moments of the instantaneous frame rate 1/dt over N frames, in frames per second.
 struct FpsMoments {
   std::size_t frames = 0;
@@ -15,6 +18,8 @@ struct FpsMoments {
   double mean_arithmetic = 0;  ///< mean of 1/dt
   double sd =
       0;  ///< delta: population standard deviation of 1/dt (divisor N, around its own arithmetic mean)
+
+  double mean_of(FpsMean kind) const { return kind == FpsMean::Harmonic ? mean : mean_arithmetic; }
 };
 
 /// Moments of frame intervals in seconds. Every interval must be positive and finite (std::invalid_argument);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "apps/common/option_checks.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -96,6 +97,13 @@ std::optional<double> tau_of(const std::string& word, const std::string& scene, 
                              sim::MethodKind method) {
   if (word == "table2") return paper_tau(scene, n_star, method);
   return sim::parse_tau(word);
+}
+
+stats::PtpeModel load_model(const std::string& path) {
+  if (path.empty()) return {};
+  const auto file = sim::read_ptpe_file(path);
+  std::printf("ptpe   %s\n", sim::describe(file).c_str());
+  return file.model;
 }
 
 std::string number(double value, int digits) {

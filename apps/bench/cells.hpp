@@ -43,6 +43,11 @@ std::vector<sim::Preset> presets_of(const std::string& word);
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method);
 
+/// The model of a PTPE file, of which a line is printed; the paper's where `path` is empty.
+stats::PtpeModel load_model(const std::string& path);
+inline constexpr const char* ptpe_help =
+    "fitted.toml of vip-stats fit-ptpe, by which tau and beta go; without: the paper's model";
+
 /// For a cell of a table; "-" for NaN, "inf" for either infinity.
 std::string number(double value, int digits);
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "apps/bench/account_json.hpp"
+#include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timing.hpp"
@@ -31,7 +32,7 @@ struct FrameOptions {
   std::string n_star = "4k";
   std::string backend = "auto";
   std::string tau = "live";
-  std::string rate;
+  std::string rate, ptpe;
   std::string json;
   int frames = 100;
   int warm_up = 5;
@@ -154,40 +155,42 @@ nlohmann::json run_frames(const FrameOptions& options) {
   const auto report = fluid->report();
   const double mean =
       std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
-  nlohmann::json result{{"program", "vip-bench frame"},
-                        {"version", base::version()},
-                        {"scene", scene.name},
-                        {"scene_sha256", scene.sha256},
-                        {"method", options.method},
-                        {"n_star", options.n_star},
-                        {"backend", sim::backend_name(sim::choose_backend(options.backend))},
-                        {"threads", omp_get_max_threads()},
-                        {"frames", options.frames},
-                        {"particles", fluid->particle_count()},
-                        {"solve_ms_mean", mean},
-                        {"solve_ms_median", quantile(solve_ms, 0.5)},
-                        {"solve_ms_p95", quantile(solve_ms, 0.95)},
-                        {"h_over_d", h_over_d(*fluid)},
-                        {"neighbours_mean", accuracy.neighbours_mean},
-                        {"density_error_mean", accuracy.error_mean},
-                        {"density_max", accuracy.density_max},
-                        {"speed_max_m_s", report.speed_max_m_s},
-                        {"particle_bytes", fluid->particle_bytes()},
-                        {"temporal",
-                         {{"tau_given", options.rate.empty() ? options.tau : "rate:" + options.rate},
-                          {"tau_fps", or_null(report.temporal.tau)},
-                          {"beta", report.temporal.beta},
-                          {"solved_share_mean", accounts.solved}}},
-                        {"guards",
-                         {{"speed_limited", report.guards.speed_limited},
-                          {"coincident_pairs", report.guards.coincident_pairs},
-                          {"not_finite", report.guards.not_finite},
-                          {"neighbours_dropped", report.guards.neighbours_dropped},
-                          {"wall_projected", report.guards.wall_projected},
-                          {"nozzle_waited", report.guards.nozzle_waited}}},
-                        {"accounts", accounts.all},
-                        {"launches", launches},
-                        {"schedule", fluid->explain()}};
+  nlohmann::json result{
+      {"program", "vip-bench frame"},
+      {"version", base::version()},
+      {"scene", scene.name},
+      {"scene_sha256", scene.sha256},
+      {"method", options.method},
+      {"n_star", options.n_star},
+      {"backend", sim::backend_name(sim::choose_backend(options.backend))},
+      {"threads", omp_get_max_threads()},
+      {"frames", options.frames},
+      {"particles", fluid->particle_count()},
+      {"solve_ms_mean", mean},
+      {"solve_ms_median", quantile(solve_ms, 0.5)},
+      {"solve_ms_p95", quantile(solve_ms, 0.95)},
+      {"h_over_d", h_over_d(*fluid)},
+      {"neighbours_mean", accuracy.neighbours_mean},
+      {"density_error_mean", accuracy.error_mean},
+      {"density_max", accuracy.density_max},
+      {"speed_max_m_s", report.speed_max_m_s},
+      {"particle_bytes", fluid->particle_bytes()},
+      {"temporal",
+       {{"model", {{"a", options.fluid.temporal.model.a}, {"b", options.fluid.temporal.model.b}}},
+        {"tau_given", options.rate.empty() ? options.tau : "rate:" + options.rate},
+        {"tau_fps", or_null(report.temporal.tau)},
+        {"beta", report.temporal.beta},
+        {"solved_share_mean", accounts.solved}}},
+      {"guards",
+       {{"speed_limited", report.guards.speed_limited},
+        {"coincident_pairs", report.guards.coincident_pairs},
+        {"not_finite", report.guards.not_finite},
+        {"neighbours_dropped", report.guards.neighbours_dropped},
+        {"wall_projected", report.guards.wall_projected},
+        {"nozzle_waited", report.guards.nozzle_waited}}},
+      {"accounts", accounts.all},
+      {"launches", launches},
+      {"schedule", fluid->explain()}};
   if (pictures.timer) {
     result.update(pictures.timer->figures());
     result["frame_ms_median"] = quantile(frame_ms, 0.5);
@@ -246,6 +249,7 @@ void add_frame_command(CLI::App& app) {
                    "Mean and standard deviation of the frame rate that its tau follows from, as in a study's "
                    "cell: 16.9,3.2")
       ->excludes(tau);
+  command->add_option("--ptpe", options->ptpe, ptpe_help);
   command->add_flag("--temporal", options->fluid.temporal.always,
                     "Temporal acceleration also for a method without it");
   command->add_option("--frames", options->frames, "Timed frames")
@@ -287,6 +291,7 @@ void add_frame_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
   command->callback([options] {
+    options->fluid.temporal.model = load_model(options->ptpe);
     const auto result = run_frames(*options);
     print_table(result);
     if (!options->json.empty()) base::write_file_atomically(options->json, result.dump(2) + "\n");

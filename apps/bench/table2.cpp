@@ -35,6 +35,8 @@ struct Table2Options : TableOptions {
   int frames = 300;
   int warm_up = 60;
   std::string methods = "all";  ///< or names separated by commas
+  std::string ptpe;             ///< fitted.toml; empty: the paper's model
+  stats::PtpeModel model;
 };
 
 /// One value a frame of one cell.
@@ -99,8 +101,8 @@ double solver_ms(const CellRun& run) {
 }
 
 std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, sim::MethodKind method,
-                                sim::Preset preset, const std::string& tau_word, const CellRun& run,
-                                double hires_ms) {
+                                sim::Preset preset, const std::string& tau_word,
+                                const stats::PtpeModel& model, const CellRun& run, double hires_ms) {
   const Moments particles = moments_of(run.particles);
   std::vector<double> intervals_s;
   for (const double ms : run.frame_ms) intervals_s.push_back(1e-3 * ms);
@@ -123,7 +125,7 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           number(run.seen_ms, 3),
           picture_way_name(run.seen_way),
           number(fps.sd, 2),
-          number(stats::ptpe_tolerance({}, fps.mean, fps.sd), 2),
+          number(stats::ptpe_tolerance(model, fps), 2),
           number(hires_ms / solver_ms(run), 3)};
 }
 
@@ -170,13 +172,14 @@ void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, 
     choice.readings = sim::readings_of(preset);
     choice.cache = sim::default_cache_folder();
     choice.time_parts = true;
+    choice.temporal.model = options.model;
     choice.temporal.fixed_tau = tau_of(row.tau, scene.name, size.word, row.method);
     runs.emplace_back(row, run_cell(scene, choice, options));
     if (row.method == sim::MethodKind::HiRes) hires_ms = solver_ms(runs.back().second);
     progress.update(++done);
   }
   for (const auto& [row, run] : runs) {
-    table.rows.push_back(row_of(scene, size, row.method, preset, row.tau, run, hires_ms));
+    table.rows.push_back(row_of(scene, size, row.method, preset, row.tau, options.model, run, hires_ms));
   }
 }
 
@@ -222,6 +225,7 @@ void add_table2_command(CLI::App& app) {
   auto* command =
       app.add_subcommand("table2", "The paper's Table 2: particles, milliseconds by part, speed-up");
   add_table_options(*command, *options);
+  command->add_option("--ptpe", options->ptpe, ptpe_help);
   command->add_option("--frames", options->frames, "Frames of a cell")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
@@ -234,6 +238,7 @@ void add_table2_command(CLI::App& app) {
     if (options->warm_up >= options->frames) {
       throw base::Error("--warm-up", "leaves no frame to measure", "make it smaller than --frames");
     }
+    options->model = load_model(options->ptpe);
     run_table2(*options);
   });
 }

@@ -119,16 +119,19 @@ LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string des
 
 void LiveFluid::start(std::int64_t start_step) {
   prepared_.reset();
+  if (started_ && step_ == start_step) return;
   if (!simulation_ || step_ != 0) {
     simulation_ = make_();
     view_.reset();
     if (picture_) picture_->begin(nullptr);
   }
   for (step_ = 0; step_ < start_step; ++step_) advance();
+  started_ = true;
 }
 
 study::FrameFacts LiveFluid::prepare(std::int64_t step) {
   if (!simulation_ || step < step_) start(step);
+  started_ = false;
   tell_frame_time();
   for (; step_ < step; ++step_) advance();
   return to_facts(static_cast<double>(step_) * frame_dt_s_, simulation_->account());

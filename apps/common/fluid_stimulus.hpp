@@ -78,6 +78,7 @@ class LiveFluid final : public study::Stimulus {
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
+  /// Nothing is computed when it stands there already: a session makes it ready before it plays it.
   void start(std::int64_t start_step) override;
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
@@ -102,6 +103,7 @@ class LiveFluid final : public study::Stimulus {
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
+  bool started_ = false;  ///< and no step was prepared since
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture

@@ -39,6 +39,7 @@ struct FitCommand {
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
+  bool refused(const PilotFit& fit) const { return too_wide(fit) || !fit.doubts.empty(); }
 };
 
 /// One line: a, b and their intervals, or the reason why there are none.
@@ -126,8 +127,11 @@ void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
 /// fit.json, and the same for people; with a truth also whether it was recovered.
 void report(const FitCommand& command, const PilotFit& fit, const std::optional<stats::PtpeModel>& truth) {
   auto json = fit_json(fit);
+  auto refused = nlohmann::ordered_json::array();
+  for (const auto& doubt : fit.doubts) refused.push_back({{"code", doubt.code}, {"text", doubt.text}});
   json["solver_file"] = {{"max_relative_half_width", command.max_width},
                          {"too_wide", fit.ok() && command.too_wide(fit)},
+                         {"refused", refused},
                          {"forced", command.force}};
   std::optional<Recovery> recovery;
   if (truth && fit.ok()) recovery = check_recovery(fit, *truth);
@@ -137,17 +141,26 @@ void report(const FitCommand& command, const PilotFit& fit, const std::optional<
   if (recovery) std::printf("%s", format_recovery(fit, *recovery).c_str());
 }
 
-/// A curve that the participants leave this open would only pretend to be a calibration.
-void refuse_too_wide(const FitCommand& command, const PilotFit& fit) {
-  if (!command.too_wide(fit) || command.force) return;
-  char problem[160];
-  std::snprintf(problem, sizeof problem,
-                "the interval is too wide for a calibration: mu(delta) is open by up to +-%.0f %%, the limit "
-                "is +-%.0f %%",
-                100 * fit.relative_half_width(), 100 * command.max_width);
-  throw base::Error(command.database, problem,
-                    "collect more participants, or set --max-width, or --force; no configuration and no "
-                    "figure were written");
+/// A curve that the ratings do not bear, or that the participants leave too open, would only pretend to be a
+/// calibration.
+void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
+  if (!command.refused(fit) || command.force) return;
+  std::string reasons;
+  for (const auto& doubt : fit.doubts) reasons += (reasons.empty() ? "" : "; ") + doubt.text;
+  if (command.too_wide(fit)) {
+    char wide[160];
+    std::snprintf(
+        wide, sizeof wide,
+        "the interval is too wide for a calibration: mu(delta) is open by up to +-%.0f %%, the limit "
+        "is +-%.0f %%",
+        100 * fit.relative_half_width(), 100 * command.max_width);
+    reasons += (reasons.empty() ? "" : "; ") + std::string(wide);
+  }
+  throw base::Error(
+      command.database, reasons,
+      std::string("look at the ratings (--svg without --out draws them), collect more participants") +
+          (command.too_wide(fit) ? ", set --max-width" : "") +
+          ", or --force; no configuration and no figure were written");
 }
 
 /// The record first: a calibration that is in force is always in it. Locked, so that of two fits neither
@@ -172,7 +185,7 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
                       {"exclude", timing_rule_name(command.selection.plan.exclusions.timing)},
                       {"relative_half_width", fit.relative_half_width()},
                       {"max_relative_half_width", command.max_width},
-                      {"forced", command.force && command.too_wide(fit)},
+                      {"forced", command.force && command.refused(fit)},
                       {"version", base::version()}});
   base::write_file_atomically(command.out, text);
 }
@@ -193,7 +206,7 @@ void fit_ptpe(FitCommand& command) {
   const auto fit = fit_pilot(*data, command.level, command.bootstrap);
   report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fit.reason);
-  if (!command.out.empty()) refuse_too_wide(command, fit);
+  if (!command.out.empty()) refuse_for_solver(command, fit);
   if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
@@ -214,7 +227,8 @@ void add_fit_ptpe_command(CLI::App& app) {
                   "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  fit->add_flag("--force", command->force, "Write the solver's file although the curve is wider");
+  fit->add_flag("--force", command->force,
+                "Write the solver's file although the curve is wider or the ratings do not bear it");
   fit->add_option("--json", command->json,
                   "File for every number of the fit, written whenever the database can be read")
       ->check(output_file());

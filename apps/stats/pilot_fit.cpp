@@ -191,6 +191,11 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
     fit.arithmetic[at] = fit_level(data, table, PilotMean::Arithmetic, at, options);
   }
   fit.reason = unusable(fit, data, table);
+  if (fit.ok()) {
+    const LevelFit& chosen = fit.chosen();
+    fit.doubts = stats::pilot_doubts(table, chosen.direct, chosen.contour, chosen.ordinal);
+  }
+  for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
   flag_data(fit.flags, data, table);
   flag_direct(fit.flags, fit.chosen().direct);
   flag_contour(fit.flags, fit.chosen().contour.contour);
@@ -209,7 +214,6 @@ sim::PtpeFile ptpe_file(const PilotFit& fit) {
   file.n_participants = fit.participants;
   file.n_simulated = static_cast<int>(fit.data.simulated.size());
   file.test_data = fit.data.test_data;
-  file.fps_mean = "harmonic";
   file.protocol_sha256 = fit.data.protocol.sha256;
   file.date_utc = base::utc_now();
   return file;

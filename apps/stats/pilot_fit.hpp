@@ -12,6 +12,7 @@
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"
 #include "stats/ptpe/pilot.hpp"
+#include "stats/ptpe/pilot_doubts.hpp"
 
 namespace apps {
 
@@ -54,7 +55,8 @@ struct PilotFit {
   std::vector<double> deltas;                       ///< nominal, ascending
   std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
   std::vector<FitFlag> flags;
-  std::string reason;  ///< why there is no usable fit; empty = there is one
+  std::string reason;                     ///< why there is no usable fit; empty = there is one
+  std::vector<stats::PilotDoubt> doubts;  ///< why the fit there is must not steer a solver
 
   bool ok() const { return reason.empty(); }
   const LevelFit& chosen() const { return harmonic.at(level); }

@@ -64,9 +64,9 @@ MeasuredReport measure_here(const CheckOptions& options, const CheckReport& repo
   const PictureSize size = parse_picture_size(options.size);
   HeadlessDisplay display(size.width, size.height);
   CellStimuli stimuli(choice, protocol, {}, viewing);
-  const auto measured =
-      measure_live(protocol, stimuli, {display, report.scenes, options.refresh_hz, true, {}});
-  return judge_measured(protocol, measured, options.refresh_hz, [&](const study::FpsSetting& setting) {
+  const auto all = [](int) { return true; };
+  const auto live = measure_live(protocol, stimuli, {display, report.scenes, options.refresh_hz, {}, all});
+  return judge_measured(protocol, live.stimuli, options.refresh_hz, [&](const study::FpsSetting& setting) {
     return intervals_on(*report.refresh, report.settings, setting);
   });
 }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/study/bakes/bake_plan.hpp"
@@ -14,23 +12,6 @@ namespace apps {
 namespace {
 
 using study::TimingSource;
-
-const char* mean_name(const study::Protocol& protocol) {
-  return protocol.pacing.mean == study::FpsMean::Harmonic ? "harmonic" : "arithmetic";
-}
-
-const char* timing_name(const study::Design& design) {
-  switch (design.timing) {
-    case TimingSource::Native:
-      return "native";
-    case TimingSource::Equal:
-      return "equal";
-    case TimingSource::Table2:
-      return "table2";
-    default:
-      return "settings";
-  }
-}
 
 /// Why a setting is not exact, with the stimulus where each has settings of its own.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
@@ -44,12 +25,6 @@ std::string remark_of(const CheckReport& report, std::size_t setting, const std:
 
 double longest_ms(const RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
-}
-
-/// Of all showings: they are equally long.
-double overrun_s(const study::Protocol& protocol) {
-  const double duration_s = protocol.design.cells.front().setting.duration_s;
-  return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
 }
 
 void print_session(const CheckReport& report) {
@@ -106,15 +81,6 @@ void print_common(const std::vector<RefreshCheck>& checks) {
               best.refresh_hz, best.exact, best.distance);
 }
 
-Span play_speeds(const CheckReport& report) {
-  Span out{HUGE_VAL, 0};
-  for (const auto& [setting, cells] : report.settings) {
-    out.least = std::min(out.least, play_speed(report.protocol, setting));
-    out.most = std::max(out.most, play_speed(report.protocol, setting));
-  }
-  return out;
-}
-
 void print_speed(const CheckReport& report) {
   const auto& content = report.protocol.content;
   if (report.settings.empty()) {
@@ -169,89 +135,38 @@ void print_framing(const CheckReport& report) {
     std::printf("  %s\n", note.c_str());
 }
 
-nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
-                                    double refresh_hz) {
-  nlohmann::ordered_json json{{"mean_fps", checked.setting.mean},
-                              {"sd_fps", checked.setting.sd},
-                              {"duration_s", checked.setting.duration_s},
-                              {"cells", checked.cells},
-                              {"frames", verdict.frames},
-                              {"status", study::feasibility_name(verdict.feasibility)},
-                              {"reason", verdict.reason}};
-  if (verdict.holds.empty()) return json;
-  json["best_mean_fps"] = verdict.mean;
-  json["best_sd_fps"] = verdict.sd;
-  json["longest_hold_periods"] = verdict.longest_hold;
-  json["longest_hold_ms"] = 1000 * verdict.longest_hold / refresh_hz;
-  json["distance_fps"] = verdict.distance;
-  return json;
-}
-
-void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
-  if (!report.refresh) return;
-  const RefreshCheck& check = *report.refresh;
-  json["refresh_hz"] = check.refresh_hz;
-  json["exact"] = check.exact;
-  json["approximate"] = check.approximate;
-  json["unreachable"] = check.unreachable;
-  for (std::size_t i = 0; i < report.settings.size(); ++i)
-    json["settings"].push_back(setting_json(report.settings[i], check.verdicts[i], check.refresh_hz));
-}
-
-void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
-  if (!report.settings.empty()) {
-    const Span speeds = play_speeds(report);
-    json["play_speed"] = {speeds.least, speeds.most};
-  }
-  if (report.common.empty()) return;
-  json["best_refresh_hz"] = best_refresh(report.common).refresh_hz;
-  for (const auto& rate : report.common) {
-    json["common_refreshes"].push_back({{"refresh_hz", rate.refresh_hz},
-                                        {"exact", rate.exact},
-                                        {"approximate", rate.approximate},
-                                        {"unreachable", rate.unreachable},
-                                        {"distance_fps", rate.distance}});
-  }
-}
-
-void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
-  for (const FramedScene& one : report.scenes) {
-    const auto& drawn = one.view.viewport;
-    nlohmann::ordered_json framing{{"scene", one.file},
-                                   {"width_px", drawn.width},
-                                   {"height_px", drawn.height},
-                                   {"camera_angle_deg", one.framing.camera_deg},
-                                   {"visual_angle_deg", nullptr},
-                                   {"angle_ratio", nullptr},
-                                   {"cut", one.cut}};
-    if (one.framing.visual_deg) {
-      framing["visual_angle_deg"] = *one.framing.visual_deg;
-      framing["angle_ratio"] = *one.framing.ratio();
-    }
-    json["framing"].push_back(framing);
-  }
-}
-
-void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
-  json["too_slow"] = measured.too_slow;
-  json["collapse"] = measured.collapse;
-  for (const auto& one : measured.cells) {
-    json["measured"].push_back({{"scene", one.what.scene},
-                                {"method", one.what.method},
-                                {"n_star", one.what.n_star},
-                                {"asked_mean_fps", one.setting.mean},
-                                {"asked_sd_fps", one.setting.sd},
-                                {"fps_mean", one.fps.mean},
-                                {"fps_sd", one.fps.sd},
-                                {"p95_ms", one.p95_ms},
-                                {"tau_min", one.tau_min},
-                                {"showing_s", one.showing_s},
-                                {"too_slow", one.too_slow},
-                                {"words", one.words}});
-  }
-}
-
 }  // namespace
+
+const char* mean_name(const study::Protocol& protocol) {
+  return protocol.pacing.mean == study::FpsMean::Harmonic ? "harmonic" : "arithmetic";
+}
+
+const char* timing_name(const study::Design& design) {
+  switch (design.timing) {
+    case TimingSource::Native:
+      return "native";
+    case TimingSource::Equal:
+      return "equal";
+    case TimingSource::Table2:
+      return "table2";
+    default:
+      return "settings";
+  }
+}
+
+double overrun_s(const study::Protocol& protocol) {
+  const double duration_s = protocol.design.cells.front().setting.duration_s;
+  return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
+}
+
+Span play_speeds(const CheckReport& report) {
+  Span out{HUGE_VAL, 0};
+  for (const auto& [setting, cells] : report.settings) {
+    out.least = std::min(out.least, play_speed(report.protocol, setting));
+    out.most = std::max(out.most, play_speed(report.protocol, setting));
+  }
+  return out;
+}
 
 void print_report(const CheckReport& report) {
   print_session(report);
@@ -264,53 +179,6 @@ void print_report(const CheckReport& report) {
   print_stimuli(report);
   print_framing(report);
   if (report.measured) std::printf("\nmeasured here:\n%s", measured_table(*report.measured).c_str());
-}
-
-nlohmann::ordered_json report_json(const CheckReport& report) {
-  const auto& protocol = report.protocol;
-  nlohmann::ordered_json json{
-      {"protocol", protocol.name},
-      {"protocol_version", protocol.version},
-      {"protocol_sha256", protocol.sha256},
-      {"mean", mean_name(protocol)},
-      {"timing", timing_name(protocol.design)},
-      {"needs_gaze", protocol.needs_gaze},
-      {"units", report.outline.units},
-      {"trials", report.outline.trials},
-      {"overrun_s", overrun_s(protocol)},
-      {"plan_s", report.outline.shown_s},
-      {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
-      {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};
-  for (const auto& one : report.outline.blocks) {
-    json["blocks"].push_back({{"id", one.block->id},
-                              {"kind", study::block_kind_name(one.block->kind)},
-                              {"pages", one.pages},
-                              {"trials", one.trials},
-                              {"seconds", {one.seconds.least, one.seconds.most}}});
-  }
-  const Balance& balance = report.balance;
-  json["balance"] = {{"participants", balance.planned},
-                     {"sequences", balance.sequences},
-                     {"least", balance.least},
-                     {"most", balance.most},
-                     {"interval_difference", balance.interval_difference},
-                     {"even", balance.even},
-                     {"even_below", balance.even_below},
-                     {"even_above", balance.even_above}};
-  add_refresh(json, report);
-  add_common(json, report);
-  for (const auto& one : plan_bakes(protocol)) {
-    json["stimuli"].push_back({{"scene", one.what.scene},
-                               {"method", one.what.method},
-                               {"n_star", one.what.n_star},
-                               {"live", !one.live.empty()},
-                               {"why_live", one.live},
-                               {"bake_file", one.file},
-                               {"bake_frames", one.frames}});
-  }
-  add_framing(json, report);
-  if (report.measured) add_measured(json, *report.measured);
-  return json;
 }
 
 }  // namespace apps

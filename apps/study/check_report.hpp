@@ -23,6 +23,14 @@ struct CheckReport {
   std::vector<FramedScene> scenes;
 };
 
+/// Words of the protocol for its mean, and for where its timing comes from.
+const char* mean_name(const study::Protocol& protocol);
+const char* timing_name(const study::Design& design);
+/// Of all showings: they are equally long.
+double overrun_s(const study::Protocol& protocol);
+/// From the slowest to the fastest setting.
+Span play_speeds(const CheckReport& report);
+
 void print_report(const CheckReport& report);
 nlohmann::ordered_json report_json(const CheckReport& report);
 

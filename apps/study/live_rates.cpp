@@ -88,25 +88,51 @@ std::string refusal(const MeasuredReport& report) {
          (first.setting.mean > 0 ? " at " + study::setting_name(first.setting) : "") + ": " + first.words;
 }
 
+std::function<void()> stoppable(const study::Protocol& protocol, const SessionSetup& setup) {
+  return [&setup, &protocol] {
+    if (setup.poll) setup.poll();
+    if (StopSignals::stop_wished())
+      throw base::Error(protocol.name, "stopped while live cells were measured; nothing was shown",
+                        "start it again");
+  };
+}
+
+MeasuredReport judge_here(const study::Protocol& protocol, const SessionSetup& setup, const LiveTimes& live) {
+  const study::Display& display = *setup.display;
+  return judge_measured(protocol, live.stimuli, display.refresh_hz(), [&](const study::FpsSetting& setting) {
+    return study::trial_intervals(protocol, setting, display, 0);
+  });
+}
+
+std::set<int> slow_by_kept(const MeasuredReport& report, const LiveTimes& live) {
+  std::set<int> out;
+  for (const MeasuredCell& one : report.cells) {
+    if (one.too_slow && live.kept.count(one.cell) > 0) out.insert(one.cell);
+  }
+  return out;
+}
+
 }  // namespace
 
-std::vector<MeasuredStimulus> measure_live(const study::Protocol& protocol, CellStimuli& stimuli,
-                                           const MeasuringPlace& place) {
-  auto all = live_stimuli(protocol, stimuli);
+LiveTimes measure_live(const study::Protocol& protocol, CellStimuli& stimuli, const MeasuringPlace& place) {
+  LiveTimes out{live_stimuli(protocol, stimuli), {}};
   const std::filesystem::path folder = sim::default_cache_folder();
   std::vector<MeasuredStimulus*> open;
   const auto key = [&](const MeasuredStimulus& one) {
     const auto& what = stimuli.stimulus(first_cell(protocol, one));
     return key_of(protocol, stimuli, one, what.description(), place);
   };
-  for (MeasuredStimulus& one : all) {
-    const auto kept = place.anew ? std::nullopt : read_step_times(folder, key(one));
-    if (kept)
+  for (MeasuredStimulus& one : out.stimuli) {
+    const bool anew = place.anew && std::any_of(one.cells.begin(), one.cells.end(), place.anew);
+    const auto kept = anew ? std::nullopt : read_step_times(folder, key(one));
+    if (kept) {
       one.times = *kept;
-    else
+      out.kept.insert(one.cells.begin(), one.cells.end());
+    } else {
       open.push_back(&one);
+    }
   }
-  if (open.empty()) return all;
+  if (open.empty()) return out;
   tell_length(protocol, {open.begin(), open.end()}, place);
   study::RealClock clock;
   Progress progress("stimuli measured", open.size());
@@ -117,24 +143,22 @@ std::vector<MeasuredStimulus> measure_live(const study::Protocol& protocol, Cell
     keep_step_times(folder, key(*open[i]), open[i]->times);
     progress.update(i + 1);
   }
-  return all;
+  return out;
 }
 
 MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, bool accept_slow) {
   if (setup.virtual_clock) return {};
-  const auto each = [&setup, &protocol] {
-    if (setup.poll) setup.poll();
-    if (StopSignals::stop_wished())
-      throw base::Error(protocol.name, "stopped while live cells were measured; nothing was shown",
-                        "start it again");
-  };
-  const double refresh_hz = setup.display->refresh_hz();
-  const auto measured =
-      measure_live(protocol, *setup.stimuli, {*setup.display, setup.scenes, refresh_hz, false, each});
-  const MeasuredReport report =
-      judge_measured(protocol, measured, refresh_hz, [&](const study::FpsSetting& setting) {
-        return study::trial_intervals(protocol, setting, *setup.display, 0);
-      });
+  MeasuringPlace place{
+      *setup.display, setup.scenes, setup.display->refresh_hz(), stoppable(protocol, setup), {}};
+  LiveTimes live = measure_live(protocol, *setup.stimuli, place);
+  MeasuredReport report = judge_here(protocol, setup, live);
+  const std::set<int> doubtful = slow_by_kept(report, live);
+  if (!doubtful.empty() && !accept_slow) {
+    std::fprintf(stderr, "%s: too slow by the rates that were kept; they are measured again\n",
+                 protocol.name.c_str());
+    place.anew = [&doubtful](int cell) { return doubtful.count(cell) > 0; };
+    report = judge_here(protocol, setup, measure_live(protocol, *setup.stimuli, place));
+  }
   if (report.cells.empty()) return report;
   std::fprintf(stderr, "%s: live on this station\n%s", protocol.name.c_str(), measured_table(report).c_str());
   if (!report.collapse.empty())
@@ -143,7 +167,7 @@ MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, 
   if (report.too_slow && !accept_slow)
     throw base::Error(protocol.name + " on this station", refusal(report),
                       "bake what may be baked, make the picture smaller, use a faster machine, or add "
-                      "--accept-slow; vip-study check --measure measures anew");
+                      "--accept-slow");
   return report;
 }
 

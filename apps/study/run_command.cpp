@@ -74,7 +74,7 @@ study::Protocol read_checked_protocol(const RunCommand& command) {
 
 std::optional<std::string> read_ptpe(const std::string& path) {
   if (path.empty()) return {};
-  sim::read_ptpe_file(path);
+  std::printf("%s: %s\n", path.c_str(), sim::describe(sim::read_ptpe_file(path)).c_str());
   return base::read_file(path, 1 << 20);
 }
 

@@ -63,8 +63,18 @@ std::unique_ptr<study::FeatureSource> make_features(const RunOptions& options,
   return features;
 }
 
-stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place) {
-  return ptpe ? sim::parse_ptpe_file(*ptpe, place).model : stats::PtpeModel{};
+/// tau of a scheduled cell follows from the cell's own mean, so it must be the mean of the model.
+stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
+                          const study::Protocol& protocol) {
+  if (!ptpe) return {};
+  const stats::PtpeModel model = sim::parse_ptpe_file(*ptpe, place).model;
+  if (protocol.design.timing != study::TimingSource::Native && model.mean != protocol.pacing.mean) {
+    throw base::Error(place,
+                      "was fitted to another mean of the frame rate than protocol '" + protocol.name +
+                          "' sets (pacing.mean)",
+                      "fit it again from a pilot of that mean, or change the protocol's");
+  }
+  return model;
 }
 
 }  // namespace
@@ -102,7 +112,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   } else {
     setup.display = make_display(options);
   }
-  const stats::PtpeModel model = model_of(ptpe, ptpe_place);
+  const stats::PtpeModel model = model_of(ptpe, ptpe_place, protocol);
   SessionLook look{{}, size};
   look.common.model = model;
   look.common.viewing = viewing;

@@ -80,15 +80,15 @@ void print_timing(const Timing& timing) {
 }
 
 void print_tolerance(const sim::PtpeFile& file, const stats::FpsMoments& fps) {
-  std::printf("ptpe   a = %.4f frames/s, b = %.5f s/frame (level %.1f, %d participants)\n", file.model.a,
-              file.model.b, file.level, file.n_participants);
+  std::printf("ptpe   %s\n", sim::describe(file).c_str());
   if (fps.frames == 0) {
     std::printf("       no frame rate was measured: tau needs --frames 2 or more\n");
     return;
   }
-  const double tau = stats::ptpe_tolerance(file.model, fps.mean, fps.sd);
+  const double tau = stats::ptpe_tolerance(file.model, fps);
   std::printf("       over the last %zu frames: mu = %.3f, delta = %.3f frames/s, tau = %.3f, beta = %.4f\n",
-              fps.frames, fps.mean, fps.sd, tau, stats::activation_floor(file.model, tau));
+              fps.frames, fps.mean_of(file.model.mean), fps.sd, tau,
+              stats::activation_floor(file.model, tau));
 }
 
 void print_render_counts(const sim::RenderCounts& c) {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
@@ -30,12 +31,31 @@ bool is_utc(const std::string& text) {
   return true;
 }
 
-std::array<double, 2> interval(const base::TomlTable& table, const char* key) {
+/// The interval of an estimate, which lies in it.
+std::array<double, 2> interval(const base::TomlTable& table, const char* key, const char* of,
+                               double estimate) {
   const auto ends = table.numbers(key, 2);
   if (ends[0] > ends[1]) table.fail(key, "runs downwards", "write [low, high]");
+  if (estimate < ends[0] || estimate > ends[1])
+    table.fail(of, std::string("lies outside its own interval, ") + key,
+               "fit again: one of the two was changed");
   return {ends[0], ends[1]};
 }
+
+const char* mean_name(stats::FpsMean mean) {
+  return mean == stats::FpsMean::Harmonic ? "harmonic" : "arithmetic";
+}
 }  // namespace
+
+std::string describe(const PtpeFile& file) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "a = %.4f frames/s, b = %.5f s/frame (level %.3g, %s mean, %d participants", file.model.a,
+                file.model.b, file.level, mean_name(file.model.mean), file.n_participants);
+  std::string out = text;
+  if (file.n_simulated > 0) out += ", " + std::to_string(file.n_simulated) + " of them SIMULATED";
+  return out + (file.test_data ? ", TEST DATA)" : ")");
+}
 
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   const auto root = base::parse_toml(text, name);
@@ -49,15 +69,16 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   file.model.a = table.number("a_fps", {1e-3, 1e4});
   file.model.b = table.number("b_s", {-1, 1});
   file.level = table.number("level", {1, 7});
-  file.a_ci = interval(table, "a_ci95_fps");
-  file.b_ci = interval(table, "b_ci95_s");
+  file.a_ci = interval(table, "a_ci95_fps", "a_fps", file.model.a);
+  file.b_ci = interval(table, "b_ci95_s", "b_s", file.model.b);
   file.n_participants = static_cast<int>(table.integer("n_participants", {1, 1e6}));
   file.n_simulated = static_cast<int>(table.integer_or("n_simulated", 0, {0, 1e6}));
   if (file.n_simulated > file.n_participants) {
     table.fail("n_simulated", "is more than n_participants", "count each participant once");
   }
   file.test_data = table.boolean_or("test_data", false);
-  file.fps_mean = table.choice("fps_mean", {"harmonic", "arithmetic"});
+  if (table.choice("fps_mean", {"harmonic", "arithmetic"}) == "arithmetic")
+    file.model.mean = stats::FpsMean::Arithmetic;
   file.protocol_sha256 = table.string("protocol_sha256");
   const bool hash = file.protocol_sha256.size() == 64 &&
                     file.protocol_sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -85,7 +106,7 @@ std::string format_ptpe_file(const PtpeFile& file) {
       << "\nlevel = " << exact(file.level) << "\na_ci95_fps = " << pair(file.a_ci)
       << "\nb_ci95_s = " << pair(file.b_ci) << "\nn_participants = " << file.n_participants
       << "\nn_simulated = " << file.n_simulated << "\ntest_data = " << (file.test_data ? "true" : "false")
-      << "\nfps_mean = " << base::toml_quoted(file.fps_mean)
+      << "\nfps_mean = " << base::toml_quoted(mean_name(file.model.mean))
       << "\nprotocol_sha256 = " << base::toml_quoted(file.protocol_sha256)
       << "\ndate_utc = " << base::toml_quoted(file.date_utc) << "\n";
   return out.str();

@@ -13,19 +13,22 @@ namespace sim {
 struct PtpeFile {
   static constexpr int format_version = 1;
 
-  stats::PtpeModel model;            ///< a in frames/s, b in s/frame
+  stats::PtpeModel model;            ///< a in frames/s, b in s/frame, and which mean was the predictor
   double level = 4;                  ///< satisfaction score of the contour, in [1, 7]
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};
   int n_participants = 0;
-  int n_simulated = 0;                ///< of them simulated observers; the key may be missing
-  bool test_data = false;             ///< fitted to test data; the key may be missing
-  std::string fps_mean = "harmonic";  ///< which realised mean was the predictor: harmonic | arithmetic
-  std::string protocol_sha256;        ///< 64 hexadecimal digits
-  std::string date_utc;               ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
+  int n_simulated = 0;          ///< of them simulated observers; the key may be missing
+  bool test_data = false;       ///< fitted to test data; the key may be missing
+  std::string protocol_sha256;  ///< 64 hexadecimal digits
+  std::string date_utc;         ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
 };
 
-/// Errors (base::Error at file:line:column): unknown key, wrong type or range, newer format.
+/// One line: the model, its level and whom it was fitted to; simulated participants and test data are named.
+std::string describe(const PtpeFile& file);
+
+/// Errors (base::Error at file:line:column): unknown key, wrong type or range, a or b outside its own
+/// interval, newer format.
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name);
 PtpeFile read_ptpe_file(const std::filesystem::path& path);
 /// The text of a file that parse_ptpe_file reads back to the same values. std::invalid_argument for a number

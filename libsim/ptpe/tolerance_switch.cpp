@@ -54,8 +54,8 @@ void ToleranceSwitch::frame_time(double ms) {
   }
   window_.push(1e-3 * ms);
   const stats::FpsMoments known = window_.moments();
-  const double tau = stats::ptpe_tolerance(model_, known.mean, known.sd);
-  rate_ = FrameRate{known.mean, known.sd};
+  const double tau = stats::ptpe_tolerance(model_, known);
+  rate_ = FrameRate{known.mean_of(model_.mean), known.sd};
   if (known.frames < window_frames) {
     tau_ = tau;
   } else {
@@ -63,9 +63,7 @@ void ToleranceSwitch::frame_time(double ms) {
   }
 }
 
-double ToleranceSwitch::beta() const {
-  return on_ ? std::min(1.0, stats::activation_floor(model_, *tau_)) : 1;
-}
+double ToleranceSwitch::beta() const { return on_ ? stats::activation_floor(model_, *tau_) : 1; }
 
 void ToleranceSwitch::set(double tau) {
   tau_ = tau;

@@ -45,7 +45,7 @@ class ToleranceSwitch {
   std::optional<FrameRate> rate() const { return rate_; }
   bool on() const { return on_; }
   /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability of a
-  /// particle to be solved. Never above 1, whatever the sign of a fitted b.
+  /// particle to be solved.
   double beta() const;
   std::uint64_t left_out() const { return left_out_; }
 

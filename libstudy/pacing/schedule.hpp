@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "stats/fps_window.hpp"
+
 namespace study {
 
-enum class FpsMean { Harmonic, Arithmetic };
+using stats::FpsMean;
 enum class FrameOrder { White, Ar1, Trace };
 
 /// The part of a protocol that fixes how a setting (mu, delta) becomes a list of intervals. Hashed and stored

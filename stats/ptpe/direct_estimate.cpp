@@ -1,6 +1,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -82,38 +83,41 @@ void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
 
 }  // namespace
 
-std::vector<PilotObservation> within_reach(std::span<const PilotObservation> observations, double level,
-                                           std::vector<double>& left_out) {
-  std::vector<PilotObservation> kept(observations.begin(), observations.end());
-  left_out.clear();
+Reach within_reach(std::span<const PilotObservation> observations, double level) {
+  Reach out;
+  out.kept.assign(observations.begin(), observations.end());
   const auto whole = DirectModel(observations, level).fit();
-  if (!whole) return kept;
-  double low = observations.front().mu, high = low;
-  std::map<double, double> beyond;  // by nominal delta: how far outside the curve runs, in log mu
+  if (!whole) return out;
+  std::map<double, std::array<double, 2>> shown;  // by nominal delta: lowest and highest mean frame rate
   for (const auto& o : observations) {
+    auto& [low, high] = shown.try_emplace(o.nominal_delta, std::array{o.mu, o.mu}).first->second;
     low = std::min(low, o.mu);
     high = std::max(high, o.mu);
-    beyond[o.nominal_delta] = 0;
   }
+  std::map<double, double> beyond;  // how far outside the curve runs, in log mu
   std::vector<double> distances;
-  for (auto& [delta, distance] : beyond) {
+  for (const auto& [delta, range] : shown) {
     const double mu = whole->curve.mu(delta);
-    distance = std::max({0.0, std::log(mu / high), std::log(low / mu)});
-    distances.push_back(distance);
+    const double distance = std::max(std::log(mu / range[1]), std::log(range[0] / mu));
+    beyond[delta] = distance > std::log(reach_margin) ? distance : 0;
+    distances.push_back(beyond[delta]);
+    out.in_reach += beyond[delta] == 0;
   }
   std::sort(distances.begin(), distances.end());
   const double farthest = distances[std::min<std::size_t>(2, distances.size() - 1)];
-  for (const auto& [delta, distance] : beyond) {
-    if (distance > farthest) left_out.push_back(delta);
-  }
-  std::erase_if(kept, [&](const auto& o) { return beyond[o.nominal_delta] > farthest; });
-  return kept;
+  for (const auto& [delta, distance] : beyond)
+    if (distance > farthest) out.left_out.push_back(delta);
+  std::erase_if(out.kept, [&](const auto& o) { return beyond[o.nominal_delta] > farthest; });
+  return out;
 }
 
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
                                const BootstrapOptions& options) {
   DirectEstimate out;
-  const DirectModel model(within_reach(observations, level, out.out_of_reach), level);
+  const Reach reach = within_reach(observations, level);
+  out.out_of_reach = reach.left_out;
+  out.in_reach = reach.in_reach;
+  const DirectModel model(reach.kept, level);
   if (model.participants() == 0) {
     out.fit = Refusal{"no ratings"};
     out.straight = Refusal{"no ratings"};

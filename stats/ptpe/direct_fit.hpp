@@ -85,6 +85,7 @@ struct LackOfFit {
 struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are left out, ascending
+  int in_reach = 0;                  ///< deltas at which the curve meets the frame rates shown
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
@@ -92,11 +93,22 @@ struct DirectEstimate {
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 };
 
-/// The observations within reach, and in `left_out` the nominal deltas of the others: where the curve fitted
-/// to all lies outside the frame rates shown, settings say nothing of where it runs and only bend it (b's
-/// bias at a = 31, b = 0.035 falls from 12 to 4 %). At least the three nearest deltas stay.
-std::vector<PilotObservation> within_reach(std::span<const PilotObservation> observations, double level,
-                                           std::vector<double>& left_out);
+/// By this factor a curve may run outside the frame rates shown at a delta and still be within reach, so that
+/// a curve that passes through the outermost of them is not left out by the toss of a coin.
+inline constexpr double reach_margin = 1.15;
+
+/// What within_reach found.
+struct Reach {
+  std::vector<PilotObservation> kept;
+  std::vector<double> left_out;  ///< nominal deltas, ascending
+  int in_reach = 0;              ///< deltas at which the curve lies among the frame rates shown at them
+};
+
+/// Where the curve fitted to all lies outside the frame rates that were shown at a delta, the settings there
+/// say nothing of where it runs and only bend it (b's bias at a = 31, b = 0.035 falls from 12 to 4 %). They
+/// are left out, but for the three nearest deltas, so that there is a fit to look at. Without a fit to all,
+/// everything is kept.
+Reach within_reach(std::span<const PilotObservation> observations, double level);
 
 /// Fit within reach, jackknife-t and expanded percentile bootstrap, both with whole participants
 /// (options.resamples = 0: no bootstrap). Refused with fewer than least_participants, and where leaving a

@@ -277,7 +277,8 @@ OrdinalPilotEstimate estimate_ordinal_pilot(std::span<const PilotRating> ratings
     out.jackknife = Refusal{reason};
     return out;
   };
-  if (!ratings.empty()) within_reach(PilotTable(ratings).observations(mean), level, out.out_of_reach);
+  if (!ratings.empty())
+    out.out_of_reach = within_reach(PilotTable(ratings).observations(mean), level).left_out;
   std::vector<PilotRating> kept;
   std::set<int> everyone;
   for (const auto& r : ratings) {

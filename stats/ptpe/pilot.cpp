@@ -117,7 +117,8 @@ std::vector<PilotObservation> PilotTable::observations(PilotMean mean) const {
       const auto& e = entry(p, cell);
       if (e.n == 0) continue;
       const double mu = mean == PilotMean::Harmonic ? e.mu_harmonic : e.mu_arithmetic;
-      out.push_back({p, mu / e.n, e.delta / e.n, e.score / e.n, delta_[cell % delta_.size()]});
+      out.push_back({p, mu / e.n, e.delta / e.n, e.score / e.n, delta_[cell % delta_.size()],
+                     mu_[cell / delta_.size()]});
     }
   }
   return out;

@@ -29,6 +29,7 @@ struct PilotObservation {
   double mu = 0, delta = 0;
   double score = 0;
   double nominal_delta = 0;  ///< of the setting: equal numbers are one column of the grid
+  double nominal_mu = 0;     ///< and its row
 };
 
 /// Which realised mean is the coordinate mu of a setting.

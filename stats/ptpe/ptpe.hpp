@@ -1,12 +1,15 @@
 #pragma once
 /// The Perception Threshold for Physical Process Elapsing (paper section 4.1, Eq. 11).
 
+#include "stats/fps_window.hpp"
+
 namespace stats {
 
 /// a > 0 in frames per second, b in seconds per frame. The defaults are the paper's PTPE@4.0.
 struct PtpeModel {
   double a = 23.68;
   double b = 0.02;
+  FpsMean mean = FpsMean::Harmonic;  ///< which mean frame rate mu was in the fit; the paper does not say
 };
 
 /// mu(delta) = a exp(b delta): the frame rate that is just satisfactory at a standard deviation delta (both
@@ -16,7 +19,11 @@ double ptpe_threshold(const PtpeModel& model, double fps_sd);
 /// tau = mu - a exp(b delta) in frames per second (Eq. 11); negative means that acceleration is called for.
 double ptpe_tolerance(const PtpeModel& model, double fps_mean, double fps_sd);
 
-/// beta = exp(2 b tau) with tau clamped to at most 0, so that 0 < beta <= 1 (Algorithm 3, line 8).
+/// tau of the frames shown, by the mean that the model was fitted to.
+double ptpe_tolerance(const PtpeModel& model, const FpsMoments& shown);
+
+/// beta = exp(2 b tau) with tau clamped to at most 0, so that 0 < beta <= 1 (Algorithm 3, line 8). 1 for b <
+/// 0, whose power would be above 1.
 double activation_floor(const PtpeModel& model, double tolerance);
 
 }  // namespace stats

@@ -97,6 +97,20 @@ TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
   EXPECT_EQ(fluid.length(), 0);
 }
 
+TEST(FluidStimulus, LiveFluidThatStandsAtItsStartIsNotComputedAgain) {
+  int made = 0;
+  apps::LiveFluid fluid(scene(), 0.02, "fake", [&] {
+    ++made;
+    return std::make_unique<FakeSimulation>();
+  });
+  fluid.start(3);  // while the screen is black
+  fluid.start(3);  // as the trial begins
+  EXPECT_EQ(made, 1);
+  EXPECT_DOUBLE_EQ(fluid.prepare(3).simulation_time_s, 0.06);
+  fluid.start(3);  // the next trial
+  EXPECT_EQ(made, 2);
+}
+
 TEST(FluidStimulus, FramesHoldTheSolversAccountWhetherLiveOrBaked) {
   const bake_test::Folder folder;
   bake_test::write(folder / "a.bake", 7);

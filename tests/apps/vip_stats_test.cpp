@@ -20,61 +20,21 @@
 #include "libstudy/store/store.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
+#include "tests/apps/pilot_database.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace {
 
 using study::test::TemporaryFolder;
+using testing_pilot::shown_exactly;
+using testing_pilot::simulated;
+using testing_pilot::write_database;
 
 /// `before` is what the shell does first, `as` what the program is started with.
 apps::test::Ended vip_stats(const std::string& arguments, const std::string& before = "",
                             const std::string& as = "") {
   return apps::test::run_shell(before + as + VIP_BIN_DIR "/vip-stats " + arguments);
-}
-
-using Score = std::function<int(const study::Question&, const study::Occasion&)>;
-
-/// A showing exactly at the cell's nominal setting.
-study::TimingVerdict shown_exactly(const study::FpsSetting& setting) {
-  study::TimingVerdict verdict;
-  verdict.verdict = study::Verdict::Pass;
-  verdict.nominal = setting;
-  verdict.realised = {static_cast<std::size_t>(10 * setting.mean), setting.mean, setting.mean, setting.sd};
-  return verdict;
-}
-
-/// A finished pilot of six participants.
-void write_database(const std::filesystem::path& path, const Score& score) {
-  const auto protocol = study::test::pilot();
-  const study::Question& question = protocol.blocks.at(2).questions.at(0);
-  study::Store store(path, study::sqlite::Open::Create);
-  store.add_run(study::test::run_plan(protocol, {"P1", "P2", "P3", "P4", "P5", "P6"}));
-  const auto runs = store.open_runs();
-  for (const auto& session : runs.at(0).sessions) {
-    for (const auto& unit : session.units) {
-      if (!unit.trial) {
-        store.finish_unit(session.id, unit.id, 0);
-        continue;
-      }
-      const study::Cell& cell = protocol.design.cells.at(static_cast<std::size_t>(unit.trial->first));
-      const auto verdict = shown_exactly(cell.setting);
-      const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
-      store.end_presentation(id, 0, 1, {}, verdict);
-      study::Occasion occasion{
-          session.plan.participant, 7, unit.plan.position, study::BlockKind::Stimulus, {}};
-      occasion.shown.push_back({unit.trial->first, cell, verdict.realised, 0, 0});
-      const study::KeptAnswer kept{question.id, {{score(question, occasion), ""}, 1}};
-      store.answer(session.id, unit, 1, {&kept, 1}, true, 2);
-    }
-  }
-}
-
-Score simulated(const std::string& specification) {
-  return [observer = study::PtpeObserver(study::parse_ptpe_observer(specification))](
-             const study::Question& question, const study::Occasion& occasion) {
-    return observer.score(question, occasion, true);
-  };
 }
 
 nlohmann::json read_json(const std::filesystem::path& path) {

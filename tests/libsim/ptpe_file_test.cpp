@@ -14,14 +14,13 @@ namespace {
 
 sim::PtpeFile example() {
   sim::PtpeFile file;
-  file.model = {23.68, 0.1 + 0.2 - 0.28};  // no short decimal
+  file.model = {23.68, 0.1 + 0.2 - 0.28, stats::FpsMean::Arithmetic};  // no short decimal
   file.level = 4;
   file.a_ci = {1.0 / 3, 25};
   file.b_ci = {-1e-17, 0.03};
   file.n_participants = 16;
   file.n_simulated = 3;
   file.test_data = true;
-  file.fps_mean = "arithmetic";
   file.protocol_sha256 = std::string(64, 'a');
   file.date_utc = "2026-01-31T12:00:00Z";
   return file;
@@ -54,7 +53,7 @@ TEST(PtpeFile, ReadsBackEveryBitOfWhatItWrites) {
   EXPECT_EQ(back.n_participants, file.n_participants);
   EXPECT_EQ(back.n_simulated, file.n_simulated);
   EXPECT_EQ(back.test_data, file.test_data);
-  EXPECT_EQ(back.fps_mean, file.fps_mean);
+  EXPECT_EQ(back.model.mean, file.model.mean);
   EXPECT_EQ(back.protocol_sha256, file.protocol_sha256);
   EXPECT_EQ(back.date_utc, file.date_utc);
 }
@@ -67,6 +66,8 @@ TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
       {"a_fps = 23.68", "a_fps = \"23\""},
       {"a_fps = 23.68", "a_fps = nan"},
       {"a_fps = 23.68", "a = 23.68"},
+      {"a_fps = 23.68", "a_fps = 25.5"},
+      {"b_ci95_s = [-1e-17, 0.03]", "b_ci95_s = [-1e-17, -1e-18]"},
       {"level = 4.0", "level = 8.0"},
       {"level = 4.0", "level = 4.0\nlevel = 4.0"},
       {"level = 4.0", "level = 4.0\nsize = 1"},
@@ -85,6 +86,15 @@ TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
     EXPECT_NE(words.find("mend"), std::string::npos) << words;
   }
   EXPECT_NE(error_of(""), "");
+}
+
+TEST(PtpeFile, OfSimulatedPeopleOrTestDataSaysSo) {
+  auto file = example();
+  EXPECT_NE(sim::describe(file).find("16 participants, 3 of them SIMULATED, TEST DATA"), std::string::npos)
+      << sim::describe(file);
+  file.n_simulated = 0;
+  file.test_data = false;
+  EXPECT_NE(sim::describe(file).find("arithmetic mean, 16 participants)"), std::string::npos);
 }
 
 TEST(PtpeFile, NamesTheLineOfTheFault) {

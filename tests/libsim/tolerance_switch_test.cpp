@@ -41,6 +41,17 @@ TEST(ToleranceSwitch, GoesOnBelowZeroAndOffAboveOne) {
   EXPECT_FALSE(s.on());
 }
 
+// Of intervals of 10 and 90 ms the harmonic mean is 20 frames/s, the arithmetic one 55.6.
+TEST(ToleranceSwitch, HonoursTheMeanOfTheModel) {
+  for (const auto& [mean, expected] :
+       {std::pair{stats::FpsMean::Harmonic, 20.0}, std::pair{stats::FpsMean::Arithmetic, 500.0 / 9}}) {
+    sim::ToleranceSwitch tolerance({23.68, 0, mean});
+    for (int frame = 0; frame < 30; ++frame) tolerance.frame_time(frame % 2 ? 90 : 10);
+    EXPECT_NEAR(tolerance.rate()->mean, expected, 1e-9);
+    EXPECT_NEAR(*tolerance.tau(), expected - 23.68, 1e-9);
+  }
+}
+
 TEST(ToleranceSwitch, WaitsForAFullWindowAndForgetsOlderFrames) {
   ToleranceSwitch s;
   for (std::size_t i = 1; i < ToleranceSwitch::window_frames; ++i) s.frame_time(100);

@@ -32,7 +32,7 @@ double least_tau(const std::vector<double>& intervals_s) {
   for (const double interval : intervals_s) {
     window.push(interval);
     const auto moments = window.moments();
-    least = std::min(least, stats::ptpe_tolerance({}, moments.mean, moments.sd));
+    least = std::min(least, stats::ptpe_tolerance({}, moments));
   }
   return least;
 }

@@ -187,7 +187,7 @@ void Viewer::note_time(bool stepped) {
   figures_.frame_ms = 1e3 * interval_s;
   figures_.strip.push(figures_.frame_ms);
   figures_.fps = fluid_->fps.moments();
-  figures_.tau = fixed_tau_.value_or(stats::ptpe_tolerance(model(), figures_.fps.mean, figures_.fps.sd));
+  figures_.tau = fixed_tau_.value_or(stats::ptpe_tolerance(model(), figures_.fps));
   figures_.beta = stats::activation_floor(model(), figures_.tau);
 }
 

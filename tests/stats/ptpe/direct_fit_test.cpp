@@ -142,8 +142,8 @@ TEST(DirectFit, RefusesAnIntervalOverTooFewParticipants) {
 }
 
 TEST(DirectFit, LeavesOutSettingsBeyondTheReachOfTheCurve) {
-  // 31 exp(0.035 delta) is 52 at delta = 15 and 62 at 20; the grid ends at 50.
-  const stats::PilotTable table(simulated::pilot({31, 0.035}, 40, 1));
+  // 33 exp(0.04 delta) is 60 at delta = 15 and 73 at 20; the grid ends at 50.
+  const stats::PilotTable table(simulated::pilot({33, 0.04}, 40, 1));
   const auto estimate = stats::estimate_direct(table.observations(stats::PilotMean::Harmonic), 4, {0});
   ASSERT_TRUE(estimate.jackknife) << estimate.jackknife.reason();
   EXPECT_EQ(estimate.out_of_reach, (std::vector<double>{15, 20}));

@@ -44,6 +44,15 @@ TEST(ActivationFloor, HasThePapersExamples) {
   EXPECT_NEAR(stats::activation_floor({}, -10), 0.67, 0.005);
 }
 
+TEST(ActivationFloor, IsOneForACurveThatFalls) { EXPECT_EQ(stats::activation_floor({23.68, -0.02}, -30), 1); }
+
+TEST(PtpeTolerance, GoesByTheMeanOfTheModel) {
+  const stats::FpsMoments shown{30, 20, 24, 5};
+  EXPECT_NEAR(stats::ptpe_tolerance({10, 0.02, stats::FpsMean::Arithmetic}, shown) -
+                  stats::ptpe_tolerance({10, 0.02}, shown),
+              4, 1e-12);
+}
+
 TEST(ActivationFloor, IsOneWhereNothingIsWrong) {
   EXPECT_EQ(stats::activation_floor({}, 0), 1);
   EXPECT_EQ(stats::activation_floor({}, 30), 1);

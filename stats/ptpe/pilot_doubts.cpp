@@ -1,0 +1,184 @@
+#include "stats/ptpe/pilot_doubts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "stats/inference/t_test.hpp"
+
+namespace stats {
+
+namespace {
+
+/// A person's mean scores: by nominal delta, then by nominal mean frame rate.
+using Scores = std::map<double, std::map<double, double>>;
+
+std::vector<Scores> scores_of(const PilotTable& table) {
+  std::vector<Scores> all(static_cast<std::size_t>(table.participants()));
+  for (const auto& o : table.observations(PilotMean::Harmonic))
+    all[static_cast<std::size_t>(o.participant)][o.nominal_delta][o.nominal_mu] = o.score;
+  return all;
+}
+
+std::vector<double> rates_of(const std::vector<Scores>& people) {
+  std::vector<double> rates;
+  for (const auto& scores : people)
+    for (const auto& [delta, row] : scores)
+      for (const auto& [mu, score] : row) rates.push_back(mu);
+  std::sort(rates.begin(), rates.end());
+  rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
+  return rates;
+}
+
+/// Points of the scale for each doubling of the frame rate; empty where no delta was shown at two rates.
+std::optional<double> slope_of(const Scores& scores) {
+  double xy = 0, xx = 0;
+  for (const auto& [delta, row] : scores) {
+    double x_mean = 0, y_mean = 0;
+    for (const auto& [mu, score] : row) {
+      x_mean += std::log2(mu) / static_cast<double>(row.size());
+      y_mean += score / static_cast<double>(row.size());
+    }
+    for (const auto& [mu, score] : row) {
+      const double x = std::log2(mu) - x_mean;
+      xy += x * (score - y_mean);
+      xx += x * x;
+    }
+  }
+  return xx > 0 ? std::optional(xy / xx) : std::nullopt;
+}
+
+/// Mean score at `high` less that at `low`, over the deltas at which both were shown.
+std::optional<double> rise_between(const Scores& scores, double low, double high) {
+  double sum = 0;
+  int n = 0;
+  for (const auto& [delta, row] : scores) {
+    const auto from = row.find(low), to = row.find(high);
+    if (from == row.end() || to == row.end()) continue;
+    sum += to->second - from->second;
+    ++n;
+  }
+  return n > 0 ? std::optional(sum / n) : std::nullopt;
+}
+
+template <class Measure>
+std::vector<double> over_people(const std::vector<Scores>& people, const Measure& measure) {
+  std::vector<double> values;
+  for (const auto& scores : people)
+    if (const auto value = measure(scores)) values.push_back(*value);
+  return values;
+}
+
+/// One-sided p; people who all agree leave no doubt about the sign.
+double one_sided_p(const std::vector<double>& values, Alternative alternative) {
+  const auto test = t_test_one(values, {.alternative = alternative, .effect_intervals = false});
+  if (test) return test->p;
+  if (values.size() < 2) return 1;
+  return (alternative == Alternative::Greater ? values[0] > 0 : values[0] < 0) ? 0 : 1;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+template <class... Values>
+std::string words(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+void doubt_rise(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& people) {
+  const auto slopes = over_people(people, slope_of);
+  if (slopes.size() < 2) return;
+  const double p = one_sided_p(slopes, Alternative::Greater);
+  if (p < rise_level) return;
+  doubts.push_back({"no_rise", words("the scores do not rise with the mean frame rate: %+.2f points for each "
+                                     "doubling (one-sided p = %.3f, limit %g)",
+                                     mean_of(slopes), p, rise_level)});
+}
+
+void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& people) {
+  const auto rates = rates_of(people);
+  const double pairs = 0.5 * static_cast<double>(rates.size()) * static_cast<double>(rates.size() - 1);
+  double least = 1, low = 0, high = 0, change = 0;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    for (std::size_t j = i + 1; j < rates.size(); ++j) {
+      const auto rises =
+          over_people(people, [&](const Scores& scores) { return rise_between(scores, rates[i], rates[j]); });
+      if (rises.empty()) continue;
+      const double p = one_sided_p(rises, Alternative::Less) * pairs;
+      if (!(p < least)) continue;
+      least = p;
+      low = rates[i];
+      high = rates[j];
+      change = mean_of(rises);
+    }
+  }
+  if (least >= fall_level) return;
+  doubts.push_back(
+      {"falls", words("the scores fall where the mean frame rate rises: %+.2f points from %g to %g "
+                      "frames/s (one-sided p = %.4f after Bonferroni, limit %g)",
+                      change, low, high, least, fall_level)});
+}
+
+/// The intervals that an estimator gives a and b, 0 and 1.
+struct Intervals {
+  const char* name;
+  std::array<std::array<double, 2>, 2> of;
+};
+
+void doubt_agreement(std::vector<PilotDoubt>& doubts, const std::vector<Intervals>& estimators) {
+  for (std::size_t i = 0; i < estimators.size(); ++i) {
+    for (std::size_t j = i + 1; j < estimators.size(); ++j) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto &x = estimators[i].of[k], &y = estimators[j].of[k];
+        if (x[0] <= y[1] && y[0] <= x[1]) continue;
+        doubts.push_back(
+            {"estimators_disagree",
+             words("the estimators disagree about %s: [%.4g, %.4g] by the %s one, [%.4g, %.4g] by "
+                   "the %s one",
+                   k == 0 ? "a" : "b", x[0], x[1], estimators[i].name, y[0], y[1], estimators[j].name)});
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstimate& direct,
+                                     const PilotEstimate& contour, const OrdinalPilotEstimate& ordinal) {
+  std::vector<PilotDoubt> doubts;
+  const auto people = scores_of(table);
+  doubt_rise(doubts, people);
+  doubt_fall(doubts, people);
+  if (direct.jackknife) {
+    const auto& spread = *direct.jackknife;
+    if (spread.a_se() <= 1e-9 * spread.curve.a() || spread.b_se() <= 1e-12)
+      doubts.push_back(
+          {"no_spread", "the participants do not differ: an interval over them would have no width"});
+    if (direct.in_reach < least_deltas_in_reach)
+      doubts.push_back(
+          {"few_deltas", words("the curve runs through the frame rates shown at %d of the standard "
+                               "deviations, and at least %d are needed",
+                               direct.in_reach, least_deltas_in_reach)});
+    if (spread.b_ci[1] < 0)
+      doubts.push_back({"b_below_zero", words("b is below zero, [%.4f, %.4f]: fluctuation would be liked",
+                                              spread.b_ci[0], spread.b_ci[1])});
+  }
+  std::vector<Intervals> estimators;
+  if (direct.jackknife) estimators.push_back({"direct", {direct.jackknife->a_ci, direct.jackknife->b_ci}});
+  if (contour.spread) estimators.push_back({"contour", {contour.spread->a_ci, contour.spread->b_ci}});
+  if (ordinal.jackknife)
+    estimators.push_back({"ordinal", {ordinal.jackknife->a_ci, ordinal.jackknife->b_ci}});
+  doubt_agreement(doubts, estimators);
+  return doubts;
+}
+
+}  // namespace stats

@@ -1,0 +1,98 @@
+/// Pilots that must not steer a solver: each is refused with its reason, and nothing is written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/pilot_database.hpp"
+#include "tests/apps/process.hpp"
+
+namespace {
+
+using study::test::TemporaryFolder;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> sixteen{"P01", "P02", "P03", "P04", "P05", "P06", "P07", "P08",
+                                       "P09", "P10", "P11", "P12", "P13", "P14", "P15", "P16"};
+
+/// What people see of a setting; their own noise and taste come on top.
+using Surface = double (*)(double mu, double delta);
+
+testing_pilot::Score scored(Surface surface, double noise) {
+  return [surface, noise, engine = std::mt19937(5)](const study::Question&,
+                                                    const study::Occasion& occasion) mutable {
+    const auto& setting = occasion.shown.at(0).what.setting;
+    const double x = surface(setting.mean, setting.sd) + noise * std::normal_distribution<double>()(engine);
+    return static_cast<int>(std::clamp(std::round(x), 1.0, 7.0));
+  };
+}
+
+/// Scores that rise by the paper's curve.
+double good(double mu, double delta) { return 4 + 0.14 * (mu - 23.68 * std::exp(0.02 * delta)); }
+
+struct Bad {
+  const char* kind;
+  testing_pilot::Score score;
+  std::vector<std::string> participants;
+  const char* reason;
+  bool forced;  ///< whether there is a curve that --force may hand over
+};
+
+std::vector<Bad> bad_pilots() {
+  return {
+      {"flat", scored([](double, double) { return 4.0; }, 0), sixteen, "no fit: ", false},
+      {"random", scored([](double, double) { return 4.0; }, 2), sixteen, "no fit: ", false},
+      {"reversed", scored([](double mu, double delta) { return 8 - good(mu, delta); }, 1), sixteen, "rise",
+       false},
+      {"U-shaped", scored([](double mu, double) { return 2 + std::abs(mu - 30) / 5; }, 1), sixteen,
+       "the scores fall", true},
+      {"identical people", scored(good, 0), sixteen, "the participants do not differ", true},
+      {"b below zero",
+       scored([](double mu, double delta) { return 4 + 0.14 * (mu - 30 * std::exp(-0.03 * delta)); }, 1),
+       sixteen, "b is below zero", true},
+      {"all above", scored([](double mu, double) { return 6 + mu / 50; }, 0.5), sixteen, "no contour", false},
+      {"all below", scored([](double mu, double) { return 1 + mu / 50; }, 0.5), sixteen, "no contour", false},
+      {"one person", scored(good, 1), {"P01"}, "at least 4", false},
+  };
+}
+
+TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
+  for (const Bad& bad : bad_pilots()) {
+    SCOPED_TRACE(bad.kind);
+    const TemporaryFolder folder;
+    testing_pilot::write_database(folder / "study.db", bad.score, bad.participants);
+    const std::string fit = VIP_BIN_DIR "/vip-stats fit-ptpe " + (folder / "study.db").string() +
+                            " --resamples 200 --out " + (folder / "ptpe.toml").string() + " --svg " +
+                            (folder / "heat.svg").string() + " --json " + (folder / "fit.json").string();
+    const auto refused = apps::test::run_shell(fit);
+    EXPECT_EQ(refused.exit_code, 1) << refused.out;
+    EXPECT_THAT(refused.out, HasSubstr("mend: "));
+    EXPECT_THAT(refused.out, HasSubstr(bad.reason));
+    for (const char* name : {"ptpe.toml", "ptpe.toml.history.jsonl", "heat.svg"})
+      EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+    // The numbers may be looked at, with the reason in them.
+    const auto json = nlohmann::json::parse(base::read_file(folder / "fit.json", 1 << 24));
+    if (bad.forced) {
+      EXPECT_FALSE(json.at("solver_file").at("refused").empty());
+    }
+    EXPECT_EQ(apps::test::run_shell(fit + " --force").exit_code, bad.forced ? 0 : 1);
+    EXPECT_EQ(std::filesystem::exists(folder / "ptpe.toml"), bad.forced);
+  }
+}
+
+TEST(BadPilotE2e, APilotThatRisesIsNotRefused) {
+  const TemporaryFolder folder;
+  testing_pilot::write_database(folder / "study.db", scored(good, 1), sixteen);
+  const auto fitted =
+      apps::test::run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + (folder / "study.db").string() +
+                            " --resamples 200 --out " + (folder / "ptpe.toml").string());
+  EXPECT_EQ(fitted.exit_code, 0) << fitted.out;
+  EXPECT_EQ(fitted.out.find("not for a solver"), std::string::npos) << fitted.out;
+}
+
+}  // namespace
