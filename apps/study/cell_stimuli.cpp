@@ -10,36 +10,6 @@ namespace apps {
 
 namespace {
 
-std::string instead(const std::string& what, const std::string& shown, const std::string& wanted) {
-  return shown == wanted ? "" : what + " " + shown + " instead of " + wanted;
-}
-
-std::string departure_of(const std::filesystem::path& path, const study::StimulusSpec& what) {
-  const sim::BakeReader bake(path);
-  const sim::BakeHeader& header = bake.header();
-  const sim::Scene scene = sim::read_scene(base::find_input(what.scene));
-  std::string all;
-  for (const std::string& one :
-       {instead("scene", header.scene_name + " " + header.scene_sha256.substr(0, 12),
-                scene.name + " " + scene.sha256.substr(0, 12)),
-        instead("method", header.method, sim::method_name(sim::parse_method(what.method))),
-        instead("n_*", std::to_string(header.n_star), std::to_string(sim::parse_n_star(what.n_star)))}) {
-    if (!one.empty()) all += (all.empty() ? "" : ", ") + one;
-  }
-  return all;
-}
-
-/// One bake stands for every cell, so all cells must show one thing.
-const study::StimulusSpec& only_stimulus(const study::Protocol& protocol, const std::string& bake) {
-  const auto& cells = protocol.design.cells;
-  for (const study::Cell& cell : cells) {
-    if (cell.stimulus == cells.front().stimulus) continue;
-    throw base::Error("--stimulus " + bake, "shows one scene, method and n_*, but the protocol names several",
-                      "run such a protocol live, or use it with one of each");
-  }
-  return cells.front().stimulus;
-}
-
 /// Before anybody sits down, not when the cell's turn comes.
 void check_words(const study::Protocol& protocol) {
   for (const study::Cell& cell : protocol.design.cells) {
@@ -62,23 +32,23 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
 }  // namespace
 
 CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& protocol,
-                         const stats::PtpeModel& model, Viewing viewing)
-    : options_(options) {
-  choice_.bake = options.bake;
+                         const stats::PtpeModel& model, Viewing viewing, SessionBakes bakes)
+    : bakes_(std::move(bakes)), shown_(options.display != "none") {
   choice_.content_step_s = protocol.content.content_step_s;
   choice_.backend = options.backend;
   choice_.model = model;
   choice_.viewing = std::move(viewing);
-  if (!options.bake.empty()) {
-    departure_ = departure_of(options.bake, only_stimulus(protocol, options.bake));
-    stimulus_ = make_stimulus(choice_);
-  } else if (options.display == "none") {
-    stimulus_ = std::make_unique<study::NullStimulus>(protocol.content.content_step_s);
-  } else {
-    check_words(protocol);
-    live_ = true;
-  }
-  description_ = live_ ? describe_live(protocol, options.backend) : stimulus_->description();
+  if (shown_) check_words(protocol);
+  description_ = describe(protocol);
+}
+
+/// One bake for all cells, or nothing at all, describes itself.
+std::string CellStimuli::describe(const study::Protocol& protocol) {
+  const bool live = shown_ && !bakes_.whole();
+  const std::string bakes = bakes_.description();
+  if (bakes.empty() && live) return describe_live(protocol, choice_.backend);
+  if (bakes.empty()) return stimulus(protocol.design.cells.front()).description();
+  return live ? bakes + "; " + describe_live(protocol, choice_.backend) : bakes;
 }
 
 StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
@@ -91,15 +61,29 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   return choice;
 }
 
+CellStimuli::Made CellStimuli::wanted_for(const study::Cell& cell) const {
+  if (const FoundBake* bake = bakes_.of(cell)) return {{}, {}, bake->path};
+  if (!shown_) return {};
+  Made wanted{cell.stimulus, {}, {}};
+  const bool by_rate = sim::traits_of(sim::parse_method(cell.stimulus.method)).temporal;
+  if (by_rate) wanted.rate = choice_of(cell).fixed_rate;
+  return wanted;
+}
+
+std::unique_ptr<study::Stimulus> CellStimuli::make(const study::Cell& cell, const Made& wanted) const {
+  if (wanted == Made{}) return std::make_unique<study::NullStimulus>(choice_.content_step_s);
+  if (wanted.bake.empty()) return make_stimulus(choice_of(cell));
+  StimulusChoice choice = choice_;
+  choice.bake = wanted.bake;
+  return make_stimulus(choice);
+}
+
 study::Stimulus& CellStimuli::stimulus(const study::Cell& cell) {
-  if (!live_) return *stimulus_;
-  const StimulusChoice choice = choice_of(cell);
-  Made wanted{cell.stimulus, {}};
-  if (sim::traits_of(sim::parse_method(choice.method)).temporal) wanted.rate = choice.fixed_rate;
+  const Made wanted = wanted_for(cell);
   if (made_ != wanted) {
     made_.reset();
     stimulus_.reset();
-    stimulus_ = make_stimulus(choice);
+    stimulus_ = make(cell, wanted);
     made_ = wanted;
   }
   return *stimulus_;

@@ -5,41 +5,45 @@
 #include <optional>
 
 #include "apps/common/fluid_stimulus.hpp"
+#include "apps/study/bakes/session_bakes.hpp"
 #include "apps/study/run_options.hpp"
 #include "libstudy/session/session.hpp"
 
 namespace apps {
 
-/// Nothing (--display none without a bake), one bake for all cells, or live fluid made anew when a cell needs
-/// another one than the last.
+/// A bake where one stands for the cell, else live fluid, or nothing with --display none. What is shown is
+/// made anew when a cell needs another one than the last.
 class CellStimuli final : public study::StimulusSource {
  public:
   CellStimuli(const RunOptions& options, const study::Protocol& protocol, const stats::PtpeModel& model,
-              Viewing viewing);
+              Viewing viewing, SessionBakes bakes = {});
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
   /// Whether the cell is computed while it is shown.
-  bool is_live(const study::Cell&) const { return live_; }
+  bool is_live(const study::Cell& cell) const { return shown_ && !bakes_.of(cell); }
   /// Of all cells, for the record; does not depend on which of them were shown.
   std::string description() const { return description_; }
-  /// In what the bake differs from what the protocol names, such as "n_* 2048 instead of 32768"; empty: in
-  /// nothing. Such data are test data.
-  std::string departure() const { return departure_; }
+  const SessionBakes& bakes() const { return bakes_; }
   /// What live fluid of a cell is made of.
   StimulusChoice choice_of(const study::Cell& cell) const;
 
  private:
-  RunOptions options_;
-  StimulusChoice choice_;
-  bool live_ = false;
-  std::string description_, departure_;
   /// What the present stimulus was made for; the frame rate counts for methods with temporal acceleration
-  /// alone.
+  /// alone. Of a bake nothing but its path counts.
   struct Made {
     study::StimulusSpec what;
     std::optional<sim::FrameRate> rate;
+    std::filesystem::path bake;
     bool operator==(const Made&) const = default;
   };
+  Made wanted_for(const study::Cell& cell) const;
+  std::unique_ptr<study::Stimulus> make(const study::Cell& cell, const Made& wanted) const;
+  std::string describe(const study::Protocol& protocol);
+
+  StimulusChoice choice_;
+  SessionBakes bakes_;
+  bool shown_ = false;  ///< cells without a bake run live; else they are nothing
+  std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<study::Stimulus> stimulus_;
 };

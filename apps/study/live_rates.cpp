@@ -37,9 +37,9 @@ std::vector<MeasuredStimulus> live_stimuli(const study::Protocol& protocol, cons
   return out;
 }
 
-const FramedScene& framed(const study::Cell& cell, const MeasuringPlace& place) {
+const FramedScene& framed(int cell, const MeasuringPlace& place) {
   for (const FramedScene& scene : place.scenes) {
-    if (scene.file == cell.stimulus.scene) return scene;
+    if (std::find(scene.cells.begin(), scene.cells.end(), cell) != scene.cells.end()) return scene;
   }
   throw std::logic_error("measure_live: a scene that was not framed");
 }
@@ -48,7 +48,7 @@ const FramedScene& framed(const study::Cell& cell, const MeasuringPlace& place) 
 std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, const MeasuredStimulus& one,
                    const std::string& description, const MeasuringPlace& place) {
   const study::Cell& cell = first_cell(protocol, one);
-  const FramedScene& scene = framed(cell, place);
+  const FramedScene& scene = framed(one.cells.front(), place);
   std::ostringstream key;
   key << description << "; " << scene.view.viewport.width << 'x' << scene.view.viewport.height << ", camera "
       << scene.framing.camera_deg << ", eye " << scene.framing.visual_deg.value_or(0) << "; from step "

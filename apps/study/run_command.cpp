@@ -92,7 +92,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   session.machine = study::describe_machine();
   session.time_zone = study::local_time_zone();
   session.ptpe = ptpe;
-  session.gaze_source = command.run.gaze;
+  const bool fixation = protocol.fixation && command.run.gaze == "fixed";
+  session.gaze_source = fixation ? "fixation" : command.run.gaze;
   session.station = command.run.station;
   session.screen_width_mm = command.run.screen_width_mm;
   session.viewing_distance_mm = command.run.viewing_distance_mm;
@@ -158,6 +159,8 @@ void run(RunCommand& command) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
                  setup.departure().c_str());
   }
+  for (const std::string& note : setup.stimuli->bakes().notes(command.protocol))
+    std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), note.c_str());
   for (const std::string& note : framing_notes(protocol, setup.scenes))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
@@ -231,7 +234,8 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--trial-seconds", command->trial_seconds,
                  "Length of every trial; changes the protocol's hash and marks the data as test");
   sub.add_option("--stimulus", command->bake,
-                 "Bake to play (vip-study bake); without: live fluid, or nothing");
+                 "Bake to play (vip-study bake), or folder of bakes (vip-study bake --protocol), of which "
+                 "what is there is played and the rest runs live; without: live fluid, or nothing");
   sub.add_option("--backend", command->run.backend, "Computes live fluid")
       ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
       ->capture_default_str();

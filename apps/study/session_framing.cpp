@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "apps/study/desk/viewing.hpp"
-#include "libsim/bake/bake_file.hpp"
 #include "libsim/methods/method.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -27,28 +27,38 @@ std::string size_words(int width, int height) { return std::to_string(width) + "
 
 bool follows_gaze(const std::string& method) { return sim::traits_of(sim::parse_method(method)).adaptive(); }
 
-std::string departure_of(const sim::BakeHeader& bake, const FramedScene& framed, const Viewing& viewing) {
+bool differ(double a, double b) { return std::abs(a - b) > same_angle_deg; }
+
+/// Levels that followed another angle than the eye sees now.
+std::string levels_departure(const sim::BakeHeader& bake, const FramedScene& framed) {
+  const auto &baked = bake.view.visual_angle_deg, &seen = framed.framing.visual_deg;
+  if (!follows_gaze(bake.method)) return "";
+  if (!baked) {
+    const bool same = std::abs(framed.framing.visual_scale() - 1) <= 1e-3;
+    return same ? "" : "levels by the camera's angle instead of the eye's";
+  }
+  if (seen && !differ(*baked, *seen)) return "";
+  return "levels by " + degrees(*baked) + " of the eye's view instead of " +
+         (seen ? degrees(*seen) : "the camera's angle");
+}
+
+std::string departure_of(const sim::BakeHeader& bake, const FramedScene& framed, double wanted_deg) {
   std::vector<std::string> all;
   if (bake.camera == "overview") all.emplace_back("camera overview instead of view");
-  const auto& framing = framed.framing;
-  if (viewing.true_angle && std::abs(framing.camera_deg - *framing.visual_deg) > same_angle_deg)
-    all.push_back("camera angle " + degrees(framing.camera_deg) + " instead of " +
-                  degrees(*framing.visual_deg));
-  if (follows_gaze(bake.method) && std::abs(framing.visual_scale() - 1) > 1e-3)
-    all.emplace_back("levels by the camera's angle instead of the eye's");
-  std::string out;
-  for (const std::string& one : all) out += (out.empty() ? "" : ", ") + one;
-  return out;
+  if (differ(framed.framing.camera_deg, wanted_deg))
+    all.push_back("camera angle " + degrees(framed.framing.camera_deg) + " instead of " +
+                  degrees(wanted_deg));
+  if (const std::string levels = levels_departure(bake, framed); !levels.empty()) all.push_back(levels);
+  return joined(all);
 }
 
 FramedScene frame_live(const sim::Scene& scene, const Viewing& viewing, PictureSize display) {
-  return {{},
-          scene,
-          framed_view(scene.view, viewing, display.width, display.height),
-          display,
-          frame_picture(scene.view, viewing, display.width, display.height),
-          {},
-          {}};
+  FramedScene out;
+  out.scene = scene;
+  out.view = framed_view(scene.view, viewing, display.width, display.height);
+  out.shown = display;
+  out.framing = frame_picture(scene.view, viewing, display.width, display.height);
+  return out;
 }
 
 /// Pictures keep the camera that they were baked with, and are scaled into the display.
@@ -56,24 +66,50 @@ FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake,
                            PictureSize display) {
   const int width = bake.picture_width_px, height = bake.picture_height_px;
   const Rectangle to = fit_picture(width, height, display.width, display.height);
-  const sim::Camera& camera = bake.camera == "overview" ? scene.overview : scene.view;
-  FramedScene out{{}, scene, sim::make_view(camera, width, height), {to.x1 - to.x0, to.y1 - to.y0}, {},
-                  {}, {}};
+  sim::Camera camera = bake.camera == "overview" ? scene.overview : scene.view;
+  if (bake.view.drawn()) camera.vertical_fov_deg = bake.view.camera_angle_deg;
+  FramedScene out;
+  out.scene = scene;
+  out.view = sim::make_view(camera, width, height);
+  out.shown = {to.x1 - to.x0, to.y1 - to.y0};
   out.framing.camera_deg = camera.vertical_fov_deg;
   // The display is as wide as the screen that was measured.
   if (viewing.visual_angle_deg)
     out.framing.visual_deg = viewing.visual_angle_deg(display.width, out.shown.height);
+  out.renderer = bake.view.renderer;
   return out;
 }
 
-FramedScene frame_bake(const std::filesystem::path& path, const Viewing& viewing, PictureSize display) {
-  const sim::BakeReader reader(path);
-  const sim::BakeHeader& bake = reader.header();
+FramedScene frame_bake(const sim::BakeHeader& bake, const Viewing& viewing, PictureSize display,
+                       const std::string& renderer) {
   const sim::Scene scene = sim::parse_scene(bake.scene_text, bake.scene_name);
   FramedScene out = bake.has_pictures() ? frame_pictures(scene, bake, viewing, display)
                                         : frame_live(scene, viewing, display);
-  out.departure = departure_of(bake, out, viewing);
+  if (!bake.has_pictures()) out.renderer = renderer;
+  const double wanted_deg = viewing.true_angle ? *out.framing.visual_deg : scene.view.vertical_fov_deg;
+  out.departure = departure_of(bake, out, wanted_deg);
   return out;
+}
+
+bool alike(const FramedScene& a, const FramedScene& b) {
+  const auto &from = a.view.viewport, &to = b.view.viewport;
+  return a.file == b.file && a.renderer == b.renderer && from.width == to.width && from.height == to.height &&
+         !differ(a.framing.camera_deg, b.framing.camera_deg);
+}
+
+/// The present one and the same scene otherwise: how they differ.
+std::string difference(const FramedScene& a, const FramedScene& b) {
+  std::vector<std::string> all;
+  const auto &one = a.view.viewport, &other = b.view.viewport;
+  const auto known = [](const std::string& name) { return name.empty() ? "not known" : name; };
+  if (a.renderer != b.renderer)
+    all.push_back("renderer '" + known(a.renderer) + "' and '" + known(b.renderer) + "'");
+  if (one.width != other.width || one.height != other.height)
+    all.push_back("size " + size_words(one.width, one.height) + " and " +
+                  size_words(other.width, other.height));
+  if (differ(a.framing.camera_deg, b.framing.camera_deg))
+    all.push_back("angle " + degrees(a.framing.camera_deg) + " and " + degrees(b.framing.camera_deg));
+  return joined(all);
 }
 
 }  // namespace
@@ -96,18 +132,50 @@ Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> dis
 }
 
 std::vector<FramedScene> frame_scenes(const study::Protocol& protocol, const Viewing& viewing,
-                                      PictureSize display, const std::filesystem::path& bake) {
+                                      PictureSize display, const SessionBakes& bakes,
+                                      const std::string& renderer) {
   std::vector<FramedScene> out;
-  for (const study::Cell& cell : protocol.design.cells) {
+  std::map<std::string, FramedScene> live;  // by file, which is read once
+  for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
+    const study::Cell& cell = protocol.design.cells[i];
     const std::string& file = cell.stimulus.scene;
-    if (std::any_of(out.begin(), out.end(), [&](const auto& known) { return known.file == file; })) continue;
-    FramedScene framed = bake.empty() ? frame_live(sim::read_scene(base::find_input(file)), viewing, display)
-                                      : frame_bake(bake, viewing, display);
+    const FoundBake* bake = bakes.of(cell);
+    if (!bake && !live.contains(file)) {
+      live[file] = frame_live(sim::read_scene(base::find_input(file)), viewing, display);
+      live[file].renderer = renderer;
+    }
+    FramedScene framed = bake ? frame_bake(bake->header, viewing, display, renderer) : live[file];
     framed.file = file;
-    framed.cut = cut_off(framed.scene, framed.view);
-    out.push_back(std::move(framed));
+    auto known = std::find_if(out.begin(), out.end(), [&](const auto& one) { return alike(one, framed); });
+    if (known == out.end()) {
+      framed.cut = cut_off(framed.scene, framed.view);
+      known = out.insert(out.end(), std::move(framed));
+    } else if (known->departure.empty()) {
+      known->departure = framed.departure;
+    }
+    known->cells.push_back(static_cast<int>(i));
+    if (bake && bake->header.has_pictures()) known->copied.push_back(static_cast<int>(i));
   }
   return out;
+}
+
+std::string mixed_pictures(const std::vector<FramedScene>& scenes) {
+  std::vector<std::string> all;
+  for (auto one = scenes.begin(); one != scenes.end(); ++one) {
+    const auto before =
+        std::find_if(scenes.begin(), one, [&](const auto& had) { return had.file == one->file; });
+    if (before != one) all.push_back(one->file + ": " + difference(*before, *one));
+  }
+  return joined(all);
+}
+
+void check_one_picture(const study::Protocol& protocol, const std::vector<FramedScene>& scenes) {
+  const std::string mixed = mixed_pictures(scenes);
+  if (mixed.empty() || protocol.accept_mixed_pictures) return;
+  throw base::Error("--stimulus", "pictures that are compared differ: " + mixed,
+                    "bake on this station at the session's size and angle, or keep particles alone, which "
+                    "the session draws (vip-study bake --protocol); or write accept_mixed_pictures = true "
+                    "in the protocol, which the report then names");
 }
 
 void check_visible(const std::vector<FramedScene>& scenes) {
@@ -128,7 +196,7 @@ std::vector<study::SceneFraming> framing_record(const std::vector<FramedScene>& 
   for (const FramedScene& one : scenes) {
     const auto& drawn = one.view.viewport;
     out.push_back({one.file, drawn.width, drawn.height, one.shown.width, one.shown.height,
-                   one.framing.camera_deg, one.framing.visual_deg});
+                   one.framing.camera_deg, one.framing.visual_deg, one.cells, one.copied, one.renderer});
   }
   return out;
 }
@@ -148,6 +216,8 @@ std::vector<std::string> framing_notes(const study::Protocol& protocol,
                                        const std::vector<FramedScene>& scenes) {
   if (scenes.empty()) return {};
   std::vector<std::string> out;
+  if (const std::string mixed = mixed_pictures(scenes); !mixed.empty())
+    out.push_back("pictures that are compared differ, which the protocol accepts: " + mixed);
   const auto& cells = protocol.design.cells;
   const bool follows = std::any_of(
       cells.begin(), cells.end(), [](const study::Cell& cell) { return follows_gaze(cell.stimulus.method); });

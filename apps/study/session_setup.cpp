@@ -34,6 +34,10 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
   if (options.gaze == "tracked" && options.observer.empty())
     throw base::Error("--gaze tracked", "needs an eye tracker, and none can be read",
                       "use --gaze fixed or mouse; an --observer may be taken as tracked");
+  if (protocol.fixation && options.display != "none" && options.gaze != "fixed")
+    throw base::Error("--gaze " + options.gaze,
+                      "is not where the protocol prescribes to look (gaze = \"fixation\")",
+                      "use --gaze fixed, or gaze = \"free\" in the protocol");
   if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
     throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
                       "use --clock real");
@@ -42,7 +46,7 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
 std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   if (options.display == "none") return std::make_unique<study::NullDisplay>();
   StimulusChoice choice;
-  choice.bake = options.bake;
+  if (!std::filesystem::is_directory(options.bake)) choice.bake = options.bake;
   return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
 }
 
@@ -76,7 +80,7 @@ stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::str
 }  // namespace
 
 std::string SessionSetup::departure() const {
-  std::string out = stimuli->departure();
+  std::string out = stimuli->bakes().departure();
   for (const FramedScene& one : scenes) {
     if (!one.departure.empty()) out += (out.empty() ? "" : ", ") + one.departure;
   }
@@ -109,10 +113,17 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   } else {
     setup.display = make_display(options);
   }
-  if (options.display != "none") setup.scenes = frame_scenes(protocol, viewing, size, options.bake);
+  const stats::PtpeModel model = model_of(ptpe, ptpe_place, protocol);
+  SessionLook look{{}, size};
+  look.common.model = model;
+  look.common.viewing = viewing;
+  SessionBakes bakes(options.bake, protocol, look);
+  if (options.display != "none")
+    setup.scenes = frame_scenes(protocol, viewing, size, bakes, sim::gl_description());
   check_visible(setup.scenes);
-  setup.stimuli = std::make_unique<CellStimuli>(options, protocol, model_of(ptpe, ptpe_place, protocol),
-                                                std::move(viewing));
+  check_one_picture(protocol, setup.scenes);
+  setup.stimuli =
+      std::make_unique<CellStimuli>(options, protocol, model, std::move(viewing), std::move(bakes));
   if (!options.observer.empty()) {
     setup.features = make_features(options, protocol, *setup.stimuli);
     setup.participant = study::make_observer(options.observer, *setup.features);

@@ -135,7 +135,7 @@ Json session_columns() {
           {"test_data", described("1: never pooled with real data")},
           {"observer", described("simulated observer that answered; n/a: a person")},
           {"station", described("where it was recorded")},
-          {"gaze_source", described("tracked, mouse, fixed or none")},
+          {"gaze_source", described("tracked, mouse, fixed, fixation or none")},
           {"state", described("open, done, or how it ended early")}};
 }
 

@@ -28,13 +28,17 @@ class AnswerJournal;
 /// never taken for an option or a formula. base::Error otherwise. Earlier databases may hold others.
 void check_participant_code(const std::string& code);
 
-/// How a session's display frames a scene.
+/// How a session's display frames a scene, for those of its cells that it frames alike.
 struct SceneFraming {
   std::string scene;                            ///< scene file as the protocol names it
   int width_px = 0, height_px = 0;              ///< of the picture as it is drawn
   int shown_width_px = 0, shown_height_px = 0;  ///< on the display; others where a bake's pictures are scaled
   double camera_angle_deg = 0;                  ///< vertical, in (0, 180)
   std::optional<double> visual_angle_deg;       ///< that the picture fills of the eye's view; none: not known
+  std::vector<int> cells;                       ///< of the protocol's design
+  std::vector<int>
+      copied;            ///< those of them whose pictures are a bake's; the others are drawn in the session
+  std::string renderer;  ///< what draws or drew them; empty: not known
 };
 
 /// What is written of a session before its first unit.
@@ -47,7 +51,7 @@ struct SessionPlan {
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
   std::optional<std::string> ptpe;   ///< the PTPE file in full
-  std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed" or "none"
+  std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed", "fixation" or "none"
   std::string station;               ///< where it is recorded
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come

@@ -17,8 +17,8 @@ struct Store::Statements {
             database,
             "INSERT INTO presentation (trial_id, attempt, interval, cell, state, started_utc, start_ns, "
             "framing_id) SELECT ?1, ?2, ?3, ?4, 'running', ?5, ?6, (SELECT max(f.framing_id) FROM trial t "
-            "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = "
-            "?4 JOIN framing f ON f.session_id = s.session_id AND f.scene = c.scene WHERE t.trial_id = ?1)"),
+            "JOIN framing f USING (session_id) WHERE t.trial_id = ?1 AND instr(' ' || f.cells || ' ', ' ' || "
+            "?4 || ' '))"),
         end(database,
             "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
             "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "

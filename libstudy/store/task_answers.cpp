@@ -24,7 +24,11 @@ constexpr const char* sessions_sql =
     "angle_ratio))) AS angles FROM trial t JOIN presentation p USING (trial_id) LEFT JOIN framing f USING "
     "(framing_id) WHERE t.session_id = session.session_id AND p.state = 'played' AND display <> 'none' "
     "ORDER BY 1)), (SELECT group_concat(kind, ' and ') FROM (SELECT "
-    "DISTINCT kind FROM event e WHERE e.session_id = session.session_id AND kind IN (?2, ?3) ORDER BY 1)) "
+    "DISTINCT kind FROM event e WHERE e.session_id = session.session_id AND kind IN (?2, ?3) ORDER BY 1)), "
+    "(SELECT group_concat(words, '; ') FROM (SELECT scene || ': ' || group_concat(printf('%dx%d px at %.4g "
+    "degrees by %s', width_px, height_px, camera_angle_deg, coalesce(renderer, 'a renderer not known')), "
+    "' and ') AS words FROM framing f WHERE f.session_id = session.session_id GROUP BY scene HAVING "
+    "count(DISTINCT cells) > 1 ORDER BY scene)) "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =

@@ -62,7 +62,7 @@ struct TaskSession {
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
   std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
-  std::string gaze_source;  ///< "tracked", "mouse", "fixed" or "none"
+  std::string gaze_source;  ///< "tracked", "mouse", "fixed", "fixation" or "none"
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
@@ -72,6 +72,9 @@ struct TaskSession {
   std::string angles;
   /// "mirror opened", "setting revealed" or both, joined by " and "; empty: the experimenter stayed blind.
   std::string unblinded;
+  /// "a.toml: 640x360 px at 75 degrees by R and 64x36 px at 75 degrees by S", for each scene whose pictures
+  /// differed in renderer, size or angle; empty: none did, or not stored.
+  std::string mixed_pictures;
 };
 
 /// A protocol with all its sessions by participant and visit.

@@ -111,21 +111,30 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
   }
 }
 
-/// What does not stand as the last of its scene.
+std::string listed(const std::vector<int>& cells) {
+  std::string out;
+  for (const int cell : cells) out += (out.empty() ? "" : " ") + std::to_string(cell);
+  return out;
+}
+
+/// What does not stand already: the last row of its cells, which are shown alike, so that the first tells.
 void insert_framing(sqlite::Connection& database, std::int64_t session,
                     const std::vector<SceneFraming>& framing) {
   Statement insert(
       database,
       "INSERT INTO framing (session_id, scene, width_px, height_px, shown_width_px, "
-      "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio) "
-      "SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7 WHERE NOT EXISTS (SELECT 1 FROM framing "
-      "WHERE framing_id = (SELECT max(framing_id) FROM framing WHERE session_id = ?1 AND scene = "
-      "?2) AND (width_px, height_px, shown_width_px, shown_height_px, camera_angle_deg, "
-      "visual_angle_deg) IS (?3, ?4, ?5, ?6, ?7, ?8))");
+      "shown_height_px, camera_angle_deg, visual_angle_deg, angle_ratio, cells, copied, renderer) "
+      "SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8 / ?7, ?9, nullif(?10, ''), nullif(?11, '') WHERE NOT "
+      "EXISTS (SELECT 1 FROM framing WHERE framing_id = (SELECT max(framing_id) FROM framing WHERE "
+      "session_id = ?1 AND instr(' ' || cells || ' ', ' ' || ?12 || ' ')) AND (scene, width_px, height_px, "
+      "shown_width_px, shown_height_px, camera_angle_deg, visual_angle_deg, cells, copied, renderer) IS (?2, "
+      "?3, ?4, ?5, ?6, ?7, ?8, ?9, nullif(?10, ''), nullif(?11, '')))");
   for (const SceneFraming& one : framing) {
     insert.bind(0, session).bind(1, one.scene).bind(2, one.width_px).bind(3, one.height_px);
     insert.bind(4, one.shown_width_px).bind(5, one.shown_height_px);
-    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg).run();
+    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg);
+    insert.bind(8, listed(one.cells)).bind(9, listed(one.copied)).bind(10, one.renderer);
+    insert.bind(11, one.cells.empty() ? -1 : one.cells.front()).run();
   }
 }
 

@@ -66,6 +66,11 @@ inline std::vector<Case> head_and_methods() {
        in_each("/study/protocols", "angles", Json::object())},
       {"Sessions of # with analysed answers to which the experimenter was not blind: *#.",
        in_each("/study/protocols", "unblinded", Json::object())},
+      {"Sessions of # with analysed answers in which pictures of one scene were compared though they differ "
+       "in renderer, size or angle, as the protocol accepts: *#.",
+       in_each("/study/protocols", "mixed_pictures", Json::object()),
+       in_each("/study/protocols", "mixed_pictures",
+               {{"a.toml: 640x360 px at 75 degrees by R and 64x36", 2}})},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",

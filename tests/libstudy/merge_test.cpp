@@ -60,8 +60,8 @@ Lines contents(const fs::path& path) {
            "s.display, s.stimulus, s.machine, s.station, s.time_zone, s.gaze_source, s.ptpe, s.started_utc, "
            "s.ended_utc, r.uid, r.started_utc, r.options, p.sha256 FROM session s JOIN run r USING (run_id) "
            "JOIN protocol p USING (protocol_id)",
-           "SELECT s.uid, f.scene, f.width_px, f.camera_angle_deg, f.visual_angle_deg, f.angle_ratio FROM "
-           "framing f "
+           "SELECT s.uid, f.scene, f.width_px, f.camera_angle_deg, f.visual_angle_deg, f.angle_ratio, "
+           "f.cells, f.copied, f.renderer FROM framing f "
            "JOIN session s USING (session_id)",
            "SELECT s.uid, u.position, u.block, u.block_index, u.kind, u.state, u.done_utc, t.position, "
            "t.group_index, t.first_cell, t.second_cell, t.schedule_seed, t.state, t.set_aside, t.excluded "

@@ -132,14 +132,16 @@ TEST(Store, KeepsHowTheDisplayFramedEachScene) {
   {
     Store store(folder / "study.db", Open::Create);
     RunPlan run = test::run_plan(test::pilot(), {"P01"});
-    run.sessions[0].framing = {{"a.toml", 640, 360, 1280, 720, 75, 27.0}, {"b.toml", 64, 36, 64, 36, 60, {}}};
+    run.sessions[0].framing = {{"a.toml", 640, 360, 1280, 720, 75, 27.0, {0, 3}, {3}, "R"},
+                               {"b.toml", 64, 36, 64, 36, 60, {}, {1}, {}, {}}};
     store.add_run(run);
   }
   sqlite::Connection database(folder / "study.db", Open::Read);
   sqlite::Statement row(
       database,
       "SELECT scene, width_px, height_px, shown_width_px, shown_height_px, camera_angle_deg, "
-      "visual_angle_deg, angle_ratio FROM framing JOIN session USING (session_id) ORDER BY scene");
+      "visual_angle_deg, angle_ratio, cells, copied, renderer FROM framing JOIN session USING (session_id) "
+      "ORDER BY scene");
   ASSERT_TRUE(row.step());
   EXPECT_EQ(row.text(0), "a.toml");
   EXPECT_EQ(row.integer(1), 640);
@@ -149,10 +151,14 @@ TEST(Store, KeepsHowTheDisplayFramedEachScene) {
   EXPECT_EQ(row.real(5), 75);
   EXPECT_EQ(row.real(6), 27);
   EXPECT_EQ(row.real(7), 27.0 / 75);
+  EXPECT_EQ(row.text(8), "0 3");
+  EXPECT_EQ(row.text(9), "3");
+  EXPECT_EQ(row.text(10), "R");
   ASSERT_TRUE(row.step());
   EXPECT_EQ(row.real(5), 60);
   EXPECT_TRUE(row.is_null(6)) << "not known";
   EXPECT_TRUE(row.is_null(7));
+  EXPECT_TRUE(row.is_null(9) && row.is_null(10));
 }
 
 TEST(Store, ASessionResumedOnAnotherDisplayHasItsFramingTooAndEachShowingItsOwn) {

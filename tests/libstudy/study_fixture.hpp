@@ -2,6 +2,7 @@
 /// A small study in a temporary folder, for tests of the store and the session.
 
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,10 @@ inline SessionPlan session_plan(const Protocol& protocol, const std::string& par
   plan.machine = "test";
   plan.time_zone = "UTC";
   plan.station = "north";
-  plan.framing = {{protocol.design.cells.front().stimulus.scene, 640, 360, 640, 360, 75, 27.0}};
+  std::vector<int> cells(protocol.design.cells.size());
+  std::iota(cells.begin(), cells.end(), 0);
+  const std::string& scene = protocol.design.cells.front().stimulus.scene;
+  plan.framing = {{scene, 640, 360, 640, 360, 75, 27.0, cells, {}, "test"}};
   plan.plan = make_plan(protocol, participant, seed, slot);
   return plan;
 }

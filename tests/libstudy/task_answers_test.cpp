@@ -36,6 +36,24 @@ OpenSession open_session(Store& store) { return store.open_runs().at(0).sessions
 
 std::string question_of(const TaskTrial& trial, std::size_t i) { return trial.answers.at(i).question; }
 
+TEST(TaskAnswers, PicturesThatDifferWithinASceneAreNamedAndOthersNot) {
+  const test::TemporaryFolder folder;
+  const Protocol protocol = test::pairs();
+  Store store(folder / "study.db", Open::Create);
+  RunPlan run = test::run_plan(protocol, {"P01", "P02"});
+  const SceneFraming drawn{"a.toml", 640, 360, 640, 360, 75, {}, {0, 1}, {}, "R"};
+  const SceneFraming copied{"a.toml", 64, 36, 640, 360, 60, {}, {2}, {2}, {}};
+  const SceneFraming other{"b.toml", 64, 36, 640, 360, 60, {}, {3}, {3}, "R"};
+  run.sessions[0].framing = {drawn, copied, other};
+  run.sessions[1].framing = {drawn, other};
+  store.add_run(run);
+  const TaskStudy study = read_tasks(folder / "study.db");
+  const auto& sessions = study.protocols.at(0).sessions;
+  EXPECT_EQ(sessions.at(0).mixed_pictures,
+            "a.toml: 640x360 px at 75 degrees by R and 64x36 px at 60 degrees by a renderer not known");
+  EXPECT_EQ(sessions.at(1).mixed_pictures, "");
+}
+
 TEST(TaskAnswers, PairsSayWhichIntervalHeldWhat) {
   const test::TemporaryFolder folder;
   const Protocol protocol = test::pairs();

@@ -25,6 +25,11 @@ std::string protocols_text(const Field& study) {
     if (!protocol["unblinded"].members().empty())
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
+    if (!protocol["mixed_pictures"].members().empty())
+      out += "Sessions of " + title +
+             " with analysed answers in which pictures of one scene were compared though they differ in "
+             "renderer, size or angle, as the protocol accepts: " +
+             counts(protocol["mixed_pictures"]) + ". ";
   }
   return out;
 }

@@ -30,7 +30,8 @@ Json protocol_json(const TaskData& data) {
       {"stations", data.stations},
       {"displays", data.displays},
       {"angles", data.angles},
-      {"unblinded", data.unblinded}};
+      {"unblinded", data.unblinded},
+      {"mixed_pictures", data.mixed_pictures}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {

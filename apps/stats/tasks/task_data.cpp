@@ -58,6 +58,7 @@ class Collector {
     ++data_.displays[session.display];
     if (!session.angles.empty()) ++data_.angles[session.angles];
     if (!session.unblinded.empty()) ++data_.unblinded[session.unblinded];
+    if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
     if (session.observer.empty()) return;
     add_once(data_.simulated, session.participant);
     add_once(data_.observers, session.observer);

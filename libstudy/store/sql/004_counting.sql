@@ -109,7 +109,7 @@ CREATE TABLE session_2 (
   machine TEXT NOT NULL, -- operating system, processor, cores
   station TEXT NOT NULL, -- where it was recorded
   time_zone TEXT NOT NULL, -- time zone of the station
-  gaze_source TEXT NOT NULL CHECK (gaze_source IN ('tracked', 'mouse', 'fixed', 'none')), -- tracked, mouse, fixed or none
+  gaze_source TEXT NOT NULL CHECK (gaze_source IN ('tracked', 'mouse', 'fixed', 'fixation', 'none')), -- tracked, mouse, fixed: taken to be the middle of the picture, fixation: the protocol prescribes the middle, or none
   screen_width_mm REAL CHECK (screen_width_mm > 0), -- width of the picture on the screen, mm
   viewing_distance_mm REAL CHECK (viewing_distance_mm > 0), -- eye to screen, mm
   ptpe TEXT, -- PTPE file in force, in full; empty: none
@@ -125,8 +125,9 @@ UPDATE session SET state = 'refused' WHERE state = 'not eligible' AND EXISTS (SE
   WHERE n.session_id = session.session_id AND u.kind = 'consent' AND n.words = 'block ' || u.block);
 CREATE INDEX session_of_person ON session (person);
 
--- How each session's display framed each scene of its protocol; another row of a scene where the session was resumed on a display
--- that frames it otherwise. No row: nothing was drawn, or an earlier version, which did not write it.
+-- How each session's display framed each scene of its protocol: a row for all of its cells that were framed and drawn alike. Rows of
+-- a scene with other cells are pictures that were compared though they differ; another row of the same cells is of a display on
+-- which the session was resumed. No row: nothing was drawn, or an earlier version, which did not write it.
 CREATE TABLE framing (
   framing_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -137,7 +138,10 @@ CREATE TABLE framing (
   shown_height_px INTEGER NOT NULL CHECK (shown_height_px > 0), -- likewise its height, px
   camera_angle_deg REAL NOT NULL CHECK (camera_angle_deg > 0 AND camera_angle_deg < 180), -- vertical angle of the camera, degrees
   visual_angle_deg REAL CHECK (visual_angle_deg > 0 AND visual_angle_deg < 180), -- vertical angle that the picture fills of the eye's view, in which eccentricity is taken; empty: not known, then it is taken in the camera's, degrees
-  angle_ratio REAL CHECK (angle_ratio > 0) -- visual_angle_deg by camera_angle_deg; empty: not known
+  angle_ratio REAL CHECK (angle_ratio > 0), -- visual_angle_deg by camera_angle_deg; empty: not known
+  cells TEXT NOT NULL, -- cells shown so, separated by spaces
+  copied TEXT, -- those of them whose pictures are copied from a bake, separated by spaces; the others are drawn in the session, from live fluid or a bake's particles; empty: all are drawn
+  renderer TEXT -- what draws or drew them; empty: not known
 ) STRICT;
 CREATE INDEX framing_of_scene ON framing (session_id, scene);
 -- framing_id: how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
