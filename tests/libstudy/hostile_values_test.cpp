@@ -36,7 +36,11 @@ std::vector<test::SoundText> sound_protocols() {
       // Keys that no file needs.
       const std::string format = "format = 2\n";
       if (const auto at = text.bytes.find(format); at != std::string::npos)
-        text.bytes.insert(at + format.size(), "camera_angle = \"true\"\n");
+        text.bytes.insert(at + format.size(),
+                          "camera_angle = \"true\"\ngaze = \"fixation\"\naccept_mixed_pictures = true\n");
+      const std::string timing = "[timing]\n";
+      if (const auto at = text.bytes.find(timing); at != std::string::npos)
+        text.bytes.insert(at + timing.size(), "overrun_s = 20\n");
       const std::string stimulus = "kind = \"stimulus\"\n";
       if (const auto at = text.bytes.find(stimulus); at != std::string::npos)
         text.bytes.insert(at + stimulus.size(), "on_interruption = \"invalidate\"\n");

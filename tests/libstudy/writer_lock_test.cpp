@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <utility>
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge.hpp"
@@ -25,17 +26,28 @@ using ::testing::ThrowsMessage;
 
 enum Outcome { Kept = 0, Busy = 1, Failed = 2, Other = 3 };
 
-/// Plans a session in a new database, all of a round at the same moment. Every third finds no room.
-Outcome start(const fs::path& path, int number, int go) {
+/// Until the other end is closed.
+void wait_for(int pipe) {
   char byte = 0;
-  while (::read(go, &byte, 1) < 0) {
+  while (::read(pipe, &byte, 1) < 0) {
   }
+}
+
+/// Plans a session in a new database, all of a round at the same moment, and holds it until `release`. Every
+/// third finds no room. `tried` is told when it has the database or not.
+Outcome start(const fs::path& path, int number, int go, int tried, int release) {
+  wait_for(go);
+  bool told = false;
+  const auto tell = [&] { return std::exchange(told, true) || ::write(tried, "t", 1) == 1; };
   try {
     const bool no_room = number % 3 == 2;
     Store store(path, Open::Create, no_room ? 2 : 0);
+    if (!tell()) return Other;
     store.add_run(test::run_plan(test::pilot(), {"P" + std::to_string(10 + number)}));
+    wait_for(release);
     return Kept;
   } catch (const base::Error& error) {
+    if (!tell()) return Other;
     const std::string text = error.what();
     if (text.find("another vip-study is running") != std::string::npos) return Busy;
     if (text.find("no room left") != std::string::npos) return Failed;
@@ -50,18 +62,29 @@ TEST(WriterLock, ManyFirstStartsAtOnceLoseNothing) {
   int busy = 0;
   for (int round = 0; round < rounds; ++round) {
     const fs::path path = folder / (std::to_string(round) + ".db");
-    int gate[2];
+    int gate[2], tried[2], release[2];
     ASSERT_EQ(::pipe(gate), 0);
+    ASSERT_EQ(::pipe(tried), 0);
+    ASSERT_EQ(::pipe(release), 0);
     std::array<pid_t, starts> children{};
     for (int i = 0; i < starts; ++i) {
       children[static_cast<std::size_t>(i)] = ::fork();
       if (children[static_cast<std::size_t>(i)] == 0) {
         ::close(gate[1]);
-        ::_exit(start(path, i, gate[0]));
+        ::close(release[1]);
+        ::_exit(start(path, i, gate[0], tried[1], release[0]));
       }
     }
+    const bool overlap = round % 2 == 0;  // whoever has it holds it until all have tried; else as it comes
+    if (!overlap) ::close(release[1]);
     ::close(gate[1]);  // now all of them go
-    ::close(gate[0]);
+    ::close(tried[1]);
+    for (int i = 0; i < starts; ++i) {
+      char byte = 0;
+      ASSERT_EQ(::read(tried[0], &byte, 1), 1);
+    }
+    if (overlap) ::close(release[1]);
+    for (const int end : {gate[0], tried[0], release[0]}) ::close(end);
     int kept = 0;
     for (const pid_t child : children) {
       int status = 0;
@@ -77,7 +100,7 @@ TEST(WriterLock, ManyFirstStartsAtOnceLoseNothing) {
       EXPECT_EQ(Connection(path, Open::Read).integer("SELECT count(*) FROM session"), kept);
     }
   }
-  EXPECT_GT(busy, 0);
+  EXPECT_GE(busy, rounds / 2 * 3) << "of six, one holds it and two find no room";
 }
 
 TEST(WriterLock, IsRefusedWhereTheFileCannotBeOpened) {
