@@ -95,8 +95,9 @@ TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   EXPECT_EQ(mixed[0].at("participants"), 12);
   std::vector<std::string> terms;
   for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
-  EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet", "position"));
-  EXPECT_THAT(mixed[0].at("left_out").dump(), HasSubstr("period 2"));  // each n_* is a period of its own here
+  EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
+  // Here each n_* is a period of its own, and each method has its place.
+  EXPECT_EQ(mixed[0].at("left_out"), (Json{"position", "period 2"}));
   int less = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
     EXPECT_GT(one.at("mixed").at("se"), 0);
