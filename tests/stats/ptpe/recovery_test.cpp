@@ -100,7 +100,8 @@ Row summary(const std::vector<All>& all, std::size_t estimator, const Truth& tru
 struct Kind {
   Population population;
   int participants;
-  bool near;  ///< a lab may meet it: few refusals
+  bool near;            ///< a lab may meet it: few refusals
+  double least = 0.92;  ///< share of intervals that hold
 };
 
 void recover(const Kind& kind, int pilots) {
@@ -123,8 +124,8 @@ void recover(const Kind& kind, int pilots) {
     if (e > 0 || row.refused > 0.5) continue;
     // Of the estimate that feeds the solver, less two and a half Monte-Carlo standard errors.
     const double error = 2.5 * std::sqrt(0.08 * 0.92 / row.given);
-    EXPECT_GE(row.holds_a, 0.92 - error) << population.name << ", " << kind.participants;
-    EXPECT_GE(row.holds_b, 0.92 - error) << population.name << ", " << kind.participants;
+    EXPECT_GE(row.holds_a, kind.least - error) << population.name << ", " << kind.participants;
+    EXPECT_GE(row.holds_b, kind.least - error) << population.name << ", " << kind.participants;
     if (kind.near) {
       EXPECT_LE(row.refused, 0.05 + 2.5 * std::sqrt(0.05 * 0.95 / pilots)) << population.name;
     }
@@ -150,7 +151,10 @@ TEST(EstimatorRecoverySlow, Grid) {
     for (const double a : {18.0, 24.0, 30.0})
       kinds.push_back({surfaces::parametric(a, 0.02), people, people > 6});
   }
-  for (const auto& population : surfaces::strange()) kinds.push_back({population, 16, true});
+  // Scores that hardly rise at the level and steeply away from it bend the quadratic: .86
+  // (docs/statistics.md).
+  for (const auto& population : surfaces::strange())
+    kinds.push_back({population, 16, true, population.name == "cubic" ? 0.86 : 0.92});
   for (const auto& kind : kinds) recover(kind, pilots);
 }
 
