@@ -86,6 +86,7 @@ Json direct_json(const stats::DirectEstimate& estimate) {
   json["rss"] = estimate.fit->rss;
   json["n_observations"] = estimate.fit->n;
   json["out_of_reach"] = estimate.out_of_reach;
+  json["far_above"] = estimate.far_above;
   Json bootstrap{{"method", "expanded percentile (Hesterberg 2015)"}};
   if (estimate.bootstrap) {
     add_spread(bootstrap, estimate.bootstrap);

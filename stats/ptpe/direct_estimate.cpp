@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,24 @@ void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
   estimate.lack_of_fit = Refusal{reason};
 }
 
+/// Takes away the settings far above the curve.
+void leave_out_far_above(Reach& reach, double level) {
+  const auto inner = DirectModel(reach.kept, level).fit();
+  if (!inner) return;
+  std::set<std::pair<double, double>> far;
+  std::vector<PilotObservation> near;
+  for (const auto& o : reach.kept) {
+    if (o.nominal_mu <= far_factor * inner->curve.mu(o.nominal_delta)) {
+      near.push_back(o);
+    } else {
+      far.insert({o.nominal_mu, o.nominal_delta});
+    }
+  }
+  if (far.empty() || !DirectModel(near, level).fit()) return;
+  reach.kept = std::move(near);
+  reach.far_above = static_cast<int>(far.size());
+}
+
 }  // namespace
 
 Reach within_reach(std::span<const PilotObservation> observations, double level) {
@@ -108,6 +127,7 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
   for (const auto& [delta, distance] : beyond)
     if (distance > farthest) out.left_out.push_back(delta);
   std::erase_if(out.kept, [&](const auto& o) { return beyond[o.nominal_delta] > farthest; });
+  leave_out_far_above(out, level);
   return out;
 }
 
@@ -117,6 +137,7 @@ DirectEstimate estimate_direct(std::span<const PilotObservation> observations, d
   const Reach reach = within_reach(observations, level);
   out.out_of_reach = reach.left_out;
   out.in_reach = reach.in_reach;
+  out.far_above = reach.far_above;
   const DirectModel model(reach.kept, level);
   if (model.participants() == 0) {
     out.fit = Refusal{"no ratings"};

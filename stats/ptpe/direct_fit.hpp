@@ -85,6 +85,7 @@ struct LackOfFit {
 struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are left out, ascending
+  int far_above = 0;                 ///< settings left out since they lie far above the curve
   int in_reach = 0;                  ///< deltas at which the curve meets the frame rates shown
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
@@ -96,18 +97,23 @@ struct DirectEstimate {
 /// By this factor a curve may run outside the frame rates shown at a delta and still be within reach, so that
 /// a curve that passes through the outermost of them is not left out by the toss of a coin.
 inline constexpr double reach_margin = 1.15;
+/// Settings above this multiple of the curve are left out: towards the top of the scale the scores level off,
+/// and a quadratic that follows them there misses the level (a = 18, b = 0.01, 40 people: a's bias falls from
+/// 1.4 to 0.4 frames/s, the intervals hold it in 94 instead of 67 %).
+inline constexpr double far_factor = 2.46;
 
 /// What within_reach found.
 struct Reach {
   std::vector<PilotObservation> kept;
   std::vector<double> left_out;  ///< nominal deltas, ascending
   int in_reach = 0;              ///< deltas at which the curve lies among the frame rates shown at them
+  int far_above = 0;             ///< settings above far_factor times the curve
 };
 
 /// Where the curve fitted to all lies outside the frame rates that were shown at a delta, the settings there
 /// say nothing of where it runs and only bend it (b's bias at a = 31, b = 0.035 falls from 12 to 4 %). They
-/// are left out, but for the three nearest deltas, so that there is a fit to look at. Without a fit to all,
-/// everything is kept.
+/// are left out, but for the three nearest deltas, so that there is a fit to look at; and of the others those
+/// far above the curve fitted to them, unless the rest has no fit. Without a fit to all, everything is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
 /// Fit within reach, jackknife-t and expanded percentile bootstrap, both with whole participants

@@ -240,4 +240,27 @@ TEST(LackOfFit, AsksForAnEvenRiseOfTheScoresAlsoWhenTheyAreRounded) {
   EXPECT_GT(observer, 0.95 * studies);
 }
 
+// Where scores level off towards the top of the scale, a quadratic that follows them misses the level: with
+// all settings a comes out at 16.6 here.
+TEST(DirectFit, WhatLiesFarAboveTheCurveDoesNotBendIt) {
+  constexpr int pilots = 20;
+  double mean = 0;
+  for (std::uint64_t seed = 1; seed <= pilots; ++seed) {
+    const stats::PilotTable table(simulated::pilot({18, 0.01}, 40, seed));
+    const auto estimate =
+        stats::estimate_direct(table.observations(stats::PilotMean::Harmonic), 4, {0, 1, 0.95});
+    ASSERT_TRUE(estimate.fit) << estimate.fit.reason();
+    EXPECT_GT(estimate.far_above, 0);
+    mean += estimate.fit->curve.a() / pilots;
+  }
+  EXPECT_NEAR(mean, 18, 0.8);
+}
+
+TEST(DirectFit, SettingsNearTheCurveAllCount) {
+  const stats::PilotTable table(simulated::pilot({30, 0.02}, 16, 1));
+  const auto observations = table.observations(stats::PilotMean::Harmonic);
+  EXPECT_EQ(stats::within_reach(observations, 4).far_above, 0);
+  EXPECT_EQ(stats::within_reach(observations, 4).kept.size(), observations.size());
+}
+
 }  // namespace

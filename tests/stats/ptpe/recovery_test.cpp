@@ -97,27 +97,65 @@ Row summary(const std::vector<All>& all, std::size_t estimator, const Truth& tru
   return row;
 }
 
-void recover(const Population& population, int participants, int pilots) {
+struct Kind {
+  Population population;
+  int participants;
+  bool near;            ///< a lab may meet it: few refusals
+  double least = 0.92;  ///< share of intervals that hold
+};
+
+void recover(const Kind& kind, int pilots) {
+  const auto& population = kind.population;
   const Truth truth = surfaces::truth_of(population);
   std::vector<All> all(static_cast<std::size_t>(pilots));
 #pragma omp parallel for schedule(dynamic)
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = estimate(population, truth, participants, i + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = estimate(population, truth, kind.participants, i + 1);
+  std::printf("| %s, %d | %.1f, %.3f", population.name.c_str(), kind.participants, truth.a, truth.b);
   for (std::size_t e = 0; e < names.size(); ++e) {
     const Row row = summary(all, e, truth);
-    std::printf(
-        "| %s | %.2f | %.4f | %d | %s | %.2f | %+.2f | %.2f | %+.4f | %.4f | %.1f %% | %.2f | %.2f |\n",
-        population.name.c_str(), truth.a, truth.b, participants, names[e], row.refused, row.bias_a,
-        row.error_a, row.bias_b, row.error_b, 100 * row.curve_error, row.holds_a, row.holds_b);
+    std::printf(" | %.2f", row.refused);
+    if (row.given < 20) {
+      std::printf(" | | | |");
+      continue;
+    }
+    std::printf(" | %+.2f, %+.4f | %.2f, %.4f | %.1f | %.2f, %.2f", row.bias_a, row.bias_b, row.error_a,
+                row.error_b, 100 * row.curve_error, row.holds_a, row.holds_b);
+    // Where most are refused, as where b is below zero, the others are those that erred one way.
+    if (e > 0 || row.refused > 0.5) continue;
+    // Of the estimate that feeds the solver, less two and a half Monte-Carlo standard errors.
+    const double error = 2.5 * std::sqrt(0.08 * 0.92 / row.given);
+    EXPECT_GE(row.holds_a, kind.least - error) << population.name << ", " << kind.participants;
+    EXPECT_GE(row.holds_b, kind.least - error) << population.name << ", " << kind.participants;
+    if (kind.near) {
+      EXPECT_LE(row.refused, 0.05 + 2.5 * std::sqrt(0.05 * 0.95 / pilots)) << population.name;
+    }
   }
+  std::printf(" |\n");
   std::fflush(stdout);
 }
 
 TEST(EstimatorRecoverySlow, Grid) {
-  const char* few = std::getenv("PILOTS");
-  const int pilots = few ? std::atoi(few) : 40;
-  for (const auto& population : surfaces::strange()) recover(population, 16, pilots);
-  for (const double a : {12.0, 15.0, 18.0, 24.0, 30.0, 36.0})
-    for (const double b : {-0.01, 0.01, 0.03, 0.05}) recover(surfaces::parametric(a, b), 16, pilots);
+  constexpr int pilots = 150;
+  std::printf(
+      "| truth, people | a, b | direct: refused | bias | error | curve %% | holds | contour: ... | ordinal: "
+      "... |\n");
+  std::vector<Kind> kinds;
+  for (const double a : {12.0, 18.0, 24.0, 30.0, 36.0}) {
+    for (const double b : {-0.01, 0.01, 0.03, 0.05})
+      // Below 20 frames/s at delta = 10 the curve leaves the settings of three deltas.
+      kinds.push_back(
+          {surfaces::parametric(a, b), 16, a * std::exp(10 * b) >= 20 && a <= 30 && b > 0 && b < 0.04});
+  }
+  kinds.push_back({surfaces::parametric(18, 0.01), 40, true});
+  for (const int people : {6, 40}) {
+    for (const double a : {18.0, 24.0, 30.0})
+      kinds.push_back({surfaces::parametric(a, 0.02), people, people > 6});
+  }
+  // Scores that hardly rise at the level and steeply away from it bend the quadratic: .86
+  // (docs/statistics.md).
+  for (const auto& population : surfaces::strange())
+    kinds.push_back({population, 16, true, population.name == "cubic" ? 0.86 : 0.92});
+  for (const auto& kind : kinds) recover(kind, pilots);
 }
 
 }  // namespace

@@ -102,10 +102,12 @@ inline double mean_score(const Population& population, double mu, double delta) 
     return out;
   };
   double sum = 0;
-  for (int i = 1; i <= people; ++i) {
-    const Person z{stats::normal_quantile(radical_inverse(i, 2)),
-                   stats::normal_quantile(radical_inverse(i, 3)),
-                   stats::normal_quantile(radical_inverse(i, 5))};
+  for (int i = 0; i < people; ++i) {
+    // In pairs of opposites, so that what is symmetric stays so.
+    const double sign = i % 2 == 0 ? 1 : -1;
+    Person z;
+    for (std::size_t k = 0; k < z.size(); ++k)
+      z[k] = sign * stats::normal_quantile(radical_inverse(i / 2 + 1, std::array{2, 3, 5}[k]));
     const double x = population.latent(mu, delta, z);
     double score = 1;
     for (int j = 1; j <= 6; ++j) score += stats::normal_probability((x - j - 0.5) / population.noise);
