@@ -43,6 +43,8 @@ inline Json bundle() {
           {"differences", {"protocol task2 was not preregistered"}}};
 }
 
+inline const Change by_holm = set("/plan/decision", "holm");
+
 inline std::vector<Case> head_and_methods() {
   const Change no_protocols = set("/study/protocols", Json::array()), no_flow = set("/flow", Json::object());
   const std::string rules = "/plan/exclusions/";
@@ -94,7 +96,7 @@ inline std::vector<Case> head_and_methods() {
       {"*; visits with less than # of repeated pairs answered alike were left out*",
        set(rules + "min_repeat_agreement", nullptr), set(rules + "min_repeat_agreement", 0.5)},
       {"*; visits with one and the same answer throughout (# answers or more) were left out*",
-       set(rules + "straight_lining_answers", 0)},
+       set(rules + "straight_lining_answers", 0), set(rules + "straight_lining_answers", 8)},
       {"*; visits with less than # of the trials answered were left out*", set(rules + "min_answered", 0),
        set(rules + "min_answered", 0.5)},
       {"The rules see neither method, scene nor frame rate.", no_flow},
@@ -109,9 +111,18 @@ inline std::vector<Case> head_and_methods() {
        refused("/task1")},
       {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
       {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
+      {"Tests of the hypotheses were two-sided.", set("/plan/directional", true)},
+      {"Tests of the hypotheses were one-sided, in the direction claimed.", set("/plan/directional", false),
+       set("/plan/directional", true)},
+      {"Tests of the hypotheses were two-sided, but one-sided for #.", set("/plan/directional", true),
+       set("/plan/directional", "H2, H3 and H6")},
+      {"A hypothesis needed every one of its tests, each significant without correction (intersection-union) "
+       "at # (tests in each family: *).",
+       by_holm},
+      {"Single tests were claimed after Holm's correction within their hypothesis.", by_holm},
       {"Within each hypothesis Holm's correction held the family-wise error rate at # (tests in each family: "
        "*).",
-       set("/hypotheses", Json::array())},
+       set("/plan/decision", "intersection-union"), by_holm},
       {"Intervals hold # unless another share stands beside them.", set("/plan/confidence", nullptr)},
       {"The analysis was made with ViP-Lab # and the GNU Scientific Library #.", set("/versions", nullptr)},
       {"Note: #", set("/study/notes", Json::array())},
@@ -308,8 +319,18 @@ inline std::vector<Case> hypotheses() {
       {"# Decisions on the hypotheses", none},
       {"Exploratory #.", all({set("/preregistration", bundle()), set("/preregistration/tasks/task2", true)})},
       {"Preregistered #.", set("/preregistration", nullptr), set("/preregistration", bundle())},
+      {"Each hypothesis claims all of its tests: it is supported where every one is significant at \u03b1 "
+       "without correction (an intersection-union test), which errs at most at \u03b1.",
+       by_holm},
+      {"Where not all are, those that hold after Holm's step-down correction within the hypothesis may be "
+       "claimed one by one.",
+       by_holm},
       {"Each hypothesis is a family of its own; Holm's step-down correction holds the family's error rate.",
-       none},
+       set("/plan/decision", "intersection-union"), by_holm},
+      {"The claims of H1 to H6 are not corrected for one another; what Holm makes of them stands beside.", none},
+      {"The claim as a whole: p *, after Holm over the claims of H1 to H6 p *.",
+       in_each("/hypotheses", "p_claim_of_six", nullptr)},
+      {"The claim as a whole: p *.", in_each("/hypotheses", "p_claim", nullptr)},
       {"Stars: [*] p < .05, [*][*] p < .01, [*][*][*] p < .001.", none},
       {"Were it testable, the tests below would read: #.", set("/hypotheses/0/status", "supported"),
        untestable},

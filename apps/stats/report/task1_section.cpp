@@ -140,7 +140,8 @@ std::string omnibus(const Field& task1) {
 
 std::string ordinal(const Field& task1) {
   Table table("Cumulative-link mixed models of single answers: effects of the method, log odds",
-              {"Method", "Estimate", "<i>SE</i>", "CI", "<i>z</i>", "<i>p</i>", "Odds ratio"});
+              {"Method", "Estimate", "<i>SE</i>", "CI", "<i>z</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>",
+               "<i>p</i><sub>BH</sub>", "Odds ratio"});
   for (const Field& model : task1["ordinal"].entries()) {
     const std::string name = words(model["question"]) + ", " + words(model["n_star"]);
     if (!model["effects"].there()) {
@@ -159,7 +160,8 @@ std::string ordinal(const Field& task1) {
     table.group(title);
     for (const Field& e : model["effects"].entries())
       table.row({words(e["method"]), fixed(e["estimate"], 2), fixed(e["se"], 2), interval(e["ci"], 2),
-                 fixed(e["z"], 2), p_bare(e["p"]), fixed(e["odds_ratio"], 2)});
+                 fixed(e["z"], 2), p_bare(e["p"]), p_bare(e["p_holm"]), p_bare(e["p_bh"]),
+                 fixed(e["odds_ratio"], 2)});
   }
   return table.empty() ? "" : subsection("Ordinal models", table.html());
 }

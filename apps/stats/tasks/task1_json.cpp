@@ -25,7 +25,9 @@ Json rules_json() {
       {"tests",
        "Paired t tests, two-sided, within each n_*; Holm and Benjamini-Hochberg over the pairs of methods of "
        "one score at one n_*; Welch's test (as if groups were independent) and Wilcoxon's signed-rank test "
-       "beside. Stars mark uncorrected p as in the paper."}};
+       "beside. The effects of an ordinal model are corrected in the same way over the methods of one "
+       "question at "
+       "one n_*. Stars mark uncorrected p as in the paper."}};
 }
 
 Json score_json(const stats::ScoreScale& scale) {
@@ -209,6 +211,8 @@ Json effects_json(const stats::OrdinalEffects& effects, const std::vector<std::s
                     {"ci", json_interval(effect.ci)},
                     {"z", effect.z},
                     {"p", effect.p},
+                    {"p_holm", json_number(effect.p_holm)},
+                    {"p_bh", json_number(effect.p_bh)},
                     {"odds_ratio", json_number(std::exp(effect.estimate))}});
   }
   return list;
