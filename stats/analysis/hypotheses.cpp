@@ -5,6 +5,7 @@
 #include "stats/analysis/hypothesis_family.hpp"
 #include "stats/analysis/task1.hpp"
 #include "stats/inference/distributions.hpp"
+#include "stats/inference/unanimous.hpp"
 
 namespace stats {
 
@@ -14,6 +15,7 @@ namespace {
 struct Contrast {
   HypothesisTest test;
   PairedValues pairs;
+  std::optional<Unanimous> unanimous;  ///< all differences are the same
   bool higher_is_better = true;
   double margin = 0;
 };
@@ -23,6 +25,7 @@ Contrast make_contrast(const ScoreTable& table, int n_star, const std::string& a
   Contrast out;
   out.higher_is_better = table.scale().higher_is_better;
   out.margin = table.scale().margin;
+  out.test.method = "paired t test";
   out.test.label = a + " - " + b + ", " + table.scale().code + ", " + block;
   out.test.score = table.scale().code;
   out.test.n_star = block;
@@ -35,6 +38,8 @@ Contrast make_contrast(const ScoreTable& table, int n_star, const std::string& a
   }
   out.pairs = complete_pairs(table.column(n_star, first), table.column(n_star, second));
   out.test.n = out.pairs.x.size();
+  if (const auto exact = exact_differences(table.means(n_star, first), table.means(n_star, second)))
+    out.unanimous = unanimous(*exact);
   return out;
 }
 
@@ -65,6 +70,16 @@ Result<TwoSided> two_sided_test(Contrast& contrast, const AnalysisPlan& plan) {
       paired->estimate, *contrast.test.paper_p, {paired->estimate - half, paired->estimate + half}};
 }
 
+/// Differences that are all the same have no t. `p`: of the exact test in its place.
+FamilyTest sign_test(const Contrast& contrast, double p, bool right = true) {
+  FamilyTest out{contrast.test, right};
+  out.test.method = "exact sign test";
+  out.test.reason.clear();
+  out.test.estimate = contrast.unanimous->value;
+  out.test.p = p;
+  return out;
+}
+
 bool is_better(const Contrast& contrast, double difference) {
   return contrast.higher_is_better ? difference > 0 : difference < 0;
 }
@@ -86,6 +101,13 @@ double level_of(const Family& family) {
 FamilyTest superiority(Contrast contrast, const Family& family) {
   const AnalysisPlan& plan = family.plan;
   const auto t = two_sided_test(contrast, plan);
+  const Alternative better_side = contrast.higher_is_better ? Alternative::Greater : Alternative::Less;
+  if (!t && contrast.unanimous) {
+    const Unanimous& all = *contrast.unanimous;
+    return family.out.one_sided
+               ? sign_test(contrast, all.p(better_side))
+               : sign_test(contrast, all.p(Alternative::TwoSided), is_better(contrast, all.value));
+  }
   if (!t) return {contrast.test};
   HypothesisTest& test = contrast.test;
   test.p = t->p;
@@ -94,7 +116,7 @@ FamilyTest superiority(Contrast contrast, const Family& family) {
   const bool better = is_better(contrast, t->estimate);
   test.paper_holds = t->p < plan.alpha && better;
   if (!family.out.one_sided) return {test, better};
-  test.p = student_p(*test.t, *test.df, contrast.higher_is_better ? Alternative::Greater : Alternative::Less);
+  test.p = student_p(*test.t, *test.df, better_side);
   test_margins(contrast, plan.alpha);
   return {test};
 }
@@ -102,6 +124,11 @@ FamilyTest superiority(Contrast contrast, const Family& family) {
 FamilyTest equivalence(Contrast contrast, const Family& family) {
   contrast.test.margin = contrast.margin;  // also of a test that is refused: it was fixed beforehand
   const auto t = two_sided_test(contrast, family.plan);
+  if (!t && contrast.unanimous) {
+    const double p = std::max(contrast.unanimous->p(Alternative::Greater, -contrast.margin),
+                              contrast.unanimous->p(Alternative::Less, contrast.margin));
+    return sign_test(contrast, family.out.one_sided ? p : std::min(1.0, 2 * p));
+  }
   if (!t) return {contrast.test};
   const auto both = test_margins(contrast, level_of(family));
   contrast.test.p = family.out.one_sided ? both->p : std::min(1.0, 2 * both->p);
@@ -113,6 +140,14 @@ FamilyTest equivalence(Contrast contrast, const Family& family) {
 FamilyTest non_inferiority(Contrast contrast, const Family& family) {
   contrast.test.margin = contrast.margin;  // also of a test that is refused: it was fixed beforehand
   const auto t = two_sided_test(contrast, family.plan);
+  if (!t && contrast.unanimous) {
+    const Unanimous& all = *contrast.unanimous;
+    const double worst = contrast.higher_is_better ? -contrast.margin : contrast.margin;
+    if (family.out.one_sided)
+      return sign_test(contrast,
+                       all.p(contrast.higher_is_better ? Alternative::Greater : Alternative::Less, worst));
+    return sign_test(contrast, all.p(Alternative::TwoSided, worst), is_better(contrast, all.value - worst));
+  }
   if (!t) return {contrast.test};
   test_margins(contrast, level_of(family));
   const auto one =

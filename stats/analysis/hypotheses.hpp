@@ -30,6 +30,7 @@ const char* kind_name(HypothesisKind kind);
 
 struct HypothesisTest {
   std::string label;
+  std::string method;              ///< "paired t test", "exact sign test" (all differences equal), ...
   std::string score, n_star;       ///< of Task 1
   std::string a, b;                ///< methods
   std::size_t n = 0;               ///< participants with both; answers

@@ -13,6 +13,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
   const AnalysisPlan& plan = family.plan;
   const Alternative side = family.out.one_sided ? Alternative::Greater : Alternative::TwoSided;
   HypothesisTest test;
+  test.method = "exact binomial test";
   test.label = a + " preferred to " + b;
   test.a = a;
   test.b = b;

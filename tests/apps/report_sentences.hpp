@@ -195,6 +195,9 @@ inline std::vector<Case> pilot() {
 inline std::vector<Case> task1() {
   const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
   const Change secondary = in_each("/task1/scores", "primary", false);
+  // Also in words: a p below .05 and no t.
+  const Change unanimous = all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
+                                set("/task1/comparisons/0/test", "exact sign test")});
   const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
   return {
       {"Exploratory # participants, # reports.", no_task},
@@ -223,6 +226,8 @@ inline std::vector<Case> task1() {
       {"# The same pairs by other tests, #", no_pairs},
       {"Pairs below .05 without correction, in APA style:", stars("")},
       {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
+      {"#, # \u2212 #: all differences = #, #, p *, pHolm *", in_each("/task1/comparisons", "test", "paired t test"),
+       unanimous},
       {"No pair differs below .05, even without correction.", stars("*"), stars("")},
       {"No pair could be tested.", in_each("/task1/comparisons", "p", 0.5),
        in_each("/task1/comparisons", "p", nullptr)},
@@ -261,14 +266,23 @@ inline std::vector<Case> task2() {
        refused(bias)},
       {"Note: #.", set(bias + "/warning", ""), set(bias + "/warning", "one answered all pairs alike")},
       {"Over participants: mean share # [[]#, #], t(#) = #, p *.", refused(bias + "/by_participant")},
+      {"Over participants: every share is #, #, p *.", set(bias + "/by_participant/test", "t test"),
+       set(bias + "/by_participant/test", "exact sign test")},
       {"# Abilities on the log-odds scale, their mean at nought", refused(model)},
       {"A method or a group of methods was always or never chosen over all others: the estimates are "
        "Firth's, "
        "penalised.",
        set(model + "/penalised", false), set(model + "/penalised", true)},
-      {"All methods equal: \u03c7\u00b2(#) = #, p *", set(model + "/overall", nullptr)},
-      {"Lack of fit over the pairs: \u03c7\u00b2(#) = #, p *", set(model + "/fit", nullptr)},
-      {"Effect of the order (log odds of the first interval): # [[]#, #], z = #, p *",
+      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of freedom).",
+       set(model + "/people/errors", "independent answers")},
+      {"Errors and intervals take all answers as independent: #.", set(model + "/people/errors", "people"),
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
+      {"All methods equal, if answers were independent: \u03c7\u00b2(#) = #, p *", set(model + "/overall", nullptr)},
+      {"All methods equal, over people: F(#, #) = #, p *", set(model + "/people/equal", nullptr)},
+      {"Lack of fit over the pairs, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/fit", nullptr)},
+      {"Effect of the order (log odds of the first interval): # [[]#, #], SE = #, p *",
        set(model + "/order", nullptr)},
       {"Participants who judged all pairs: # (without: #).", refused("/task2/triads")},
       {"Mean number of circular triads # (random answers: #), mean consistency (Kendall's \u03b6) #; as few "
@@ -339,6 +353,8 @@ inline std::vector<Case> hypotheses() {
       {"# The same p in larger families", none},
       {"#: Mdiff = #, # CI [[]#, #]*, p *, pHolm *", none},
       {"#: *share = #, # CI [[]#, #], p *, pHolm *", none},
+      {"#: Mdiff = #, #, *p *, pHolm *", set("/hypotheses/0/tests/0/method", "paired t test"),
+       set("/hypotheses/0/tests/0/method", "exact sign test")},
       {"#: no test, #", in_each("/hypotheses/0/tests", "p", 0.5),
        all({in_each("/hypotheses/0/tests", "p", nullptr),
             in_each("/hypotheses/0/tests", "reason", "too few")})},

@@ -148,6 +148,47 @@ TEST(TaskResults, WithoutTrackedGazeTwoHypothesesAreNotTestable) {
   EXPECT_EQ(json.at("study").at("tracked_gaze"), false);
 }
 
+// A study whose people all agree: exact tests, not "no data".
+TEST(TaskResults, UnanimousPeopleAreTestedExactly) {
+  auto one = made_study::task1(6), two = made_study::task2(6);
+  for (auto& session : one.sessions)
+    for (auto& trial : session.trials)
+      for (auto& answer : trial.answers) answer.score = trial.first.what.method == "LoRes" ? 1 : 2;
+  for (auto& session : two.sessions)
+    for (auto& trial : session.trials) trial.answers[0].score = 1 + trial.position % 2;
+  const auto json = results_of({{one, two}, 0});
+  for (const auto& pair : json.at("task1").at("comparisons")) {
+    EXPECT_EQ(pair.at("test"), "exact sign test");
+    EXPECT_EQ(pair.at("p"), pair.at("a") == "LoRes" ? 0.03125 : 1);
+    EXPECT_TRUE(pair.at("t").is_null());
+  }
+  for (const auto& hypothesis : json.at("hypotheses"))
+    EXPECT_NE(hypothesis.at("status"), "no data") << hypothesis.at("id");
+  const auto& shares = json.at("task2").at("interval_bias").at("by_participant");
+  EXPECT_EQ(shares.at("test"), "exact sign test");
+  EXPECT_EQ(shares.at("p"), 1) << "everybody chose the first interval in half of the pairs";
+}
+
+TEST(TaskResults, FewPeopleHaveNoBootstrapAndALevelOfTheirOwn) {
+  const auto json = results_of({{made_study::task1(5)}, 0});
+  int intervals = 0;
+  for (const auto& pair : json.at("task1").at("comparisons")) {
+    EXPECT_TRUE(pair.at("bca").is_null());
+    EXPECT_THAT(pair.at("bca_reason").dump(), ::testing::AnyOf(HasSubstr("too few"), HasSubstr("equal")));
+    if (!pair.at("wilcoxon").contains("ci") || pair.at("wilcoxon").at("ci").is_null()) continue;
+    EXPECT_EQ(pair.at("wilcoxon").at("ci_level"), 0.9375);
+    ++intervals;
+  }
+  EXPECT_GT(intervals, 0);
+}
+
+TEST(TaskResults, ErrorsOfTheBradleyTerryModelKnowPeople) {
+  const auto& model = whole_study().at("task2").at("bradley_terry");
+  EXPECT_EQ(model.at("people").at("errors"), "people");
+  EXPECT_EQ(model.at("people").at("people_df"), 25);
+  for (const auto& pair : model.at("differences")) EXPECT_NE(pair.at("se"), pair.at("se_independent"));
+}
+
 TEST(TaskResults, PartsThatTheStudyLacksAreAbsent) {
   const auto results = make_results({{made_study::task2(8)}, 0},
                                     {"s.db", {TaskKind::Task1, TaskKind::Task2}, "", quick_plan()});
@@ -245,7 +286,8 @@ TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
   EXPECT_EQ(fresh.decision, stats::DecisionRule::IntersectionUnion);
   EXPECT_EQ(fresh.directional, stats::Directional::None);
   EXPECT_EQ(fresh.exclusions.straight_lining_answers, 0);
-  const auto frozen = plan_of("format = 1\nprotocols = [\"ab\"]\n[exclusions]\nstraight_lining_answers = 8\n");
+  const auto frozen =
+      plan_of("format = 1\nprotocols = [\"ab\"]\n[exclusions]\nstraight_lining_answers = 8\n");
   EXPECT_EQ(frozen.decision, stats::DecisionRule::Holm);
   EXPECT_EQ(frozen.directional, stats::Directional::H2H3H6);
   EXPECT_EQ(frozen.exclusions.straight_lining_answers, 8);

@@ -228,6 +228,52 @@ TEST(Hypotheses, OnePersonIsNoData) {
   }
 }
 
+/// Everybody rates the methods alike, each by their own level: no difference has any spread.
+std::vector<Hypothesis> unanimous_verdicts(const std::vector<double>& realism,
+                                           const std::vector<double>& sickness, int n,
+                                           const AnalysisPlan& plan = {}) {
+  const auto table = [&](const std::vector<double>& means, ScoreScale scale) {
+    std::vector<MethodScore> scores;
+    for (int p = 0; p < n; ++p)
+      for (int block = 0; block < 2; ++block)
+        for (int m = 0; m < 5; ++m)
+          scores.push_back({p, block, block, m, means[static_cast<std::size_t>(m)] + p % 3});
+    return ScoreTable(std::move(scale), scores, n, test::n_stars, test::methods);
+  };
+  return task1_hypotheses(table(realism, test::realism_scale()), table(sickness, test::sickness_scale()),
+                          plan, "");
+}
+
+TEST(Hypotheses, UnanimousDifferencesAreTestedBySign) {
+  const auto all = unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 8);
+  for (const auto& one : all) {
+    EXPECT_EQ(one.status, HypothesisStatus::Supported) << one.status_text;
+    for (const auto& test : one.tests) {
+      EXPECT_EQ(test.method, "exact sign test");
+      EXPECT_EQ(*test.p, std::ldexp(1, -7)) << test.label << ": all eight on one side, both sides counted";
+      EXPECT_THAT(test.reason, IsEmpty());
+      EXPECT_FALSE(test.ci.has_value());
+    }
+  }
+  EXPECT_EQ(*all[0].tests[0].estimate, 2);
+  for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 8, one_sided_throughout()))
+    for (const auto& test : one.tests) EXPECT_EQ(*test.p, std::ldexp(1, -8)) << test.label;
+}
+
+TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
+  // Ours equals FovFluid, lies beyond the margin of HiRes, and Ours-TSp is as far below Ours as the margin.
+  const auto all = unanimous_verdicts({1, 2, 2, 1.5, 3}, {2, 1, 1, 1.25, 0}, 8);
+  EXPECT_EQ(*all[0].tests[0].p, 1) << "no difference at all";
+  EXPECT_EQ(*all[0].tests[2].p, std::ldexp(1, -7));
+  EXPECT_TRUE(all[0].tests[2].against);
+  EXPECT_EQ(*all[1].tests[0].p, 1) << "beyond the margin";
+  EXPECT_EQ(*all[2].tests[0].p, 1) << "at the margin";
+  for (const auto& one : all) EXPECT_EQ(one.confirmed, 0);
+  // Few people cannot show anything by sign: 2^-4 on each side.
+  for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 5))
+    EXPECT_EQ(one.status, HypothesisStatus::NotSupported) << one.status_text;
+}
+
 TEST(Hypotheses, AMethodThatWasNotShownIsNamed) {
   std::vector<MethodScore> scores;
   for (int p = 0; p < 5; ++p) {

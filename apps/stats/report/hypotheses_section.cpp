@@ -13,9 +13,12 @@ std::string interval_of(const Field& test) {
          interval(test["ci"], 2);
 }
 
+bool by_sign(const Field& test) { return test["method"].words() == "exact sign test"; }
+
 /// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
+  if (by_sign(test)) return fixed(test["estimate"], 2) + ", " + words(test["method"]) + " (all are equal)";
   return fixed(test["estimate"], 2) + ", " + interval_of(test);
 }
 
@@ -52,7 +55,7 @@ std::string apa(const Field& test, bool preference) {
   } else {
     out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
   }
-  out += ", " + interval_of(test);
+  out += ", " + (by_sign(test) ? words(test["method"]) : interval_of(test));
   if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
   if (test["t"].is_number()) out += ", <i>t</i>(" + fixed(test["df"], 0) + ") = " + fixed(test["t"], 2);
   if (test["d_z"].is_number()) out += ", <i>d<sub>z</sub></i> = " + fixed(test["d_z"], 2);

@@ -10,6 +10,7 @@ Json test_json(const stats::HypothesisTest& test) {
     json["score"] = test.score;
     json["n_star"] = test.n_star;
   }
+  json["method"] = test.method;
   json["a"] = test.a;
   json["b"] = test.b;
   json["n"] = test.n;
