@@ -85,7 +85,8 @@ class Reader {
                           {},
                           session_.is_null(9) ? "" : session_.text(9),
                           session_.is_null(10) ? "" : session_.text(10),
-                          session_.is_null(11) ? "" : session_.text(11)};
+                          session_.is_null(11) ? "" : session_.text(11),
+                          session_.is_null(12) ? "" : session_.text(12)};
       session.trials = trials(session_.integer(0));
       session.catches = catches(session_.integer(0));
       out.push_back(std::move(session));

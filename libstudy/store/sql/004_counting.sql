@@ -144,5 +144,36 @@ CREATE TABLE framing (
   renderer TEXT -- what draws or drew them; empty: not known
 ) STRICT;
 CREATE INDEX framing_of_scene ON framing (session_id, scene);
--- framing_id: how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
-ALTER TABLE presentation ADD COLUMN framing_id INTEGER REFERENCES framing;
+
+-- A showing is known by how it was framed.
+PRAGMA legacy_alter_table = ON;
+CREATE TABLE presentation_2 (
+  presentation_id INTEGER PRIMARY KEY, -- row number
+  trial_id INTEGER NOT NULL REFERENCES trial, -- trial shown
+  attempt INTEGER NOT NULL CHECK (attempt >= 1), -- 1, and more after an interruption or a repeat
+  interval INTEGER NOT NULL CHECK (interval IN (0, 1)), -- 0: first or only stimulus, 1: second of a pair
+  cell INTEGER NOT NULL CHECK (cell >= 0), -- cell shown
+  state TEXT NOT NULL CHECK (state IN ('running', 'interrupted', 'played')), -- played, or cut short
+  started_utc TEXT NOT NULL, -- when it began
+  start_ns INTEGER NOT NULL, -- the same on the session's clock, ns
+  end_ns INTEGER, -- end of the last frame on the session's clock, ns
+  verdict TEXT CHECK (verdict IN ('pass', 'degraded', 'fail')), -- timing verdict; empty: no schedule to judge by
+  grade TEXT CHECK (grade IN ('A', 'B', 'C', 'D')), -- evidence: A photodiode, B display, C compositor, D submit
+  reason TEXT, -- why it is not a pass
+  frames INTEGER, -- frames shown
+  mean_fps REAL, -- realised harmonic mean, frames/s
+  mean_arithmetic_fps REAL, -- realised arithmetic mean, frames/s
+  sd_fps REAL, -- realised population standard deviation, frames/s
+  p95_ms REAL, -- 95th percentile of the intervals, ms
+  longest_ms REAL, -- longest interval, ms
+  shortest_ms REAL, -- shortest interval, ms
+  lag1 REAL, -- autocorrelation of the frame rate at lag 1
+  late_frames INTEGER, -- frames beyond the protocol's bound
+  worst_late_ms REAL, -- largest lateness, ms
+  framing_id INTEGER REFERENCES framing, -- how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
+  UNIQUE (trial_id, attempt, interval)
+) STRICT;
+INSERT INTO presentation_2 SELECT *, NULL FROM presentation;
+DROP TABLE presentation;
+ALTER TABLE presentation_2 RENAME TO presentation;
+PRAGMA legacy_alter_table = OFF;
