@@ -196,8 +196,9 @@ inline std::vector<Case> task1() {
   const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
   const Change secondary = in_each("/task1/scores", "primary", false);
   // Also in words: a p below .05 and no t.
-  const Change unanimous = all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
-                                set("/task1/comparisons/0/test", "exact sign test")});
+  const Change unanimous =
+      all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
+           set("/task1/comparisons/0/test", "exact sign test")});
   const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
   return {
       {"Exploratory # participants, # reports.", no_task},
@@ -226,8 +227,8 @@ inline std::vector<Case> task1() {
       {"# The same pairs by other tests, #", no_pairs},
       {"Pairs below .05 without correction, in APA style:", stars("")},
       {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
-      {"#, # \u2212 #: all differences = #, #, p *, pHolm *", in_each("/task1/comparisons", "test", "paired t test"),
-       unanimous},
+      {"#, # \u2212 #: all differences = #, #, p *, pHolm *",
+       in_each("/task1/comparisons", "test", "paired t test"), unanimous},
       {"No pair differs below .05, even without correction.", stars("*"), stars("")},
       {"No pair could be tested.", in_each("/task1/comparisons", "p", 0.5),
        in_each("/task1/comparisons", "p", nullptr)},
@@ -273,12 +274,15 @@ inline std::vector<Case> task2() {
        "Firth's, "
        "penalised.",
        set(model + "/penalised", false), set(model + "/penalised", true)},
-      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of freedom).",
-       set(model + "/people/errors", "independent answers")},
+      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of "
+       "freedom).",
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
       {"Errors and intervals take all answers as independent: #.", set(model + "/people/errors", "people"),
        all({set(model + "/people/errors", "independent answers"),
             set(model + "/people/why_independent", "too few")})},
-      {"All methods equal, if answers were independent: \u03c7\u00b2(#) = #, p *", set(model + "/overall", nullptr)},
+      {"All methods equal, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/overall", nullptr)},
       {"All methods equal, over people: F(#, #) = #, p *", set(model + "/people/equal", nullptr)},
       {"Lack of fit over the pairs, if answers were independent: \u03c7\u00b2(#) = #, p *",
        set(model + "/fit", nullptr)},
@@ -341,7 +345,8 @@ inline std::vector<Case> hypotheses() {
        by_holm},
       {"Each hypothesis is a family of its own; Holm's step-down correction holds the family's error rate.",
        set("/plan/decision", "intersection-union"), by_holm},
-      {"The claims of H1 to H6 are not corrected for one another; what Holm makes of them stands beside.", none},
+      {"The claims of H1 to H6 are not corrected for one another; what Holm makes of them stands beside.",
+       none},
       {"The claim as a whole: p *, after Holm over the claims of H1 to H6 p *.",
        in_each("/hypotheses", "p_claim_of_six", nullptr)},
       {"The claim as a whole: p *.", in_each("/hypotheses", "p_claim", nullptr)},

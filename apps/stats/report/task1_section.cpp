@@ -48,10 +48,10 @@ std::string cells_table(const Field& task1, const Field& score) {
 }
 
 /// Behind the name of a pair without spread.
+bool by_sign(const Field& pair) { return pair["test"].words() == "exact sign test"; }
+
 std::string sign_test(const Field& pair) {
-  return pair["test"].words() == "exact sign test"
-             ? " <em>(all differences are equal: " + words(pair["test"]) + ")</em>"
-             : "";
+  return by_sign(pair) ? " <em>(all differences are equal: " + words(pair["test"]) + ")</em>" : "";
 }
 
 std::string t_tests(const Field& task1, const Field& score) {
@@ -107,7 +107,7 @@ std::string apa_lines(const Field& task1, const std::string& score) {
     if (c["stars"].words().empty()) continue;
     const std::string name = words(c["n_star"]) + ", " + pair_name(c) + ": ";
     const std::string p_values = ", <i>p</i> " + p(c["p"]) + ", <i>p</i><sub>Holm</sub> " + p(c["p_holm"]);
-    if (!c["t"].is_number()) {
+    if (by_sign(c)) {
       lines.push_back(name + "all differences = " + fixed(c["difference"], 2) + ", " + words(c["test"]) +
                       p_values);
       continue;
