@@ -53,4 +53,10 @@ std::vector<double> Cholesky::inverse() const {
   return out;
 }
 
+double Cholesky::log_determinant() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < n_; ++i) sum += 2 * std::log(lower_[i * n_ + i]);
+  return sum;
+}
+
 }  // namespace stats

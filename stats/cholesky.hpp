@@ -19,6 +19,8 @@ class Cholesky {
   std::vector<double> solve(std::span<const double> b) const;
   /// A^-1, row-major.
   std::vector<double> inverse() const;
+  /// log |A|.
+  double log_determinant() const;
 
  private:
   std::size_t n_ = 0;

@@ -29,15 +29,18 @@ ScoreTable::ScoreTable(ScoreScale scale, std::span<const MethodScore> scores, in
     int count = 0;
   };
   std::vector<Cell> cells(n_stars_.size() * methods_.size() * static_cast<std::size_t>(participants_));
+  planned_.resize(cells.size());
   for (const MethodScore& score : scores) {
     if (!inside(score.participant, static_cast<std::size_t>(participants_)) || std::isinf(score.sum) ||
         score.items != scores.front().items)
       throw std::invalid_argument("a score of no participant of the table, of other items, or infinite");
-    const std::size_t first = first_of(score.n_star, score.method);
+    const std::size_t at = first_of(score.n_star, score.method) + static_cast<std::size_t>(score.participant);
+    planned_[at] = 1;
     if (std::isnan(score.sum)) continue;
-    Cell& cell = cells[first + static_cast<std::size_t>(score.participant)];
+    Cell& cell = cells[at];
     cell.sum += score.sum;
     cell.count += score.items;
+    answers_.push_back(score);
   }
   for (const Cell& cell : cells) {
     means_.push_back(cell.count > 0 ? ExactMean{cell.sum, cell.count} : ExactMean{});
@@ -60,6 +63,11 @@ std::span<const double> ScoreTable::column(int n_star, int method) const {
 std::span<const ExactMean> ScoreTable::means(int n_star, int method) const {
   return std::span<const ExactMean>(means_).subspan(first_of(n_star, method),
                                                     static_cast<std::size_t>(participants_));
+}
+
+std::span<const char> ScoreTable::planned(int n_star, int method) const {
+  return std::span<const char>(planned_).subspan(first_of(n_star, method),
+                                                 static_cast<std::size_t>(participants_));
 }
 
 std::vector<double> ScoreTable::rows(int n_star) const {

@@ -13,8 +13,10 @@ namespace stats {
 /// One report. Indices count from 0. Its score is the mean of `items` answers.
 struct MethodScore {
   int participant = 0, scene = 0, n_star = 0, method = 0;
-  double sum = 0;  ///< of the answers; NaN = not all answered
+  double sum = 0;  ///< of the answers; NaN = planned, not all answered
   int items = 1;
+  int position = 0;  ///< of the trial in its visit
+  int period = 0;    ///< part of the session; see periods_of() in mixed_scores.hpp
 
   double value() const { return sum / items; }
 };
@@ -48,6 +50,10 @@ class ScoreTable {
   std::span<const ExactMean> means(int n_star, int method) const;
   /// Participants by methods, row after row, of those who gave anything at this n_*; NaN = missing.
   std::vector<double> rows(int n_star) const;
+  /// Which participants were to judge it, whether or not they did; one value for each.
+  std::span<const char> planned(int n_star, int method) const;
+  /// Reports as they were given, without those that lack an answer.
+  const std::vector<MethodScore>& answers() const { return answers_; }
   /// Index, or -1.
   int n_star_index(const std::string& n_star) const;
   int method_index(const std::string& method) const;
@@ -60,6 +66,8 @@ class ScoreTable {
 
   std::vector<ExactMean> means_;  ///< [n_star][method][participant]
   std::vector<double> values_;    ///< of means_
+  std::vector<char> planned_;     ///< as means_
+  std::vector<MethodScore> answers_;
 };
 
 }  // namespace stats

@@ -92,6 +92,9 @@ void correct_all(std::span<MethodComparison> family) {
   correct(
       family, [](const MethodComparison& one) { return one.wilcoxon ? one.wilcoxon->p_default : missing; },
       &MethodComparison::wilcoxon_p_holm, &MethodComparison::wilcoxon_p_bh);
+  correct(
+      family, [](const MethodComparison& one) { return one.mixed ? one.mixed->p : missing; },
+      &MethodComparison::mixed_p_holm, &MethodComparison::mixed_p_bh);
 }
 
 Omnibus test_all_methods(const ScoreTable& table, int n_star) {
@@ -105,6 +108,29 @@ Omnibus test_all_methods(const ScoreTable& table, int n_star) {
   }
   out.friedman = friedman_test(rows, k);
   out.anova = repeated_anova(rows, k);
+  return out;
+}
+
+PairPeople count_people(const ScoreTable& table, int n_star, std::span<const MethodComparison> pairs) {
+  PairPeople out;
+  out.n_star = n_star;
+  const auto methods = static_cast<int>(table.methods().size());
+  for (std::size_t p = 0; p < static_cast<std::size_t>(table.participants()); ++p) {
+    int planned = 0, judged = 0;
+    for (int m = 0; m < methods; ++m) {
+      planned += table.planned(n_star, m)[p];
+      judged += std::isnan(table.column(n_star, m)[p]) ? 0 : 1;
+    }
+    out.planned += planned > 0 ? 1 : 0;
+    out.any += judged > 0 ? 1 : 0;
+    out.all += judged == methods ? 1 : 0;
+    out.differ = out.differ || (judged > 1 && judged < methods);
+  }
+  const auto by_n = [](const MethodComparison& a, const MethodComparison& b) { return a.n < b.n; };
+  if (pairs.empty()) return out;
+  const auto [fewest, most] = std::minmax_element(pairs.begin(), pairs.end(), by_n);
+  out.fewest = fewest->n;
+  out.most = most->n;
   return out;
 }
 
@@ -134,6 +160,7 @@ PairedValues complete_pairs(std::span<const double> x, std::span<const double> y
 
 ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan) {
   ScoreAnalysis out;
+  out.mixed = fit_mixed_scores(table);
   const auto methods = static_cast<int>(table.methods().size());
   for (int n_star = 0; n_star < static_cast<int>(table.n_stars().size()); ++n_star) {
     const std::size_t first = out.comparisons.size();
@@ -141,7 +168,12 @@ ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan) 
       out.cells.push_back(describe_cell(table, n_star, a, plan));
       for (int b = a + 1; b < methods; ++b) out.comparisons.push_back(compare(table, n_star, a, b, plan));
     }
-    correct_all(std::span(out.comparisons).subspan(first));
+    const auto pairs = std::span(out.comparisons).subspan(first);
+    for (auto& one : pairs)
+      one.mixed = out.mixed ? out.mixed->difference(one.n_star, one.a, one.b, plan.confidence)
+                            : Refusal{out.mixed.reason()};
+    correct_all(pairs);
+    out.people.push_back(count_people(table, n_star, pairs));
     out.omnibus.push_back(test_all_methods(table, n_star));
   }
   return out;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "stats/analysis/mixed_scores.hpp"
 #include "stats/analysis/plan.hpp"
 #include "stats/analysis/score_table.hpp"
 #include "stats/inference/bootstrap_interval.hpp"
@@ -45,10 +46,20 @@ struct MethodComparison {
   Result<EquivalenceTest> equivalence = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< of the differences
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean difference
+  Result<MixedContrast> mixed = Refusal{"not computed"};          ///< from all answers of the score
   /// Of t, or of the exact sign test in its place.
   std::optional<double> p() const;
   /// Within the pairs of this score and n_*; a refused test counts as not significant.
-  std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh;
+  std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh, mixed_p_holm, mixed_p_bh;
+};
+
+/// On whom the pairs of one n_* rest.
+struct PairPeople {
+  int n_star = 0;
+  std::size_t planned = 0;           ///< participants who were to judge it
+  std::size_t any = 0, all = 0;      ///< who judged a method, and who judged every one
+  std::size_t fewest = 0, most = 0;  ///< with both of a pair, over the pairs
+  bool differ = false;               ///< somebody counts in one pair and not in another
 };
 
 struct Omnibus {
@@ -63,6 +74,8 @@ struct ScoreAnalysis {
   std::vector<MethodCell> cells;              ///< n_* by method
   std::vector<MethodComparison> comparisons;  ///< n_* by pair, a before b
   std::vector<Omnibus> omnibus;
+  std::vector<PairPeople> people;  ///< by n_*
+  Result<MixedScores> mixed = Refusal{"not computed"};
 };
 
 ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan);

@@ -223,8 +223,16 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
   fs::permissions(database_, fs::perms(0444));  // as made, it is the owner's alone
   expect_error({vip_study, "resume", "--db", database_}, "study.db", become_nobody);
-  expect_error({vip_study, "export", "--db", database_, "--csv", folder_ / "out"}, "registered in it",
-               become_nobody);
+  const std::vector<std::string> into{vip_study, "export", "--db", database_, "--csv"};
+  const auto to = [&into](const std::string& out) {
+    auto all = into;
+    all.push_back(out);
+    return all;
+  };
+  expect_error(to(folder_ / "out"), "out: cannot be created", become_nobody);
+  const TemporaryFolder open;
+  fs::permissions(open.path(), fs::perms(0777));
+  expect_error(to(open / "out"), "registered in it", become_nobody);
   const auto before = snapshot(folder_.path());
   EXPECT_EQ(run_program({vip_study, "status", "--db", database_}, become_nobody).exit_code, 0);
   EXPECT_TRUE(snapshot(folder_.path()) == before);

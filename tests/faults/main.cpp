@@ -53,7 +53,9 @@ class Table {
   }
   long kills() const { return kills_; }
   long failures() const { return failures_; }
+  /// Nothing where nothing was killed or failed.
   void print() const {
+    if (rows_.empty()) return;
     std::printf("%-34s %7s %9s %9s %9s %7s %7s\n", "command, fault", "tries", "went on", "refused", "stopped",
                 "failed", "kills");
     Row all;
@@ -209,7 +211,8 @@ int main(int argc, char** argv) {
   Table table;
   work(options, folder.path(), table);
   table.print();
-  std::printf("%ld kills, %ld failures\n", table.kills(), table.failures());
+  if (table.kills() > 0) std::printf("%ld kills, ", table.kills());
+  std::printf("%ld failures\n", table.failures());
   return table.failures() == 0 ? 0 : 1;
 }
 

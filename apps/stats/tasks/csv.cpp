@@ -86,19 +86,19 @@ Json tests_of(const Json& hypotheses) {
   return list;
 }
 
-/// Effects of each ordinal model, one a line.
-Json effects_of(const Json& models) {
+/// Lists of each model, such as its effects, one entry a line.
+Json entries_of(const Json& models, const std::string& name) {
   Json list = Json::array();
   for (const auto& model : models) {
     Json head = model;
-    head.erase("effects");
-    if (!model.contains("effects")) {
+    head.erase(name);
+    if (!model.contains(name)) {
       list.push_back(head);
       continue;
     }
-    for (const auto& effect : model.at("effects")) {
+    for (const auto& entry : model.at(name)) {
       Json line = head;
-      line.update(effect);
+      line.update(entry);
       list.push_back(std::move(line));
     }
   }
@@ -168,9 +168,11 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
   if (results.contains("task1") && !results.at("task1").contains("refused")) {
     const Json& task = results.at("task1");
-    for (const char* name : {"participant_means", "cells", "by_scene", "comparisons", "omnibus", "retest"})
+    for (const char* name :
+         {"participant_means", "cells", "by_scene", "people", "comparisons", "omnibus", "retest"})
       lists.emplace_back(std::string("task1_") + name, task.at(name));
-    lists.emplace_back("task1_ordinal", effects_of(task.at("ordinal")));
+    lists.emplace_back("task1_ordinal", entries_of(task.at("ordinal"), "effects"));
+    lists.emplace_back("task1_mixed", entries_of(task.at("mixed"), "terms"));
   }
   if (results.contains("task2") && !results.at("task2").contains("refused")) {
     const Json& task = results.at("task2");

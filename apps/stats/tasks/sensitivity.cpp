@@ -75,6 +75,7 @@ TaskData with_blocks_pooled(TaskData data) {
             .first->second;
   }
   data.participants.resize(blocks.size());
+  data.unanswered.clear();  // they are of people
   return data;
 }
 

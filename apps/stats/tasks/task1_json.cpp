@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "apps/stats/tasks/missing_json.hpp"
 #include "apps/stats/tasks/retest.hpp"
 
 namespace apps {
@@ -19,8 +20,8 @@ Json rules_json() {
        "test; a cybersickness score is the mean of its items, and a report that lacks an item has none."},
       {"missing",
        "A test of two methods uses the participants with both; Friedman's test and the analysis of variance "
-       "those with every method; the ordinal model every answer. A session that ended early counts with what "
-       "it has."},
+       "those with every method; the ordinal and the mixed model every answer. A session that ended early "
+       "counts with what it has."},
       {"outliers", "Values beyond 1.5 interquartile ranges are drawn and listed; none is left out."},
       {"tests",
        "Paired t tests, two-sided, within each n_*; Holm and Benjamini-Hochberg over the pairs of methods of "
@@ -132,6 +133,7 @@ Json comparison_json(const ScoreTable& table, const stats::MethodComparison& one
   json["welch"] = welch_json(one.welch);
   json["wilcoxon"] = wilcoxon_json(one);
   json["tost"] = equivalence_json(one.equivalence, table.scale().margin, alpha);
+  add_missing_data(json, table, one, alpha);
   return json;
 }
 
@@ -264,7 +266,8 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
             {"n_stars", data.protocol.n_stars},
             {"scenes", data.scenes},
             {"rules", rules_json()}};
-  for (const char* list : {"scores", "cells", "by_scene", "comparisons", "omnibus", "ordinal"})
+  for (const char* list :
+       {"scores", "cells", "by_scene", "people", "comparisons", "mixed", "omnibus", "ordinal"})
     json[list] = Json::array();
   for (std::size_t i = 0; i < results.tables.size(); ++i) {
     const ScoreTable& table = results.tables[i];
@@ -275,6 +278,8 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
     for (const auto& one : analysis.comparisons)
       json["comparisons"].push_back(comparison_json(table, one, plan.alpha));
     for (const auto& one : analysis.omnibus) json["omnibus"].push_back(omnibus_json(table, one));
+    json["mixed"].push_back(mixed_json(data, table, analysis.mixed, plan.confidence));
+    for (const auto& one : analysis.people) json["people"].push_back(people_json(table, one));
   }
   for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_json(data, model));
   json["participant_means"] = participant_means_json(data, results.tables);

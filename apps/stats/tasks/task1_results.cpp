@@ -94,9 +94,12 @@ stats::Result<std::vector<stats::Hypothesis>> verdicts(const std::vector<stats::
 
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items) {
   std::vector<stats::MethodScore> out;
-  for (const Report& report : data.reports)
-    out.push_back({report.participant, report.scene, report.n_star, report.method,
-                   sum_of_items(report, items), static_cast<int>(items.size())});
+  for (const auto* list : {&data.reports, &data.unanswered}) {
+    for (const Report& report : *list)
+      out.push_back({report.participant, report.scene, report.n_star, report.method,
+                     sum_of_items(report, items), static_cast<int>(items.size()), report.position,
+                     report.period});
+  }
   return out;
 }
 

@@ -29,7 +29,7 @@ struct Task1Results {
 /// Scores of which an item is not asked are left out.
 std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// A table's scores before scenes are averaged: one for each report.
+/// A table's scores before scenes are averaged: one for each report, NaN for those planned and not given.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
 /// Refused: no cybersickness items, so that the hypotheses have no second score.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/stats/tasks/planned.hpp"
 #include "apps/stats/tasks/trial_record.hpp"
 
 namespace apps {
@@ -115,7 +116,7 @@ class Collector {
   }
 
   bool add_report(const TaskSession& session, const TaskTrial& trial) {
-    Report report{person(session), session.visit, trial.position, 0, 0, 0, {}};
+    Report report{person(session), session.visit, trial.position, 0, 0, 0, 0, {}};
     report.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
     report.n_star = index_of(data_.protocol.n_stars, trial.first.what.n_star);
     report.method = index_of(data_.protocol.methods, trial.first.what.method);
@@ -199,6 +200,7 @@ stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSe
   for (const std::string& scene : data.protocol.scenes) data.scenes.push_back(scene_name(scene));
   data.flow.withdrawn = study.withdrawn;
   Collector(data).collect(selection.plan.exclusions);
+  if (data.task == TaskKind::Task1) add_planned(data);
   return data;
 }
 

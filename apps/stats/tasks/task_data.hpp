@@ -35,10 +35,11 @@ struct TimedShowing {
   bool analysed = false;  ///< its trial is: answered, not excluded, no repeat
 };
 
-/// Task 1: one answered page.
+/// Task 1: one page.
 struct Report {
   int participant = 0, visit = 1, position = 0;
   int scene = 0, n_star = 0, method = 0;
+  int period = 0;                         ///< stats::periods_of(), counted on over visits
   std::map<std::string, double> answers;  ///< by question; those left out are absent
 };
 
@@ -57,7 +58,8 @@ struct TaskData {
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;
-  std::vector<Report> reports;              ///< Task 1
+  std::vector<Report> reports;              ///< Task 1: answered pages
+  std::vector<Report> unanswered;           ///< Task 1: planned for these participants, no answer counts
   std::vector<stats::PairChoice> choices;   ///< Task 2
   std::vector<stats::PilotRating> ratings;  ///< pilot
   study::Question question;                 ///< the main one: realism, preference, the pilot's scale

@@ -1,0 +1,22 @@
+#pragma once
+/// What speaks of missing answers in Task 1's results (docs/results.md): the mixed model of all answers, on
+/// whom pairs rest, tipping points.
+
+#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/tasks/task_data.hpp"
+#include "stats/analysis/task1.hpp"
+#include "stats/analysis/tipping.hpp"
+
+namespace apps {
+
+/// "mixed" and "tipping" of one entry of task1.comparisons.
+void add_missing_data(Json& comparison, const stats::ScoreTable& table, const stats::MethodComparison& one,
+                      double alpha);
+/// One entry of task1.mixed.
+Json mixed_json(const TaskData& data, const stats::ScoreTable& table,
+                const stats::Result<stats::MixedScores>& model, double confidence);
+/// One entry of task1.people.
+Json people_json(const stats::ScoreTable& table, const stats::PairPeople& people);
+Json tipping_json(const stats::TippingPoint& tipping);
+
+}  // namespace apps

@@ -1,0 +1,54 @@
+#pragma once
+/// Linear mixed models of answers: fixed terms, a random effect of the participant and one of the
+/// participant with each thing judged, by restricted maximum likelihood. The same model as R's
+/// lmer(y ~ terms + (1 | participant) + (1 | participant:thing)) with lmerTest's degrees of freedom.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/ordinal/cumulative_link.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// A weighted sum of fixed terms against zero, two-sided.
+struct MixedContrast {
+  double estimate = 0, se = 0;
+  double df = 0;  ///< Satterthwaite's (Giesbrecht and Burns 1985; Kuznetsova et al. 2017)
+  double t = 0, p = 1;
+  std::array<double, 2> ci{};
+};
+
+struct LinearMixedFit {
+  std::vector<std::string> terms;        ///< that are estimated
+  std::vector<std::string> left_out;     ///< terms that are combinations of earlier ones
+  std::vector<double> beta, covariance;  ///< of `terms`; row-major
+  double sd_participant = 0;
+  std::optional<double>
+      sd_thing;  ///< empty: nobody answered twice about one thing, so it is part of the residual
+  double sd_residual = 0;
+  double criterion = 0;  ///< -2 times the restricted log-likelihood
+  int n = 0, participants = 0;
+  /// Empty, or which standard deviation is estimated as zero: the fit then is that of the model without it.
+  std::string singular;
+  /// By the standard deviations that are not zero (over the residual's), then the residual's own: the slopes
+  /// of `covariance`, and their own covariance.
+  std::vector<std::vector<double>> covariance_slopes;
+  std::vector<double> parameter_covariance;
+
+  /// Index in `terms`, or -1.
+  int index_of(const std::string& term) const;
+  /// One weight for each of `terms` (std::invalid_argument), not all zero; confidence in (0, 1).
+  MixedContrast contrast(std::span<const double> weights, double confidence = 0.95) const;
+};
+
+/// All columns have one length (std::invalid_argument); no value is missing. Refused: fewer than two
+/// participants; nobody with two answers; no more answers than terms; answers that leave no scatter; an
+/// infinite value; no convergence.
+Result<LinearMixedFit> fit_linear_mixed(std::span<const double> y, std::span<const Predictor> terms,
+                                        std::span<const int> participant, std::span<const int> thing);
+
+}  // namespace stats

@@ -1,0 +1,131 @@
+/// Task 1 with dropout: what was planned, on whom pairs rest, the mixed model and tipping points in the
+/// results.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "tests/apps/made_task_study.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Every third participant leaves behind the seventh trial; every answer but of those.
+study::TaskProtocol with_dropout(int participants) {
+  auto protocol = made_study::task1(participants);
+  for (std::size_t p = 0; p < protocol.sessions.size(); p += 3) {
+    auto& session = protocol.sessions[p];
+    session.state = "dropped out";
+    for (auto& trial : session.trials) {
+      if (trial.position < 7) continue;
+      for (auto& answer : trial.answers) answer.score.reset();
+    }
+  }
+  return protocol;
+}
+
+Json results_of(const study::TaskProtocol& protocol) {
+  PlanInForce plan;
+  plan.plan.resamples = 100;
+  return make_results({{protocol}, 0}, {"study.db", {TaskKind::Task1}, "", plan}).json;
+}
+
+TaskData data_of(const study::TaskProtocol& protocol) {
+  return select_task({{protocol}, 0}, {TaskKind::Task1, "", {}}).value();
+}
+
+TEST(MissingAnswers, PlannedTrialsWithoutAnAnswerAreKnown) {
+  auto protocol = with_dropout(12);
+  protocol.sessions[1].trials[0].excluded = "looked away";
+  const auto data = data_of(protocol);
+  EXPECT_EQ(data.unanswered.size(), 4u * 3 + 1);
+  for (const auto& report : data.unanswered) {
+    EXPECT_TRUE(report.answers.empty());
+    EXPECT_EQ(report.n_star, report.position / 5);
+    EXPECT_EQ(report.method, report.position % 5);
+  }
+}
+
+TEST(MissingAnswers, PeriodsAreThoseOfThePlanWhateverIsMissing) {
+  auto protocol = with_dropout(6);
+  for (int position = 0; position < 5; ++position)
+    protocol.sessions[1].trials[static_cast<std::size_t>(position)].excluded = "looked away";
+  auto second = protocol.sessions[2];
+  second.visit = 2;
+  protocol.sessions.push_back(second);
+  for (const auto& report : data_of(protocol).reports)
+    EXPECT_EQ(report.period, 2 * (report.visit - 1) + report.position / 5);
+}
+
+TEST(MissingAnswers, PairsThatRestOnDifferentPeopleAreFlagged) {
+  const auto json = results_of(with_dropout(12));
+  const Json& people = json.at("task1").at("people");
+  ASSERT_EQ(people.size(), 6u);
+  EXPECT_EQ(people[0], (Json{{"score", "realism"},
+                             {"n_star", "16k"},
+                             {"planned", 12},
+                             {"any", 12},
+                             {"all", 12},
+                             {"fewest", 12},
+                             {"most", 12},
+                             {"differ", false}}));
+  EXPECT_EQ(people[1], (Json{{"score", "realism"},
+                             {"n_star", "32k"},
+                             {"planned", 12},
+                             {"any", 12},
+                             {"all", 8},
+                             {"fewest", 8},
+                             {"most", 12},
+                             {"differ", true}}));
+  const std::string page = report::results_page(json);
+  EXPECT_THAT(page, HasSubstr("pairs rest on different people"));
+  EXPECT_THAT(report::results_page(results_of(made_study::task1(12))),
+              Not(HasSubstr("pairs rest on different people")));
+}
+
+TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
+  const auto json = results_of(with_dropout(12));
+  const Json& mixed = json.at("task1").at("mixed");
+  ASSERT_EQ(mixed.size(), 3u);
+  EXPECT_EQ(mixed[0].at("n"), 12 * 10 - 4 * 3);
+  EXPECT_EQ(mixed[0].at("participants"), 12);
+  std::vector<std::string> terms;
+  for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
+  EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
+  // Here each n_* is a period of its own, and each method has its place.
+  EXPECT_EQ(mixed[0].at("left_out"), (Json{"position", "period 2"}));
+  int less = 0;
+  for (const auto& one : json.at("task1").at("comparisons")) {
+    EXPECT_GT(one.at("mixed").at("se"), 0);
+    EXPECT_GE(one.at("mixed").at("p_holm"), one.at("mixed").at("p"));
+    less += one.at("mixed").at("df") < 100 ? 1 : 0;
+  }
+  EXPECT_GT(less, 0);
+}
+
+TEST(MissingAnswers, TippingPointsStandBesideEachPair) {
+  const auto json = results_of(with_dropout(12));
+  int tipped = 0;
+  for (const auto& one : json.at("task1").at("comparisons")) {
+    const Json& tipping = one.at("tipping");
+    EXPECT_EQ(tipping.at("planned"), 12);
+    EXPECT_EQ(tipping.at("holds"), one.at("p") < 0.05);
+    const int missing = tipping.at("a").at("missing").get<int>() + tipping.at("b").at("missing").get<int>();
+    EXPECT_EQ(missing > 0, one.at("n") < 12);
+    for (const char* side : {"a", "b"}) {
+      const Json& answers = tipping.at(side);
+      if (!answers.at("worse_by").is_number()) continue;
+      ++tipped;
+      EXPECT_GT(answers.at("worse_by"), 0);
+      EXPECT_EQ(answers.at("within_scale"), answers.at("worse_by") <= answers.at("room"));
+    }
+  }
+  EXPECT_GT(tipped, 0);
+}
+
+}  // namespace
+}  // namespace apps
