@@ -116,6 +116,15 @@ void names_of(const Json& json, const std::string& name, std::set<std::string>& 
   }
 }
 
+/// What the script does not make: bootstrap intervals, whose resamples are the program's own, and models that
+/// have fixtures of their own or no function in R alone (mixed_model.R, tests/stats/oracle).
+bool is_left_to_others(const std::string& name) {
+  for (const std::string part : {".task1.ordinal", ".task1.mixed", ".task1.comparisons.mixed",
+                                 ".task1.comparisons.tipping", ".task1.people", ".bca"})
+    if (name.find(part) != std::string::npos) return true;
+  return false;
+}
+
 TEST(TaskStudiesE2e, EveryNumberThatRMakesIsTheSame) {
   Comparison all;
   std::set<std::string> printed;
@@ -129,8 +138,10 @@ TEST(TaskStudiesE2e, EveryNumberThatRMakesIsTheSame) {
   EXPECT_GT(all.numbers, 9000);
   std::set<std::string> only_here;
   for (const auto& name : printed)
-    if (!all.names.contains(name) && !name.starts_with(".task1.ordinal")) only_here.insert(name);
-  EXPECT_THAT(only_here, ElementsAre(".hypotheses.alpha"));
+    if (!all.names.contains(name) && !is_left_to_others(name)) only_here.insert(name);
+  // What was given.
+  EXPECT_THAT(only_here, ElementsAre(".hypotheses.alpha", ".task1.scores.margin", ".task1.scores.max",
+                                     ".task1.scores.min", ".task2.choices.position"));
 }
 
 }  // namespace

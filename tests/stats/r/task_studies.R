@@ -273,6 +273,12 @@ strengths <- function(rows) {
 }
 
 task2_claims <- function(rows, pairs, decision, directional) {
+  p <- vapply(pairs, function(pair) as.numeric(pair$p), 0)
+  in_figure <- vapply(pairs, function(pair) {
+    both <- c(pair$a, pair$b)
+    setequal(both, c("Ours", "Ours-TSp")) || (any(c("Ours", "Ours-TSp") %in% both) && any(c("FovFluid", "HiRes") %in% both))
+  }, NA)
+  of_five <- p; of_five[in_figure] <- corrected(p[in_figure], "holm"); of_five[!in_figure] <- NA
   one <- function(id, a, b) {
     index <- which(vapply(pairs, function(pair) setequal(c(pair$a, pair$b), c(a, b)), NA))
     count <- pair_counts(rows, match(a, methods), match(b, methods))
@@ -280,6 +286,7 @@ task2_claims <- function(rows, pairs, decision, directional) {
     two <- pairs[[index]]$p
     if (is.na(two)) return(c(out, list(estimate = NA, ci = NA, p = NA, right = TRUE, paper_p = NA)))
     test <- binom.test(count$k, count$n, alternative = if (sided(id, directional)) "greater" else "two.sided")
+    if (id != "H6") out <- c(out, list(p_holm_of_five = of_five[index], p_holm_of_ten = corrected(p, "holm")[index]))
     c(out, list(k = count$k, estimate = count$k / count$n, ci = as.vector(test$conf.int), p = test$p.value,
                 right = count$k > count$n / 2, paper_p = two))
   }

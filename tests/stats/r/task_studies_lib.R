@@ -84,8 +84,9 @@ one_cell <- function(values) {
   test <- attempt(t.test(values))
   out <- list(n = n, mean = mean(values), sd = if (n > 1) sd(values) else NA,
               ci = if (is.null(test) || constant(values)) NA else as.vector(test$conf.int),
-              median = quartiles[1], q1 = quartiles[2], q3 = quartiles[3], whisker_low = min(inside),
-              whisker_high = max(inside), outliers = as.list(values[values < min(inside) | values > max(inside)]),
+              median = quartiles[1], q1 = quartiles[2], q3 = quartiles[3],
+              # Unlike boxplot.stats, a whisker does not end inside the box.
+              whisker_low = min(inside, quartiles[2]), whisker_high = max(inside, quartiles[3]), outliers = as.list(values[values < min(inside) | values > max(inside)]),
               values = as.list(values))
   normality <- shapiro(values)
   if (!is.null(normality)) out$normality <- normality
