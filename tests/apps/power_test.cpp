@@ -98,7 +98,7 @@ TEST(Power, EquivalenceWithinHalfAPointWith26People) {
 
 // Two-sided as the other hypotheses: each of the two one-sided tests at half of alpha.
 TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
-  const auto worlds = apps::simulate_task_power(task1({"null"}, 200));
+  const auto worlds = apps::simulate_task_power(task1({"null"}, 800));
   expect_closed_forms(worlds);
   const auto& test = worlds[0].hypotheses[1].tests[0];
   const auto expected = stats::tost_power(26, {-0.5, 0.5, 1.3, 0, 0.025});
