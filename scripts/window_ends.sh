@@ -25,6 +25,7 @@ exec 3<>"$out/keys"  # the experimenter's keyboard
 
 begin() {  # begin CODE: a person's session
   code=$1 events=$out/$1.events
+  : >"$events"
   "$study" run "$out/protocol.toml" --db "$db" --participant "$code" --display window --station test --screen-width-mm 520 \
     --viewing-distance-mm 600 --stimulus "$out/dam.bake" --trial-seconds 2 --seed 3 --events --console <&3 >"$events" 2>"$out/$code.log" &
   session=$!

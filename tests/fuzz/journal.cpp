@@ -22,6 +22,15 @@ void write(const fs::path& path, const std::string& bytes) {
   }
 }
 
+/// A database of today's schema with answers, whose upgrade is not made again for each input.
+std::string whole_database() {
+  const test::TemporaryFolder folder(test::memory_folder());
+  const fs::path path = folder / "s.db";
+  write(path, base::read_file(base::resource("tests/libstudy/fixtures/study_v2.db"), 1 << 24));
+  study::Store(path, study::sqlite::Open::Write);
+  return base::read_file(path, 1 << 24);
+}
+
 std::int64_t answers_in(const fs::path& database) {
   return study::sqlite::Connection(database, study::sqlite::Open::Read)
       .integer("SELECT count(*) FROM response");
@@ -31,8 +40,7 @@ std::int64_t answers_in(const fs::path& database) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const test::TemporaryFolder folder(test::memory_folder());
-  static const std::string whole =
-      base::read_file(base::resource("tests/libstudy/fixtures/study_v2.db"), 1 << 24);
+  static const std::string whole = whole_database();
   for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
   const fs::path database = folder / "s.db";
   write(study::journal_beside(database), {reinterpret_cast<const char*>(data), size});
