@@ -39,8 +39,9 @@ void add_preregister_command(CLI::App& app) {
       app.add_subcommand("preregister", "Freeze protocol, hypotheses, rules and seed into one hashed folder");
   sub->add_option("protocols", command->protocols, "Protocols of the study (TOML)")->required();
   sub->add_option("--out", command->out, "Folder to be made")->required()->check(output_folder());
-  sub->add_option("--plan", command->plan,
-                  "Analysis plan (TOML): margins, level, exclusion rules; without: the defaults");
+  sub->add_option(
+      "--plan", command->plan,
+      "Analysis plan (TOML): decision rule, margins, level, exclusion rules; without: the defaults");
   sub->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--power", command->power, "Result of vip-stats power --json, to be frozen as well");

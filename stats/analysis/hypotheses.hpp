@@ -1,6 +1,6 @@
 #pragma once
-/// H1 to H6 of the paper (5.3.1) as confirmatory tests: each a family of its own with Holm within it. What
-/// the paper's own, uncorrected procedure says of the same data stands beside.
+/// H1 to H6 of the paper (5.3.1) as confirmatory tests: each a claim with a family of its own, decided by the
+/// plan's rule. What the paper's own, uncorrected procedure says of the same data stands beside.
 
 #include <array>
 #include <optional>
@@ -15,9 +15,9 @@
 namespace stats {
 
 enum class HypothesisStatus {
-  Supported,        ///< every test of the family holds
-  PartlySupported,  ///< some do
-  NotSupported,     ///< none does
+  Supported,        ///< every test of the family holds by the plan's rule
+  PartlySupported,  ///< some do after Holm
+  NotSupported,     ///< none does after Holm
   NotTestable,      ///< the study cannot tell, whatever the figures are
   NoData,           ///< no test could be computed
 };
@@ -30,6 +30,7 @@ const char* kind_name(HypothesisKind kind);
 
 struct HypothesisTest {
   std::string label;
+  std::string method;              ///< "paired t test", "exact sign test" (all differences equal), ...
   std::string score, n_star;       ///< of Task 1
   std::string a, b;                ///< methods
   std::size_t n = 0;               ///< participants with both; answers
@@ -42,7 +43,9 @@ struct HypothesisTest {
   /// effect size.
   std::optional<double> t, df, d_z;
   std::optional<double> p, p_holm;
-  bool holds = false;             ///< p_holm < alpha in the direction claimed
+  bool holds_alone = false;       ///< p < alpha in the direction claimed
+  bool holds_holm = false;        ///< p_holm < alpha in the direction claimed
+  bool holds = false;             ///< that of the two by which the plan decides
   bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)
   std::string reason;             ///< why there is no p; it then counts as 1 in the family
   std::optional<double> paper_p;  ///< two-sided, uncorrected
@@ -58,11 +61,18 @@ struct Hypothesis {
   int task = 1;
   HypothesisKind kind = HypothesisKind::Superiority;
   double alpha = 0.05;
+  DecisionRule decision = DecisionRule::IntersectionUnion;
+  bool one_sided = false;
   std::string rule;
   HypothesisStatus status = HypothesisStatus::NoData;
   HypothesisStatus status_if_testable = HypothesisStatus::NoData;
   std::string status_text;  ///< one sentence
   int confirmed = 0;        ///< tests that hold
+  int confirmed_holm = 0;   ///< tests that hold after Holm
+  /// Of the whole claim: the largest p of its tests (after Holm where that decides), 1 where one is refused
+  /// or points the other way. Empty without any test.
+  std::optional<double> p_claim;
+  std::optional<double> p_claim_of_six;  ///< see correct_over_claims
   std::vector<HypothesisTest> tests;
   std::string paper_rule, paper_text;
   bool paper_supported = false;
@@ -70,15 +80,19 @@ struct Hypothesis {
 };
 
 /// H1 to H3. `untestable`: why H1 cannot be tested, such as gaze that was not tracked; empty: it can.
-/// Superiority is tested two-sided, equivalence by two one-sided tests, non-inferiority one-sided, all paired
-/// over participants and within each n_*.
+/// Paired t tests over participants, within each n_*. Two-sided or one-sided as the plan says; of a test
+/// against margins two-sided means twice the one-sided p and the interval of 1 - alpha.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
 
-/// H4 to H6. `untestable`: why H5 cannot be tested. H4 and H5 two-sided, H6 one-sided.
+/// H4 to H6 by exact binomial tests. `untestable`: why H5 cannot be tested.
 std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
+
+/// Holm over the claims H1 to H6 themselves, those that are absent or not testable as p = 1: shown beside the
+/// decisions, which keep to alpha for each claim.
+void correct_over_claims(std::span<Hypothesis> claims);
 
 /// The pairs in the paper's Fig. 10.
 bool in_paper_figure_10(const std::string& a, const std::string& b);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "stats/inference/adjust.hpp"
@@ -20,41 +21,58 @@ void correct(Hypothesis& out, const std::vector<FamilyTest>& tests) {
   std::vector<double> p;
   for (const FamilyTest& one : tests) p.push_back(one.test.p.value_or(missing));
   const auto holm = adjust(p, Adjustment::Holm, p.size());
+  const bool by_holm = out.decision == DecisionRule::Holm;
+  if (holm) out.p_claim = 0;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     out.tests.push_back(tests[i].test);
     HypothesisTest& test = out.tests.back();
-    if (!holm || !test.p) continue;
-    test.p_holm = holm->p[i];
-    test.holds = *test.p_holm < out.alpha && tests[i].right;
-    test.against = *test.p_holm < out.alpha && !tests[i].right;
+    if (holm && test.p) {
+      test.p_holm = holm->p[i];
+      test.holds_alone = *test.p < out.alpha && tests[i].right;
+      test.holds_holm = *test.p_holm < out.alpha && tests[i].right;
+      test.against = *test.p_holm < out.alpha && !tests[i].right;
+      test.holds = by_holm ? test.holds_holm : test.holds_alone;
+    }
+    if (holm)
+      out.p_claim = std::max(*out.p_claim, !test.p || !tests[i].right ? 1 : by_holm ? *test.p_holm : *test.p);
   }
 }
 
+int count_of(const Hypothesis& hypothesis, bool HypothesisTest::*what) {
+  return static_cast<int>(std::count_if(hypothesis.tests.begin(), hypothesis.tests.end(),
+                                        [&](const HypothesisTest& test) { return test.*what; }));
+}
+
 HypothesisStatus status_of(const Hypothesis& hypothesis) {
-  const auto& tests = hypothesis.tests;
-  if (std::none_of(tests.begin(), tests.end(), [](const HypothesisTest& test) { return test.p.has_value(); }))
-    return HypothesisStatus::NoData;
-  if (hypothesis.confirmed == static_cast<int>(tests.size())) return HypothesisStatus::Supported;
-  return hypothesis.confirmed > 0 ? HypothesisStatus::PartlySupported : HypothesisStatus::NotSupported;
+  if (!hypothesis.p_claim) return HypothesisStatus::NoData;
+  if (hypothesis.confirmed == static_cast<int>(hypothesis.tests.size())) return HypothesisStatus::Supported;
+  return hypothesis.confirmed_holm > 0 ? HypothesisStatus::PartlySupported : HypothesisStatus::NotSupported;
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
 }
 
 std::string sentence(const Hypothesis& out) {
   const std::size_t n = out.tests.size();
-  std::string text = count_text(out.confirmed, n) + " " + kind_name(out.kind) +
-                     (n == 1 ? " test holds" : " tests hold after Holm");
-  int against = 0, refused = 0;
-  for (const HypothesisTest& test : out.tests) {
-    against += test.against ? 1 : 0;
-    refused += test.p ? 0 : 1;
-  }
+  std::string text =
+      count_text(out.confirmed, n) + " " + kind_name(out.kind) + (n == 1 ? " test holds" : " tests hold");
+  if (n > 1 && out.decision == DecisionRule::Holm) text += " after Holm";
+  if (n > 1 && out.decision == DecisionRule::IntersectionUnion)
+    text += " at " + number_text(out.alpha) + " each, and the claim needs all; " +
+            count_text(out.confirmed_holm, n) + " after Holm";
+  int refused = 0;
+  for (const HypothesisTest& test : out.tests) refused += test.p ? 0 : 1;
+  const int against = count_of(out, &HypothesisTest::against);
   if (against > 0) text += "; " + count_text(against, n) + " significant in the other direction";
   if (refused > 0) text += "; " + count_text(refused, n) + " could not be computed and count as p = 1";
   return text + ".";
 }
 
 void judge_as_the_paper(Hypothesis& out) {
-  const auto n = static_cast<int>(std::count_if(out.tests.begin(), out.tests.end(),
-                                                [](const HypothesisTest& test) { return test.paper_holds; }));
+  const int n = count_of(out, &HypothesisTest::paper_holds);
   out.paper_supported = n == static_cast<int>(out.tests.size());
   out.paper_text =
       count_text(n, out.tests.size()) + (out.tests.size() == 1 ? " test is" : " tests are") +
@@ -94,12 +112,35 @@ const char* kind_name(HypothesisKind kind) {
   return "preference";
 }
 
+Family begin_family(const char* id, HypothesisKind kind, const AnalysisPlan& plan,
+                    const std::string& untestable) {
+  Family family{plan, untestable, {}, {}};
+  Hypothesis& out = family.out;
+  out.id = id;
+  out.kind = kind;
+  out.task = kind == HypothesisKind::Preference ? 2 : 1;
+  out.alpha = plan.alpha;
+  out.decision = plan.decision;
+  out.one_sided =
+      plan.directional == Directional::All ||
+      (plan.directional == Directional::H2H3H6 && (out.id == "H2" || out.id == "H3" || out.id == "H6"));
+  return family;
+}
+
+std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std::size_t tests) {
+  const bool by_holm = hypothesis.decision == DecisionRule::Holm;
+  return (hypothesis.one_sided ? words.one_sided : words.two_sided) + ", " +
+         (tests == 1 ? "significant"
+          : by_holm  ? "significant after Holm"
+                     : "all significant") +
+         (hypothesis.one_sided || words.claim.empty() ? "" : " and " + words.claim);
+}
+
 Hypothesis finish(Family family) {
   Hypothesis out = std::move(family.out);
-  out.alpha = family.plan.alpha;
   correct(out, family.tests);
-  out.confirmed = static_cast<int>(std::count_if(out.tests.begin(), out.tests.end(),
-                                                 [](const HypothesisTest& test) { return test.holds; }));
+  out.confirmed = count_of(out, &HypothesisTest::holds);
+  out.confirmed_holm = count_of(out, &HypothesisTest::holds_holm);
   out.status_if_testable = status_of(out);
   out.status = family.untestable.empty() ? out.status_if_testable : HypothesisStatus::NotTestable;
   out.status_text = sentence(out);
@@ -108,6 +149,17 @@ Hypothesis finish(Family family) {
         "Here " + family.untestable + "; the figures are shown all the same: " + out.status_text;
   judge_as_the_paper(out);
   return out;
+}
+
+void correct_over_claims(std::span<Hypothesis> claims) {
+  constexpr std::size_t h1_to_h6 = 6;
+  std::vector<double> p;
+  for (const Hypothesis& one : claims)
+    p.push_back(one.status == HypothesisStatus::NotTestable ? missing : one.p_claim.value_or(missing));
+  const auto holm = adjust(p, Adjustment::Holm, h1_to_h6);
+  for (std::size_t i = 0; holm && i < p.size(); ++i) {
+    if (!std::isnan(p[i])) claims[i].p_claim_of_six = holm->p[i];
+  }
 }
 
 std::vector<std::optional<double>> holm_over_pairs(

@@ -11,10 +11,15 @@
 
 namespace stats {
 
+inline constexpr const char* ours = "Ours";
+inline constexpr const char* ours_tsp = "Ours-TSp";
+inline constexpr const char* fov_fluid = "FovFluid";
+inline constexpr const char* hi_res = "HiRes";
+
 struct FamilyTest {
   HypothesisTest test;
-  bool right =
-      true;  ///< the estimate lies in the direction claimed; true for tests that have a direction built in
+  /// The estimate lies in the direction claimed; true for tests that have a direction built in.
+  bool right = true;
 };
 
 struct Family {
@@ -23,6 +28,17 @@ struct Family {
   Hypothesis out;          ///< id, title, rules are filled in
   std::vector<FamilyTest> tests;
 };
+
+/// A family that stands empty, with what the plan says of it.
+Family begin_family(const char* id, HypothesisKind kind, const AnalysisPlan& plan,
+                    const std::string& untestable);
+
+/// A rule in words, "paired t tests, two-sided, all significant and in the direction of better": the test as
+/// it is with one side or with two, and the side that a two-sided one must fall on (empty: it has none).
+struct RuleWords {
+  std::string one_sided, two_sided, claim;
+};
+std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std::size_t tests);
 
 /// Holm over the family as planned (a test without p counts as 1), decisions and sentences.
 Hypothesis finish(Family family);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "stats/inference/adjust.hpp"
 #include "stats/quantiles.hpp"
 
 namespace stats {
@@ -40,9 +41,21 @@ MethodEffect effect_of(const MixedOrdinalFit& fit, std::size_t column, int metho
   return out;
 }
 
+/// Over the family as planned.
+void correct(std::vector<MethodEffect>& effects, std::size_t family) {
+  std::vector<double> p;
+  for (const MethodEffect& effect : effects) p.push_back(effect.p);
+  const auto holm = adjust(p, Adjustment::Holm, family);
+  const auto bh = adjust(p, Adjustment::BenjaminiHochberg, family);
+  for (std::size_t i = 0; holm && bh && i < effects.size(); ++i) {
+    effects[i].p_holm = holm->p[i];
+    effects[i].p_bh = bh->p[i];
+  }
+}
+
 }  // namespace
 
-Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference,
+Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, int methods,
                                        double confidence) {
   const Columns columns = columns_of(scores);
   const std::set<double> present(columns.methods.begin(), columns.methods.end());
@@ -57,6 +70,7 @@ Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int 
     if (method != reference)
       out.effects.push_back(effect_of(*fit, column++, static_cast<int>(method), confidence));
   }
+  correct(out.effects, static_cast<std::size_t>(methods - 1));
   const auto reduced = fit_cumulative_link_mixed(columns.ratings, {}, columns.participants);
   if (reduced) {
     out.overall =

@@ -3,6 +3,7 @@
 /// a random effect of the participant, within one n_*.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ struct MethodEffect {
   double estimate = 0, se = 0;  ///< logits
   std::array<double, 2> ci{};   ///< Wald
   double z = 0, p = 0;
+  /// Over all other methods of the study at this n_*, a method without answers as p = 1.
+  std::optional<double> p_holm, p_bh;
 };
 
 struct OrdinalEffects {
@@ -31,7 +34,9 @@ struct OrdinalEffects {
 
 /// Logit link, adaptive quadrature. `scores`: single answers, all of one n_*.
 /// Refused: no answer about the reference or about another method, separation (the reason names the columns
-/// as "method" + index), and what fit_cumulative_link_mixed refuses. confidence in (0, 1).
-Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, double confidence);
+/// as "method" + index), and what fit_cumulative_link_mixed refuses. `methods`: how many the study shows, one
+/// or more than those that occur. confidence in (0, 1).
+Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, int methods,
+                                       double confidence);
 
 }  // namespace stats

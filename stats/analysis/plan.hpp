@@ -27,15 +27,32 @@ struct ExclusionRules {
   /// nothing.
   std::optional<double> min_repeat_agreement;
   /// One and the same answer to every trial of a visit (main rating, or interval chosen), given this many
-  /// answers or more; 0: no such rule. Eight equal choices of a careful observer without preference: 2 / 2^8
-  /// = 0.8 %.
-  int straight_lining_answers = 8;
+  /// answers or more; 0: no such rule. None by default: who honestly sees no difference answers alike too,
+  /// and without them differences look larger than they are.
+  int straight_lining_answers = 0;
   /// Least share of a visit's planned trials that must be answered, in [0, 1].
   double min_answered = 0;
 };
 
+/// From the tests of a hypothesis to its verdict.
+enum class DecisionRule {
+  /// The claim needs all of its tests: each at alpha, uncorrected, which errs at most at alpha (Berger 1982).
+  /// "At least one" is claimed after Holm.
+  IntersectionUnion,
+  Holm,  ///< every test after Holm, as bundles were frozen before the key was there
+};
+
+/// Which hypotheses are tested one-sided. All claim a direction.
+enum class Directional {
+  None,    ///< two-sided: the interval of 1 - alpha lies wholly where it is claimed to
+  All,     ///< one-sided: that of 1 - 2 alpha does
+  H2H3H6,  ///< as bundles were frozen before the key was there
+};
+
 struct AnalysisPlan {
-  double alpha = 0.05;            ///< of each family, in (0, 0.5)
+  double alpha = 0.05;  ///< of each claim, in (0, 0.5)
+  DecisionRule decision = DecisionRule::IntersectionUnion;
+  Directional directional = Directional::None;
   double confidence = 0.95;       ///< of intervals, in (0, 1)
   double margin_realism = 0.5;    ///< points on 1 to 7, > 0
   double margin_sickness = 0.25;  ///< points on 0 to 3, > 0

@@ -61,6 +61,7 @@ MethodComparison compare(const ScoreTable& table, int n_star, int a, int b, cons
   out.t = t_test_paired(pairs.x, pairs.y, two_sided);
   out.welch = t_test_welch(pairs.x, pairs.y, two_sided);
   const auto exact = exact_differences(table.means(n_star, a), table.means(n_star, b));
+  if (!out.t && exact) out.unanimous = unanimous(*exact);
   out.wilcoxon = exact ? signed_rank(*exact, plan.confidence) : Refusal{exact.reason()};
   const double margin = table.scale().margin;
   out.equivalence = equivalence_paired(pairs.x, pairs.y, {-margin, margin}, plan.alpha);
@@ -86,7 +87,7 @@ void correct(std::span<MethodComparison> family, GetP p_of, std::optional<double
 
 void correct_all(std::span<MethodComparison> family) {
   correct(
-      family, [](const MethodComparison& one) { return one.t ? one.t->p : missing; },
+      family, [](const MethodComparison& one) { return one.p().value_or(missing); },
       &MethodComparison::p_holm, &MethodComparison::p_bh);
   correct(
       family, [](const MethodComparison& one) { return one.wilcoxon ? one.wilcoxon->p_default : missing; },
@@ -134,6 +135,12 @@ PairPeople count_people(const ScoreTable& table, int n_star, std::span<const Met
 }
 
 }  // namespace
+
+std::optional<double> MethodComparison::p() const {
+  if (t) return t->p;
+  if (unanimous) return unanimous->p(Alternative::TwoSided);
+  return {};
+}
 
 std::vector<double> PairedValues::differences() const {
   std::vector<double> out(x.size());

@@ -15,6 +15,7 @@
 #include "stats/inference/normality.hpp"
 #include "stats/inference/repeated_anova.hpp"
 #include "stats/inference/t_test.hpp"
+#include "stats/inference/unanimous.hpp"
 #include "stats/inference/wilcoxon.hpp"
 #include "stats/result.hpp"
 
@@ -39,12 +40,15 @@ struct MethodComparison {
   std::size_t n_missing = 0;             ///< participants with only one
   std::optional<double> mean_a, mean_b;  ///< of participants with both
   Result<PairedTTest> t = Refusal{"not computed"};
+  std::optional<Unanimous> unanimous;  ///< all differences are the same: tested in place of t
   Result<IndependentTTest> welch = Refusal{"not computed"};  ///< as if the groups were independent
   Result<SignedRank> wilcoxon = Refusal{"not computed"};
   Result<EquivalenceTest> equivalence = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< of the differences
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean difference
   Result<MixedContrast> mixed = Refusal{"not computed"};          ///< from all answers of the score
+  /// Of t, or of the exact sign test in its place.
+  std::optional<double> p() const;
   /// Within the pairs of this score and n_*; a refused test counts as not significant.
   std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh, mixed_p_holm, mixed_p_bh;
 };

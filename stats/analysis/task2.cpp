@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 #include "stats/inference/adjust.hpp"
 
@@ -51,23 +50,30 @@ void correct(std::vector<PairPreference>& pairs) {
   }
 }
 
+std::vector<Comparison> comparisons(std::span<const PairChoice> choices) {
+  std::vector<Comparison> out;
+  for (const PairChoice& choice : choices)
+    out.push_back(
+        {choice.first, choice.second, choice.first_chosen, choice.position + 1.0, choice.participant});
+  return out;
+}
+
 IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, const AnalysisPlan& plan) {
   IntervalBias out;
   std::map<int, std::pair<int, int>> people;  // first chosen, answers
-  std::vector<Comparison> trials;
   for (const PairChoice& choice : choices) {
     auto& [first, answers] = people[choice.participant];
     first += choice.first_chosen ? 1 : 0;
     ++answers;
     out.first_chosen += choice.first_chosen ? 1 : 0;
-    trials.push_back({choice.first, choice.second, choice.first_chosen, choice.position + 1.0});
   }
   out.n = static_cast<int>(choices.size());
   out.test = binomial_test(out.first_chosen, out.n, 0.5, Alternative::TwoSided, plan.confidence);
   std::vector<double> shares;
   for (const auto& [person, counts] : people) shares.push_back(1.0 * counts.first / counts.second);
   out.by_participant = t_test_one(shares, {Alternative::TwoSided, plan.confidence, 0.5});
-  out.model = order_bias(trials, methods, plan.confidence);
+  if (!out.by_participant) out.all_alike = unanimous(shares);
+  out.model = order_bias(comparisons(choices), methods, plan.confidence);
   return out;
 }
 
@@ -76,26 +82,13 @@ void count_triads(PreferenceAnalysis& out, std::span<const PairChoice> choices, 
   for (const PairChoice& choice : choices) people[choice.participant].push_back(choice);
   std::vector<CircularTriads> complete;
   for (const auto& [participant, own] : people) {
-    out.triads.push_back({participant, circular_triads(win_table(own, methods), methods)});
+    out.triads.push_back({participant, circular_triads(win_table(comparisons(own), methods), methods)});
     if (out.triads.back().triads) complete.push_back(*out.triads.back().triads);
   }
   out.group_triads = group_triads(complete);
 }
 
 }  // namespace
-
-std::vector<double> win_table(std::span<const PairChoice> choices, int methods) {
-  std::vector<double> wins(static_cast<std::size_t>(methods) * static_cast<std::size_t>(methods));
-  for (const PairChoice& choice : choices) {
-    if (std::min(choice.first, choice.second) < 0 || std::max(choice.first, choice.second) >= methods ||
-        choice.first == choice.second)
-      throw std::invalid_argument("a pair must show two different methods of the study");
-    const auto winner = static_cast<std::size_t>(choice.first_chosen ? choice.first : choice.second);
-    const auto loser = static_cast<std::size_t>(choice.first_chosen ? choice.second : choice.first);
-    ++wins[winner * static_cast<std::size_t>(methods) + loser];
-  }
-  return wins;
-}
 
 std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
                                               const AnalysisPlan& plan) {
@@ -113,10 +106,11 @@ std::vector<PairPreference> count_preferences(std::span<const PairChoice> choice
 PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
                                        const AnalysisPlan& plan) {
   PreferenceAnalysis out;
-  const auto wins = win_table(choices, methods);
+  const auto trials = comparisons(choices);
+  check_trials(trials, methods);
   out.pairs = count_preferences(choices, methods, plan);
   out.interval = test_intervals(choices, methods, plan);
-  out.bradley_terry = bradley_terry(wins, methods, BradleyTerryMethod::Automatic, plan.confidence);
+  out.bradley_terry = bradley_terry(trials, methods, BradleyTerryMethod::Automatic, plan.confidence);
   count_triads(out, choices, methods);
   return out;
 }

@@ -9,6 +9,7 @@
 #include "stats/analysis/plan.hpp"
 #include "stats/inference/binomial.hpp"
 #include "stats/inference/t_test.hpp"
+#include "stats/inference/unanimous.hpp"
 #include "stats/preference/bradley_terry.hpp"
 #include "stats/preference/circular_triads.hpp"
 #include "stats/preference/order_bias.hpp"
@@ -46,6 +47,7 @@ struct IntervalBias {
   Result<BinomialTest> test = Refusal{"not computed"};  ///< as if all answers were independent
   /// Share of each participant against one half: holds whatever a participant's answers have in common.
   Result<OneSampleTTest> by_participant = Refusal{"not computed"};
+  std::optional<Unanimous> all_alike;  ///< every participant has the same share: tested in place of t
   Result<OrderBias> model = Refusal{"not computed"};  ///< within the Bradley-Terry model
 };
 
@@ -69,8 +71,5 @@ PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int 
 /// Its pairs alone.
 std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
                                               const AnalysisPlan& plan);
-
-/// Wins as bradley_terry() takes them: methods by methods, row after row.
-std::vector<double> win_table(std::span<const PairChoice> choices, int methods);
 
 }  // namespace stats

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 
 #include "stats/quantiles.hpp"
 
@@ -63,7 +65,19 @@ struct Sample {
   double estimate = 0, acceleration = 0;
 };
 
-Result<Sample> prepare(std::span<const double> x, const Statistic& statistic) {
+/// No interval of resamples leaves the range of the values, which holds the centre of a symmetric
+/// distribution with this chance. Empty when that is enough.
+std::string too_few(std::size_t n, double confidence) {
+  const double most = 1 - std::exp2(1 - static_cast<double>(n));
+  if (most >= confidence) return {};
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "%zu values are too few: an interval within their range holds at most %.4g %%, not %.4g %%",
+                n, 100 * most, 100 * confidence);
+  return text;
+}
+
+Result<Sample> prepare(std::span<const double> x, const Statistic& statistic, double confidence) {
   Sample out;
   for (const double v : x) {
     if (std::isinf(v)) return Refusal{"an infinite value"};
@@ -74,6 +88,7 @@ Result<Sample> prepare(std::span<const double> x, const Statistic& statistic) {
   }
   const std::size_t n = out.x.size();
   if (n < 2) return Refusal{"fewer than two values"};
+  if (const std::string reason = too_few(n, confidence); !reason.empty()) return Refusal{reason};
   if (std::all_of(out.x.begin(), out.x.end(), [&](double v) { return v == out.x.front(); }))
     return Refusal{"all values are equal: bias and acceleration are undefined"};
 
@@ -150,7 +165,7 @@ Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const St
                                              const BootstrapOptions& options) {
   require_confidence(options.confidence);
   if (options.resamples < 2) throw std::invalid_argument("a bootstrap needs at least two resamples");
-  const auto sample = prepare(x, statistic);
+  const auto sample = prepare(x, statistic, options.confidence);
   if (!sample) return Refusal{sample.reason()};
   const auto n = static_cast<int>(sample->x.size());
   Values estimates, drawn;
@@ -168,7 +183,7 @@ Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const St
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              std::span<const int> indices, double confidence) {
   require_confidence(confidence);
-  const auto sample = prepare(x, statistic);
+  const auto sample = prepare(x, statistic, confidence);
   if (!sample) return Refusal{sample.reason()};
   if (sample->n_missing > 0) throw std::invalid_argument("indices into values of which some are missing");
   const std::size_t n = x.size();

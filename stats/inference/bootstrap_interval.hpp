@@ -42,9 +42,11 @@ struct BootstrapInterval {
 /// Resamples the values (seeded; equal on every machine). The statistic must be defined for any sample of n
 /// or n - 1 values drawn from x; resamples for which it is not finite make the result refused. NaN in x =
 /// missing.
-/// Refused: fewer than two values, infinite values, all values equal, all resamples on one side of the
-/// estimate, the same estimate in every resample or without any one value (acceleration undefined).
-/// std::invalid_argument when the confidence is outside (0, 1) or there are fewer than two resamples.
+/// Refused: fewer than two values, so few that even their range holds the centre less often than the
+/// confidence asks (1 - 2^(1 - n): below 6 values at .95), infinite values, all values equal, all resamples
+/// on one side of the estimate, the same estimate in every resample or without any one value (acceleration
+/// undefined). std::invalid_argument when the confidence is outside (0, 1) or there are fewer than two
+/// resamples.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              const BootstrapOptions& options = {});
 

@@ -70,20 +70,29 @@ std::vector<double> walsh_averages(std::span<const double> values) {
   return out;
 }
 
+struct Cut {
+  std::size_t averages = 0;
+  double level = 0;  ///< of the interval that is left
+};
+
 /// Largest count of Walsh averages that may be cut off each end: one less than the smallest sum w of
 /// ranks 1..n with P(W <= w) >= tail, and none where even w = 0 is too likely.
-std::size_t averages_to_cut(std::size_t n, double tail) {
+Cut averages_to_cut(std::size_t n, double tail) {
   std::vector<double> weights(n * (n + 1) / 2 + 1, 0.0);
   weights[0] = 1;
   for (std::size_t rank = 1; rank <= n; ++rank) {
     for (std::size_t s = rank * (rank + 1) / 2 + 1; s-- > 0;)
       weights[s] = (weights[s] + (s >= rank ? weights[s - rank] : 0)) / 2;
   }
-  double sum = 0;
+  double sum = 0, below = 0;  // P(W <= w) and P(W < w)
   std::size_t w = 0;
   // The quantile forgives rounding of a sum that equals the tail.
-  while ((sum += weights[w]) < tail * (1 - 1e-14)) ++w;
-  return w == 0 ? 0 : w - 1;
+  while ((sum += weights[w]) < tail * (1 - 1e-14)) {
+    below = sum;
+    ++w;
+  }
+  if (w == 0) return {0, 1 - 2 * weights[0]};
+  return {w - 1, 1 - 2 * below};
 }
 
 void fill_location(SignedRank& out, std::span<const double> differences, double confidence) {
@@ -92,7 +101,8 @@ void fill_location(SignedRank& out, std::span<const double> differences, double 
   if (plain) {
     std::sort(walsh.begin(), walsh.end());
     const auto cut = averages_to_cut(out.n, (1 - confidence) / 2);
-    out.hodges_lehmann_ci = {walsh[cut], walsh[walsh.size() - 1 - cut]};
+    out.hodges_lehmann_ci = {walsh[cut.averages], walsh[walsh.size() - 1 - cut.averages]};
+    out.hodges_lehmann_level = cut.level;
   }
   out.hodges_lehmann = median_in_place(walsh);
 }

@@ -32,6 +32,9 @@ struct SignedRank {
   /// Order statistics of the Walsh averages by the exact distribution, at least the confidence asked for, or
   /// all of them when n is too small for it; empty with ties or zeros, and beyond n = 1000.
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
+  /// The share of samples in which that interval holds the centre, exactly: above the confidence asked for,
+  /// or 1 - 2^(1 - n) where n is too small for it (below 6 at .95).
+  double hodges_lehmann_level = 0;
 };
 
 /// Differences as the doubles they are, against a median of zero. std::invalid_argument unless confidence

@@ -6,9 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "stats/cholesky.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/inference/tails.hpp"
 #include "stats/preference/logit_fit.hpp"
-#include "stats/quantiles.hpp"
+#include "stats/preference/people_errors.hpp"
 
 namespace stats {
 
@@ -93,58 +95,90 @@ std::vector<LogitRow> pair_rows(const Wins& wins) {
 
 double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
-/// Strengths and covariance with the first item at 0.
-void set_reference(BradleyTerry& out, const LogitFit& fit) {
+/// Strengths with the first item at 0 and with sum 0, and the worths.
+void set_strengths(BradleyTerry& out, const LogitFit& fit) {
+  out.lambda_ref1.assign(1, 0.0);
+  out.lambda_ref1.insert(out.lambda_ref1.end(), fit.coefficients.begin(), fit.coefficients.end());
+  double mean = 0, total = 0;
+  for (const double lambda : out.lambda_ref1) mean += lambda / static_cast<double>(out.items);
+  for (const double lambda : out.lambda_ref1) total += std::exp(lambda - mean);
+  for (const double lambda : out.lambda_ref1) {
+    out.lambda_sum0.push_back(lambda - mean);
+    out.worth.push_back(std::exp(lambda - mean) / total);
+  }
+}
+
+/// Covariance of the strengths with the first item at 0.
+void set_covariance(BradleyTerry& out, const CoefficientErrors& errors) {
   const auto n = static_cast<std::size_t>(out.items);
-  out.lambda_ref1.assign(n, 0.0);
   out.se_ref1.assign(n, 0.0);
   out.covariance_ref1.assign(n * n, 0.0);
   for (std::size_t i = 1; i < n; ++i) {
-    out.lambda_ref1[i] = fit.coefficients[i - 1];
-    out.se_ref1[i] = std::sqrt(fit.variance(i - 1, i - 1));
-    for (std::size_t j = 1; j < n; ++j) out.covariance_ref1[i * n + j] = fit.variance(i - 1, j - 1);
+    out.se_ref1[i] = std::sqrt(errors.variance(i - 1, i - 1, n - 1));
+    for (std::size_t j = 1; j < n; ++j) out.covariance_ref1[i * n + j] = errors.variance(i - 1, j - 1, n - 1);
   }
 }
 
-/// The same with sum 0, and the worths.
-void set_centred(BradleyTerry& out, double z) {
+/// Errors of the strengths that sum to 0.
+void set_centred(BradleyTerry& out, double quantile) {
   const auto n = static_cast<std::size_t>(out.items);
   const auto items = static_cast<double>(out.items);
-  double mean = 0, mean_covariance = 0;
+  double mean_covariance = 0;
   Values row_means(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    mean += out.lambda_ref1[i] / items;
     for (std::size_t j = 0; j < n; ++j) row_means[i] += out.covariance_ref1[i * n + j] / items;
     mean_covariance += row_means[i] / items;
   }
-  double total = 0;
-  for (const double lambda : out.lambda_ref1) total += std::exp(lambda - mean);
+  out.se_sum0.clear();
+  out.ci_sum0.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    const double lambda = out.lambda_ref1[i] - mean;
     const double variance = out.covariance_ref1[i * n + i] - 2 * row_means[i] + mean_covariance;
-    const double se = std::sqrt(std::max(0.0, variance));
-    out.lambda_sum0.push_back(lambda);
+    const double lambda = out.lambda_sum0[i], se = std::sqrt(std::max(0.0, variance));
     out.se_sum0.push_back(se);
-    out.ci_sum0.push_back({lambda - z * se, lambda + z * se});
-    out.worth.push_back(std::exp(lambda) / total);
+    out.ci_sum0.push_back({lambda - quantile * se, lambda + quantile * se});
   }
 }
 
-void set_pairs(BradleyTerry& out, double z) {
+void set_pairs(BradleyTerry& out, const CoefficientErrors& errors, double quantile) {
   const auto n = static_cast<std::size_t>(out.items);
+  out.pairs.clear();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       PairDifference pair{.i = static_cast<int>(i), .j = static_cast<int>(j)};
       pair.difference = out.lambda_ref1[i] - out.lambda_ref1[j];
-      pair.se = std::sqrt(out.covariance_ref1[i * n + i] + out.covariance_ref1[j * n + j] -
-                          2 * out.covariance_ref1[i * n + j]);
-      pair.ci = {pair.difference - z * pair.se, pair.difference + z * pair.se};
-      pair.p = normal_two_sided(pair.difference / pair.se);
+      pair.se = std::sqrt(std::max(0.0, out.covariance_ref1[i * n + i] + out.covariance_ref1[j * n + j] -
+                                            2 * out.covariance_ref1[i * n + j]));
+      pair.ci = {pair.difference - quantile * pair.se, pair.difference + quantile * pair.se};
+      pair.p = errors.p(pair.difference / pair.se);
       pair.probability = logistic(pair.difference);
       pair.probability_ci = {logistic(pair.ci[0]), logistic(pair.ci[1])};
       out.pairs.push_back(pair);
     }
   }
+}
+
+void set_errors(BradleyTerry& out, const CoefficientErrors& errors) {
+  const double quantile = errors.quantile(out.confidence);
+  set_covariance(out, errors);
+  set_centred(out, quantile);
+  set_pairs(out, errors, quantile);
+}
+
+/// Errors over people in place of those of independent answers, which stay beside them.
+void set_people(BradleyTerry& out, const CoefficientErrors& errors, const LogitFit& fit) {
+  const auto before = out.pairs;
+  set_errors(out, errors);
+  for (std::size_t i = 0; i < before.size(); ++i) out.pairs[i].se_independent = before[i].se;
+  out.people_df = errors.df;
+  const auto k = static_cast<double>(out.items - 1), people = *errors.df + 1;
+  const auto factor = Cholesky::of(errors.covariance);
+  if (!factor || people <= k) return;
+  const Values solved = factor->solve(fit.coefficients);
+  double t2 = 0;
+  for (std::size_t i = 0; i < solved.size(); ++i) t2 += solved[i] * fit.coefficients[i];
+  BradleyTerry::PeopleTest test{t2 * (people - k) / (k * (people - 1)), k, people - k, 0};
+  test.p = fisher_upper(test.f, test.df1, test.df2);
+  out.equal_over_people = test;
 }
 
 void set_tests(BradleyTerry& out, const LogitFit& fit, std::span<const LogitRow> rows) {
@@ -182,8 +216,16 @@ ConnectionReport connection(std::span<const double> counts, int items) {
                                      " every comparison with the others"};
 }
 
-Result<BradleyTerry> bradley_terry(std::span<const double> counts, int items, BradleyTerryMethod method,
-                                   double confidence) {
+namespace {
+
+/// A model and the fit that it was made of.
+struct Fitted {
+  BradleyTerry model;
+  LogitFit fit;
+};
+
+Result<Fitted> fit_wins(std::span<const double> counts, int items, BradleyTerryMethod method,
+                        double confidence) {
   if (!(confidence > 0 && confidence < 1))
     throw std::invalid_argument("a confidence must lie between 0 and 1");
   const Wins wins = checked(counts, items);
@@ -205,11 +247,39 @@ Result<BradleyTerry> bradley_terry(std::span<const double> counts, int items, Br
 
   const auto fit = fit_logit(rows, out.bias_reduced ? LogitBias::Reduced : LogitBias::AsIs);
   if (!fit) return Refusal{fit.reason()};
-  const double z = normal_quantile(0.5 + confidence / 2);
-  set_reference(out, *fit);
-  set_centred(out, z);
-  set_pairs(out, z);
+  set_strengths(out, *fit);
+  set_errors(out, independent_errors(*fit));
+  out.se_sum0_independent = out.se_sum0;
+  for (PairDifference& pair : out.pairs) pair.se_independent = pair.se;
   set_tests(out, *fit, rows);
+  return Fitted{std::move(out), *fit};
+}
+
+}  // namespace
+
+Result<BradleyTerry> bradley_terry(std::span<const double> counts, int items, BradleyTerryMethod method,
+                                   double confidence) {
+  const auto fitted = fit_wins(counts, items, method, confidence);
+  if (!fitted) return Refusal{fitted.reason()};
+  return fitted->model;
+}
+
+Result<BradleyTerry> bradley_terry(std::span<const Comparison> trials, int items, BradleyTerryMethod method,
+                                   double confidence) {
+  check_trials(trials, items);
+  const auto fitted = fit_wins(win_table(trials, items), items, method, confidence);
+  if (!fitted) return Refusal{fitted.reason()};
+  BradleyTerry out = fitted->model;
+  if (out.bias_reduced) {
+    out.why_independent = "the strengths are penalised";
+    return out;
+  }
+  const auto errors = people_errors(fitted->fit, trial_rows(trials, items), trials);
+  if (errors) {
+    set_people(out, *errors, fitted->fit);
+  } else {
+    out.why_independent = errors.reason();
+  }
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "stats/preference/trials.hpp"
 #include "stats/result.hpp"
 
 namespace stats {
@@ -35,6 +36,7 @@ struct PairDifference {
   int i = 0, j = 0;       ///< items, from 0, i < j
   double difference = 0;  ///< lambda_i - lambda_j, logits
   double se = 0;
+  double se_independent = 0;   ///< as if answers were independent
   std::array<double, 2> ci{};  ///< Wald
   double p = 0;                ///< Wald
   double probability = 0;      ///< that i is preferred to j
@@ -51,8 +53,17 @@ struct BradleyTerry {
   std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
   std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0
   std::vector<std::array<double, 2>> ci_sum0;  ///< Wald
+  std::vector<double> se_sum0_independent;     ///< as if answers were independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
-  double log_likelihood = 0;                   ///< without binomial coefficients
+  /// Degrees of freedom of errors over people (people_errors.hpp); empty: errors are of independent answers.
+  std::optional<double> people_df;
+  std::string why_independent;  ///< why errors are not over people, of single trials
+  /// Wald's test of equal strengths over people, as Hotelling's T2.
+  struct PeopleTest {
+    double f = 0, df1 = 0, df2 = 0, p = 0;
+  };
+  std::optional<PeopleTest> equal_over_people;
+  double log_likelihood = 0;  ///< without binomial coefficients
   /// Goodness of fit: deviance against one free proportion for each pair; p empty when no df is left.
   double gof_deviance = 0;
   int gof_df = 0;
@@ -69,6 +80,12 @@ struct BradleyTerry {
 /// strengths in the ordinary likelihood. std::invalid_argument as for connection(), an entry (i, i) > 0 or a
 /// confidence outside (0, 1).
 Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
+                                   BradleyTerryMethod method = BradleyTerryMethod::Automatic,
+                                   double confidence = 0.95);
+
+/// The same of single trials: strengths and likelihood ratios as of their wins, errors, intervals and Wald
+/// tests over people where they bear it. Penalised strengths keep the errors of independent answers.
+Result<BradleyTerry> bradley_terry(std::span<const Comparison> trials, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);
 

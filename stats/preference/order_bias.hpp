@@ -6,24 +6,20 @@
 #include <optional>
 #include <span>
 
+#include "stats/preference/trials.hpp"
 #include "stats/result.hpp"
 
 namespace stats {
 
-/// One 2AFC trial.
-struct Comparison {
-  int first = 0, second = 0;  ///< items shown in the first and the second interval, from 0
-  bool first_chosen = false;
-  double position = 0;  ///< place of the trial in its session, 1, 2, 3 ...; any unit
-};
-
 /// One term in the logit of choosing the first interval.
 struct OrderTerm {
-  double estimate = 0;  ///< logits
-  double se = 0;
+  double estimate = 0;         ///< logits
+  double se = 0;               ///< over people where they bear it (people_errors.hpp), else as the next
+  double se_independent = 0;   ///< as if answers were independent
+  std::optional<double> df;    ///< of Student's t for `ci` and `p_wald`; empty: normal
   std::array<double, 2> ci{};  ///< Wald
   double p_wald = 0;
-  double lrt_chi2 = 0;  ///< likelihood ratio against the model without this term, 1 df
+  double lrt_chi2 = 0;  ///< likelihood ratio against the model without this term, 1 df; independent answers
   double lrt_p = 0;
 };
 
@@ -39,11 +35,10 @@ struct OrderBias {
   std::optional<OrderTerm> drift{};
 };
 
-/// Trials of one participant are correlated; the tests treat them as independent and are approximate then.
-/// Refused: no trial, fewer than two items, items never compared, orders that leave
-/// the interval's pull undetermined, separation
-/// (the reason says of what). std::invalid_argument for an item outside [0, items), equal items, a position
-/// that is not finite, or a confidence outside (0, 1).
+/// Trials of one participant are correlated: Wald errors are over people, likelihood ratios treat all trials
+/// as independent. Refused: no trial, fewer than two items, items never compared, orders that leave the
+/// interval's pull undetermined, separation (the reason says of what). std::invalid_argument for an item
+/// outside [0, items), equal items, a position that is not finite, or a confidence outside (0, 1).
 Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, double confidence = 0.95);
 
 }  // namespace stats

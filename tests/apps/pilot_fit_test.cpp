@@ -118,6 +118,7 @@ TEST(PilotFit, ObeysThePlansRulesOfExclusion) {
   pilot.sessions[2].trials.push_back(repeat);
   for (int i = 3; i < 21; ++i) pilot.sessions[3].trials[static_cast<std::size_t>(i)].answers[0].score.reset();
   auto selection = with_timing(stats::TimingRule::Fail);
+  selection.plan.exclusions.straight_lining_answers = 8;
   selection.plan.exclusions.max_repeat_difference = 2;
   selection.plan.exclusions.min_answered = 0.5;
   const auto data = *select(pilot, selection);
@@ -205,12 +206,10 @@ TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
       for (auto& trial : session.trials) trial.answers[0].score = score(trial);
     return out;
   };
-  auto alone = pilot, equal = rated([](const TaskTrial&) { return 4; });
+  auto alone = pilot;
   alone.sessions.resize(1);
-  for (auto& session : equal.sessions) session.trials.resize(7);  // too few for the rule of straight-lining
   const std::vector<std::pair<TaskProtocol, std::string>> cases{
-      {equal, "all ratings are equal"},
-      {rated([](const TaskTrial&) { return 4; }), "no answered trial"},
+      {rated([](const TaskTrial&) { return 4; }), "all ratings are equal"},
       {rated([](const TaskTrial&) { return std::optional<int>(); }), "no answered trial"},
       {alone, "at least 4"},
       {rated([](const TaskTrial& trial) { return trial.first.nominal.mean > 25 ? 7 : 6; }), "no contour"}};

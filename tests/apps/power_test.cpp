@@ -87,12 +87,33 @@ TEST(Power, PreferenceOf70PercentWith26People) {
 
 TEST(Power, EquivalenceWithinHalfAPointWith26People) {
   auto request = task1({"null"}, 800);
+  request.plan.plan.directional = stats::Directional::All;
   const auto worlds = apps::simulate_task_power(request);
   expect_closed_forms(worlds);
   const auto& h2 = worlds[0].hypotheses[1];
   EXPECT_EQ(h2.id, "H2");
   EXPECT_EQ(h2.tests.size(), 8u);
   EXPECT_NEAR(*h2.tests[0].curve[0].closed_form, 0.22, 0.005);
+}
+
+// Two-sided as the other hypotheses: each of the two one-sided tests at half of alpha.
+TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
+  const auto worlds = apps::simulate_task_power(task1({"null"}, 800));
+  expect_closed_forms(worlds);
+  const auto& test = worlds[0].hypotheses[1].tests[0];
+  const auto expected = stats::tost_power(26, {-0.5, 0.5, 1.3, 0, 0.025});
+  EXPECT_NEAR(*test.curve[0].closed_form, *expected, 1e-12);
+}
+
+// A claim that needs all of its tests gains by not being corrected, and single tests are counted after Holm.
+TEST(Power, SupportIsJudgedByThePlansRule) {
+  auto request = task2({"effect"}, 400);
+  request.effect = 0.75;
+  const auto both = apps::simulate_task_power(request)[0].hypotheses[1].curve[0];
+  request.plan.plan.decision = stats::DecisionRule::Holm;
+  const auto corrected = apps::simulate_task_power(request)[0].hypotheses[1].curve[0];
+  EXPECT_GT(both.supported.value, corrected.supported.value);
+  EXPECT_EQ(both.any.value, corrected.any.value);
 }
 
 TEST(Power, DifferencesAndMarginsFollowTheFormulas) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
 #include "apps/stats/report/line_difference.hpp"
 #include "apps/stats/report/preregistration.hpp"
@@ -201,6 +202,48 @@ TEST(Preregistration, AnotherMarginIsNamed) {
   EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
   EXPECT_THAT(check.at("differences").dump(),
               HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
+}
+
+/// A bundle as it was written before the plan had a decision rule: the same without its two keys.
+void freeze_as_before(const fs::path& folder) {
+  auto request = both_tasks();
+  request.plan.decision = stats::DecisionRule::Holm;
+  request.plan.directional = stats::Directional::H2H3H6;
+  report::freeze_bundle(request, folder);
+  std::istringstream lines(base::read_file(folder / "plan.toml", 1 << 20));
+  std::string plan;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("decision") && !line.starts_with("directional")) plan += line + "\n";
+  std::string manifest = base::read_file(folder / "MANIFEST.sha256", 1 << 20);
+  const auto before = base::sha256_hex(base::read_file(folder / "plan.toml", 1 << 20));
+  manifest.replace(manifest.find(before), before.size(), base::sha256_hex(plan));
+  base::write_file_atomically(folder / "plan.toml", plan);
+  base::write_file_atomically(folder / "MANIFEST.sha256", manifest);
+}
+
+TEST(Preregistration, AnEarlierBundleIsAnalysedUnderHolmAndDiffersInNothing) {
+  const TemporaryFolder folder;
+  freeze_as_before(folder / "bundle");
+  const auto bundle = report::read_bundle(folder / "bundle");
+  ASSERT_THAT(bundle.altered, IsEmpty());
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), Json::array());
+  EXPECT_EQ(study.results.at("plan").at("decision"), "holm");
+  EXPECT_EQ(study.results.at("plan").at("directional"), "H2, H3 and H6");
+  for (const auto& hypothesis : study.results.at("hypotheses"))
+    for (const auto& test : hypothesis.at("tests")) EXPECT_EQ(test.at("holds"), test.at("holds_holm"));
+}
+
+TEST(Preregistration, AnotherDecisionRuleIsNamed) {
+  const TemporaryFolder folder;
+  freeze_as_before(folder / "bundle");
+  auto bundle = report::read_bundle(folder / "bundle");
+  bundle.plan.plan.decision = stats::DecisionRule::IntersectionUnion;
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered "));
+  EXPECT_FALSE(check.at("holds").get<bool>());
 }
 
 TEST(Preregistration, ATouchedFileTakesTheNameAway) {

@@ -19,8 +19,9 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing_pilot::simulated_pilot;
 
-Json results_of(const std::vector<study::TaskProtocol>& protocols) {
+Json results_of(const std::vector<study::TaskProtocol>& protocols, const stats::ExclusionRules& rules = {}) {
   PlanInForce plan;
+  plan.plan.exclusions = rules;
   plan.plan.resamples = 200;
   return make_results({protocols, 0}, {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
       .json;
@@ -87,7 +88,9 @@ TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
   auto pilot = pilot_of_people();
   for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;
   pilot.sessions[1].catches = {{"attention", 2, 5}};
-  const Json json = results_of({pilot, made_study::task2(6)});
+  stats::ExclusionRules rules;
+  rules.straight_lining_answers = 8;
+  const Json json = results_of({pilot, made_study::task2(6)}, rules);
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_EQ(json.at("exclusions").at(0).at("rule"), "straight_lining");
   EXPECT_EQ(json.at("exclusions").at(1).at("rule"), "catch");

@@ -43,6 +43,8 @@ inline Json bundle() {
           {"differences", {"protocol task2 was not preregistered"}}};
 }
 
+inline const Change by_holm = set("/plan/decision", "holm");
+
 inline std::vector<Case> head_and_methods() {
   const Change no_protocols = set("/study/protocols", Json::array()), no_flow = set("/flow", Json::object());
   const std::string rules = "/plan/exclusions/";
@@ -94,7 +96,7 @@ inline std::vector<Case> head_and_methods() {
       {"*; visits with less than # of repeated pairs answered alike were left out*",
        set(rules + "min_repeat_agreement", nullptr), set(rules + "min_repeat_agreement", 0.5)},
       {"*; visits with one and the same answer throughout (# answers or more) were left out*",
-       set(rules + "straight_lining_answers", 0)},
+       set(rules + "straight_lining_answers", 0), set(rules + "straight_lining_answers", 8)},
       {"*; visits with less than # of the trials answered were left out*", set(rules + "min_answered", 0),
        set(rules + "min_answered", 0.5)},
       {"The rules see neither method, scene nor frame rate.", no_flow},
@@ -109,9 +111,18 @@ inline std::vector<Case> head_and_methods() {
        refused("/task1")},
       {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
       {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
+      {"Tests of the hypotheses were two-sided.", set("/plan/directional", true)},
+      {"Tests of the hypotheses were one-sided, in the direction claimed.", set("/plan/directional", false),
+       set("/plan/directional", true)},
+      {"Tests of the hypotheses were two-sided, but one-sided for #.", set("/plan/directional", true),
+       set("/plan/directional", "H2, H3 and H6")},
+      {"A hypothesis needed every one of its tests, each significant without correction (intersection-union) "
+       "at # (tests in each family: *).",
+       by_holm},
+      {"Single tests were claimed after Holm's correction within their hypothesis.", by_holm},
       {"Within each hypothesis Holm's correction held the family-wise error rate at # (tests in each family: "
        "*).",
-       set("/hypotheses", Json::array())},
+       set("/plan/decision", "intersection-union"), by_holm},
       {"Intervals hold # unless another share stands beside them.", set("/plan/confidence", nullptr)},
       {"The analysis was made with ViP-Lab # and the GNU Scientific Library #.", set("/versions", nullptr)},
       {"Note: #", set("/study/notes", Json::array())},
@@ -184,6 +195,10 @@ inline std::vector<Case> pilot() {
 inline std::vector<Case> task1() {
   const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
   const Change secondary = in_each("/task1/scores", "primary", false);
+  // Also in words: a p below .05 and no t.
+  const Change unanimous =
+      all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
+           set("/task1/comparisons/0/test", "exact sign test")});
   const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
   return {
       {"Exploratory # participants, # reports.", no_task},
@@ -212,6 +227,8 @@ inline std::vector<Case> task1() {
       {"# The same pairs by other tests, #", no_pairs},
       {"Pairs below .05 without correction, in APA style:", stars("")},
       {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
+      {"#, # \u2212 #: all differences = #, #, p *, pHolm *",
+       in_each("/task1/comparisons", "test", "paired t test"), unanimous},
       {"No pair differs below .05, even without correction.", stars("*"), stars("")},
       {"No pair could be tested.", in_each("/task1/comparisons", "p", 0.5),
        in_each("/task1/comparisons", "p", nullptr)},
@@ -264,14 +281,26 @@ inline std::vector<Case> task2() {
        refused(bias)},
       {"Note: #.", set(bias + "/warning", ""), set(bias + "/warning", "one answered all pairs alike")},
       {"Over participants: mean share # [[]#, #], t(#) = #, p *.", refused(bias + "/by_participant")},
+      {"Over participants: every share is #, #, p *.", set(bias + "/by_participant/test", "t test"),
+       set(bias + "/by_participant/test", "exact sign test")},
       {"# Abilities on the log-odds scale, their mean at nought", refused(model)},
       {"A method or a group of methods was always or never chosen over all others: the estimates are "
        "Firth's, "
        "penalised.",
        set(model + "/penalised", false), set(model + "/penalised", true)},
-      {"All methods equal: \u03c7\u00b2(#) = #, p *", set(model + "/overall", nullptr)},
-      {"Lack of fit over the pairs: \u03c7\u00b2(#) = #, p *", set(model + "/fit", nullptr)},
-      {"Effect of the order (log odds of the first interval): # [[]#, #], z = #, p *",
+      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of "
+       "freedom).",
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
+      {"Errors and intervals take all answers as independent: #.", set(model + "/people/errors", "people"),
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
+      {"All methods equal, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/overall", nullptr)},
+      {"All methods equal, over people: F(#, #) = #, p *", set(model + "/people/equal", nullptr)},
+      {"Lack of fit over the pairs, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/fit", nullptr)},
+      {"Effect of the order (log odds of the first interval): # [[]#, #], SE = #, p *",
        set(model + "/order", nullptr)},
       {"Participants who judged all pairs: # (without: #).", refused("/task2/triads")},
       {"Mean number of circular triads # (random answers: #), mean consistency (Kendall's \u03b6) #; as few "
@@ -322,8 +351,19 @@ inline std::vector<Case> hypotheses() {
       {"# Decisions on the hypotheses", none},
       {"Exploratory #.", all({set("/preregistration", bundle()), set("/preregistration/tasks/task2", true)})},
       {"Preregistered #.", set("/preregistration", nullptr), set("/preregistration", bundle())},
+      {"Each hypothesis claims all of its tests: it is supported where every one is significant at \u03b1 "
+       "without correction (an intersection-union test), which errs at most at \u03b1.",
+       by_holm},
+      {"Where not all are, those that hold after Holm's step-down correction within the hypothesis may be "
+       "claimed one by one.",
+       by_holm},
       {"Each hypothesis is a family of its own; Holm's step-down correction holds the family's error rate.",
+       set("/plan/decision", "intersection-union"), by_holm},
+      {"The claims of H1 to H6 are not corrected for one another; what Holm makes of them stands beside.",
        none},
+      {"The claim as a whole: p *, after Holm over the claims of H1 to H6 p *.",
+       in_each("/hypotheses", "p_claim_of_six", nullptr)},
+      {"The claim as a whole: p *.", in_each("/hypotheses", "p_claim", nullptr)},
       {"Stars: [*] p < .05, [*][*] p < .01, [*][*][*] p < .001.", none},
       {"Were it testable, the tests below would read: #.", set("/hypotheses/0/status", "supported"),
        untestable},
@@ -332,6 +372,8 @@ inline std::vector<Case> hypotheses() {
       {"# The same p in larger families", none},
       {"#: Mdiff = #, # CI [[]#, #]*, p *, pHolm *", none},
       {"#: *share = #, # CI [[]#, #], p *, pHolm *", none},
+      {"#: Mdiff = #, #, *p *, pHolm *", set("/hypotheses/0/tests/0/method", "paired t test"),
+       set("/hypotheses/0/tests/0/method", "exact sign test")},
       {"#: no test, #", in_each("/hypotheses/0/tests", "p", 0.5),
        all({in_each("/hypotheses/0/tests", "p", nullptr),
             in_each("/hypotheses/0/tests", "reason", "too few")})},

@@ -92,7 +92,7 @@ TEST_F(TaskCommandsE2e, ThePlanDecides) {
   EXPECT_EQ(results.at("plan").at("source"), "plan.toml");
   EXPECT_EQ(results.at("plan").at("alpha"), 0.01);
   EXPECT_EQ(results.at("hypotheses")[1].at("tests")[0].at("margin"), 1.5);
-  EXPECT_NEAR(results.at("hypotheses")[1].at("tests")[0].at("ci_confidence").get<double>(), 0.98, 1e-12);
+  EXPECT_NEAR(results.at("hypotheses")[1].at("tests")[0].at("ci_confidence").get<double>(), 0.99, 1e-12);
 }
 
 TEST_F(TaskCommandsE2e, BadInputIsNamedAndNothingIsWritten) {

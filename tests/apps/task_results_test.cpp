@@ -10,6 +10,7 @@
 #include "apps/stats/tasks/results.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/inference/adjust.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/common/temporary_folder.hpp"
 
@@ -97,6 +98,37 @@ TEST(TaskResults, FamiliesAndTasksAreComplete) {
   }
 }
 
+TEST(TaskResults, ClaimsAreCorrectedOverAllSix) {
+  std::vector<double> p, of_six;
+  for (const auto& one : whole_study().at("hypotheses")) {
+    p.push_back(one.at("p_claim"));
+    of_six.push_back(one.at("p_claim_of_six"));
+  }
+  const auto holm = stats::adjust(p, stats::Adjustment::Holm, 6)->p;
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(of_six[i], holm[i], 1e-15);
+}
+
+// As pairs are over the pairs of one score at one n_*; a method that nobody answered about is of the family.
+TEST(TaskResults, OrdinalEffectsAreCorrectedOverTheMethodsOfTheirModel) {
+  auto task = made_study::task1(26);
+  for (auto& session : task.sessions)
+    std::erase_if(session.trials, [](const auto& trial) { return trial.first.what.method == "LoRes"; });
+  for (const auto& [json, effects] :
+       {std::pair{whole_study(), std::size_t{4}}, std::pair{results_of({{task}, 0}), std::size_t{3}}}) {
+    for (const auto& model : json.at("task1").at("ordinal")) {
+      std::vector<double> p, holm, bh;
+      for (const auto& effect : model.at("effects")) {
+        p.push_back(effect.at("p"));
+        holm.push_back(effect.at("p_holm"));
+        bh.push_back(effect.at("p_bh"));
+      }
+      ASSERT_EQ(p.size(), effects);
+      EXPECT_EQ(holm, stats::adjust(p, stats::Adjustment::Holm, 4)->p);
+      EXPECT_EQ(bh, stats::adjust(p, stats::Adjustment::BenjaminiHochberg, 4)->p);
+    }
+  }
+}
+
 TEST(TaskResults, AWorldWithBetterMethodsIsFound) {
   // Quality differs by 1 to 1.3 points from FovFluid, noise 1: H1 and H5 must come out, H6 must not.
   const auto& hypotheses = whole_study().at("hypotheses");
@@ -114,6 +146,47 @@ TEST(TaskResults, WithoutTrackedGazeTwoHypothesesAreNotTestable) {
   for (const std::size_t i : {1u, 2u, 3u, 5u})
     EXPECT_NE(json.at("hypotheses")[i].at("status"), "not testable");
   EXPECT_EQ(json.at("study").at("tracked_gaze"), false);
+}
+
+// A study whose people all agree: exact tests, not "no data".
+TEST(TaskResults, UnanimousPeopleAreTestedExactly) {
+  auto one = made_study::task1(6), two = made_study::task2(6);
+  for (auto& session : one.sessions)
+    for (auto& trial : session.trials)
+      for (auto& answer : trial.answers) answer.score = trial.first.what.method == "LoRes" ? 1 : 2;
+  for (auto& session : two.sessions)
+    for (auto& trial : session.trials) trial.answers[0].score = 1 + trial.position % 2;
+  const auto json = results_of({{one, two}, 0});
+  for (const auto& pair : json.at("task1").at("comparisons")) {
+    EXPECT_EQ(pair.at("test"), "exact sign test");
+    EXPECT_EQ(pair.at("p"), pair.at("a") == "LoRes" ? 0.03125 : 1);
+    EXPECT_TRUE(pair.at("t").is_null());
+  }
+  for (const auto& hypothesis : json.at("hypotheses"))
+    EXPECT_NE(hypothesis.at("status"), "no data") << hypothesis.at("id");
+  const auto& shares = json.at("task2").at("interval_bias").at("by_participant");
+  EXPECT_EQ(shares.at("test"), "exact sign test");
+  EXPECT_EQ(shares.at("p"), 1) << "everybody chose the first interval in half of the pairs";
+}
+
+TEST(TaskResults, FewPeopleHaveNoBootstrapAndALevelOfTheirOwn) {
+  const auto json = results_of({{made_study::task1(5)}, 0});
+  int intervals = 0;
+  for (const auto& pair : json.at("task1").at("comparisons")) {
+    EXPECT_TRUE(pair.at("bca").is_null());
+    EXPECT_THAT(pair.at("bca_reason").dump(), ::testing::AnyOf(HasSubstr("too few"), HasSubstr("equal")));
+    if (!pair.at("wilcoxon").contains("ci") || pair.at("wilcoxon").at("ci").is_null()) continue;
+    EXPECT_EQ(pair.at("wilcoxon").at("ci_level"), 0.9375);
+    ++intervals;
+  }
+  EXPECT_GT(intervals, 0);
+}
+
+TEST(TaskResults, ErrorsOfTheBradleyTerryModelKnowPeople) {
+  const auto& model = whole_study().at("task2").at("bradley_terry");
+  EXPECT_EQ(model.at("people").at("errors"), "people");
+  EXPECT_EQ(model.at("people").at("people_df"), 25);
+  for (const auto& pair : model.at("differences")) EXPECT_NE(pair.at("se"), pair.at("se_independent"));
 }
 
 TEST(TaskResults, PartsThatTheStudyLacksAreAbsent) {
@@ -180,7 +253,10 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   stats::AnalysisPlan plan;
   plan.alpha = 0.01;
   plan.margin_sickness = 0.3;
+  plan.decision = stats::DecisionRule::Holm;
+  plan.directional = stats::Directional::All;
   plan.exclusions.timing = stats::TimingRule::Degraded;
+  plan.exclusions.straight_lining_answers = 9;
   plan.exclusions.max_repeat_difference.reset();
   plan.exclusions.min_repeat_agreement = 0.6;
   plan.repeated_pairs = stats::RepeatedPairs::Warn;
@@ -189,11 +265,38 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   const auto read = read_plan(folder / "plan.toml");
   EXPECT_EQ(format_plan(read.plan, read.protocols), format_plan(plan, {std::string(64, '1')}));
   EXPECT_EQ(read.plan.alpha, 0.01);
+  EXPECT_EQ(read.plan.decision, stats::DecisionRule::Holm);
+  EXPECT_EQ(read.plan.directional, stats::Directional::All);
   EXPECT_EQ(read.plan.exclusions.timing, stats::TimingRule::Degraded);
   EXPECT_FALSE(read.plan.exclusions.max_repeat_difference.has_value());
   EXPECT_EQ(read.plan.repeated_pairs, stats::RepeatedPairs::Warn);
   EXPECT_EQ(read.source, "plan.toml");
   EXPECT_EQ(read.sha256.size(), 64u);
+}
+
+stats::AnalysisPlan plan_of(const std::string& text) {
+  const TemporaryFolder folder;
+  base::write_file_atomically(folder / "plan.toml", text);
+  return read_plan(folder / "plan.toml").plan;
+}
+
+// A bundle's plan names its protocols; one of before the keys were there was frozen under Holm.
+TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
+  const auto fresh = plan_of("format = 1\n");
+  EXPECT_EQ(fresh.decision, stats::DecisionRule::IntersectionUnion);
+  EXPECT_EQ(fresh.directional, stats::Directional::None);
+  EXPECT_EQ(fresh.exclusions.straight_lining_answers, 0);
+  const auto frozen =
+      plan_of("format = 1\nprotocols = [\"ab\"]\n[exclusions]\nstraight_lining_answers = 8\n");
+  EXPECT_EQ(frozen.decision, stats::DecisionRule::Holm);
+  EXPECT_EQ(frozen.directional, stats::Directional::H2H3H6);
+  EXPECT_EQ(frozen.exclusions.straight_lining_answers, 8);
+  const auto again = plan_of(format_plan(frozen, {}));
+  EXPECT_EQ(again.decision, stats::DecisionRule::Holm);
+  EXPECT_EQ(again.directional, stats::Directional::H2H3H6);
+  const auto today = plan_of(format_plan({}, {"ab"}));
+  EXPECT_EQ(today.decision, stats::DecisionRule::IntersectionUnion);
+  EXPECT_EQ(today.directional, stats::Directional::None);
 }
 
 TEST(AnalysisPlan, IsPreregisteredForItsProtocolsOnly) {
@@ -214,6 +317,9 @@ TEST(AnalysisPlan, MistakesAreNamedWithTheirPlace) {
   refuse("format = 1\nalpha = 0.6\n", "alpha");
   refuse("format = 1\nalfa = 0.05\n", "alfa");
   refuse("format = 2\n", "format");
+  refuse("format = 1\ndecision = \"bonferroni\"\n", "decision");
+  refuse("format = 1\ndirectional = \"H1\"\n", "directional");
+  refuse("format = 1\ndirectional = 1\n", "directional");
   refuse("format = 1\n[exclusions]\ntiming = \"all\"\n", "timing");
   refuse("format = 1\n[exclusions]\nmin_catch_correct = \"never\"\n", "min_catch_correct");
   refuse("format = 1\n[margins]\nrealism = 0\n", "realism");

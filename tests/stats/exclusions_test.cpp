@@ -112,17 +112,21 @@ TEST(Exclusions, RepeatedPairsByAgreement) {
 }
 
 TEST(Exclusions, OneAnswerToEverything) {
-  const auto found = find_exclusions(visit(std::vector<double>(10, 4)), {}, {}, false);
+  EXPECT_THAT(find_exclusions(visit(std::vector<double>(10, 4)), {}, {}, false), IsEmpty())
+      << "who sees no difference is not left out unasked";
+  ExclusionRules rules;
+  rules.straight_lining_answers = 8;
+  const auto found = find_exclusions(visit(std::vector<double>(10, 4)), {}, rules, false);
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].rule, "straight_lining");
   EXPECT_EQ(found[0].reason, "gave 4 in all 10 main ratings");
-  const auto pairs = find_exclusions(visit(std::vector<double>(10, 2)), {}, {}, true);
+  const auto pairs = find_exclusions(visit(std::vector<double>(10, 2)), {}, rules, true);
   EXPECT_EQ(pairs.at(0).reason, "chose the second interval in all 10 pairs");
-  EXPECT_THAT(find_exclusions(visit(std::vector<double>(7, 4)), {}, {}, false), IsEmpty())
+  EXPECT_THAT(find_exclusions(visit(std::vector<double>(7, 4)), {}, rules, false), IsEmpty())
       << "too few to tell";
   auto one_other = visit(std::vector<double>(10, 4));
   one_other[9].answer = 5;
-  EXPECT_THAT(find_exclusions(one_other, {}, {}, false), IsEmpty());
+  EXPECT_THAT(find_exclusions(one_other, {}, rules, false), IsEmpty());
 }
 
 TEST(Exclusions, UnfinishedVisitsOnlyWhenAsked) {
@@ -139,7 +143,9 @@ TEST(Exclusions, UnfinishedVisitsOnlyWhenAsked) {
 TEST(Exclusions, AnswersAreCountedOnce) {
   auto trials = visit(std::vector<double>(10, 4));
   trials[3].timing = TrialTiming::Fail;
-  const auto found = find_exclusions(trials, {}, {}, false);
+  ExclusionRules rules;
+  rules.straight_lining_answers = 8;
+  const auto found = find_exclusions(trials, {}, rules, false);
   ASSERT_THAT(found, SizeIs(2));
   EXPECT_EQ(found[0].position, -1) << "whole visits first";
   EXPECT_EQ(found[0].answers, 45);
@@ -149,7 +155,9 @@ TEST(Exclusions, AnswersAreCountedOnce) {
 TEST(Exclusions, PeopleAndVisitsAreTheirOwn) {
   auto trials = visit(std::vector<double>(10, 4), "P2");
   for (const auto& trial : visit(ordinary, "P1")) trials.push_back(trial);
-  const auto found = find_exclusions(trials, {}, {}, false);
+  ExclusionRules rules;
+  rules.straight_lining_answers = 8;
+  const auto found = find_exclusions(trials, {}, rules, false);
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].participant, "P2");
 }

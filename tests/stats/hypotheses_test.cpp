@@ -22,10 +22,17 @@ constexpr double noise = 0.3;
 
 /// Means in the order LoRes, FovFluid, Ours, Ours-TSp, HiRes.
 std::vector<Hypothesis> verdicts(const std::vector<double>& realism, const std::vector<double>& sickness,
-                                 int n = 26, const std::string& untestable = "", std::uint64_t seed = 3) {
-  return task1_hypotheses(normal_table(realism, 0.5, noise, n, seed),
-                          normal_table(sickness, 0.2, noise / 4, n, seed + 100, test::sickness_scale()), {},
+                                 int n = 26, const std::string& untestable = "",
+                                 const AnalysisPlan& plan = {}) {
+  return task1_hypotheses(normal_table(realism, 0.5, noise, n, 3),
+                          normal_table(sickness, 0.2, noise / 4, n, 103, test::sickness_scale()), plan,
                           untestable);
+}
+
+AnalysisPlan one_sided_throughout() {
+  AnalysisPlan plan;
+  plan.directional = Directional::All;
+  return plan;
 }
 
 TEST(Hypotheses, FamiliesHaveTheSizesPlanned) {
@@ -98,12 +105,59 @@ TEST(Hypotheses, TestsAreThoseOfTheTable) {
   EXPECT_NEAR((*h1.ci)[1], paired->ci[1], 1e-12);
   const HypothesisTest& h2 = all[1].tests[4];  // Ours - HiRes, sickness, 16k
   const auto both = equivalence_paired(sickness.column(0, 2), sickness.column(0, 4), {-0.25, 0.25});
-  EXPECT_NEAR(*h2.p, both->p, 1e-15);
+  EXPECT_NEAR(*h2.p, std::min(1.0, 2 * both->p), 1e-15) << "two-sided, as all";
   EXPECT_NEAR(*h2.paper_p, t_test_paired(sickness.column(0, 2), sickness.column(0, 4))->p, 1e-12);
   const HypothesisTest& h3 = all[2].tests[2];  // Ours-TSp - Ours, sickness, 16k: less is better
-  const auto one =
-      t_test_paired(sickness.column(0, 3), sickness.column(0, 2), {Alternative::Less, 0.95, 0.25});
-  EXPECT_NEAR(*h3.p, one->p, 1e-12);
+  const auto against_margin = [&](Alternative side) {
+    return t_test_paired(sickness.column(0, 3), sickness.column(0, 2), {side, 0.95, 0.25})->p;
+  };
+  EXPECT_NEAR(*h3.p, against_margin(Alternative::TwoSided), 1e-12);
+  const auto sided = task1_hypotheses(realism, sickness, one_sided_throughout(), "");
+  EXPECT_NEAR(*sided[0].tests[1].p,
+              t_test_paired(realism.column(1, 2), realism.column(1, 1), {Alternative::Greater, 0.95, 0})->p,
+              1e-12);
+  EXPECT_NEAR(*sided[1].tests[4].p, both->p, 1e-15);
+  EXPECT_NEAR(*sided[2].tests[2].p, against_margin(Alternative::Less), 1e-12);
+}
+
+/// Where the interval of a test must lie for its claim.
+bool interval_holds(const Hypothesis& hypothesis, const HypothesisTest& test) {
+  const auto [low, high] = *test.ci;
+  const bool more = test.score != "sickness";
+  switch (hypothesis.kind) {
+    case HypothesisKind::Superiority:
+      return more ? low > 0 : high < 0;
+    case HypothesisKind::Equivalence:
+      return low > -*test.margin && high < *test.margin;
+    case HypothesisKind::NonInferiority:
+      return more ? low > -*test.margin : high < *test.margin;
+    case HypothesisKind::Preference:
+      break;
+  }
+  return low > 0.5;
+}
+
+// Two-sided all six or one-sided all six: the interval of 1 - alpha, or that of 1 - 2 alpha, decides each.
+TEST(Hypotheses, TheIntervalShownDecidesEachTestAlike) {
+  for (const AnalysisPlan& plan : {AnalysisPlan{}, one_sided_throughout()}) {
+    int holding = 0, tests = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      for (const auto& one : task1_hypotheses(
+               normal_table({3, 3.4, 3.9, 3.8, 4}, 0.5, 0.9, 20, seed),
+               normal_table({1, 0.9, 0.7, 0.75, 0.6}, 0.2, 0.4, 20, seed + 999, test::sickness_scale()), plan,
+               "")) {
+        EXPECT_EQ(one.one_sided, plan.directional == Directional::All);
+        for (const auto& test : one.tests) {
+          EXPECT_EQ(test.holds_alone, interval_holds(one, test)) << test.label << ", p = " << *test.p;
+          EXPECT_EQ(test.ci_confidence, one.one_sided ? 0.9 : 0.95);
+          holding += test.holds_alone ? 1 : 0;
+          ++tests;
+        }
+      }
+    }
+    EXPECT_GT(holding, tests / 10);
+    EXPECT_LT(holding, 9 * tests / 10);
+  }
 }
 
 TEST(Hypotheses, HolmStaysWithinTheFamily) {
@@ -124,13 +178,13 @@ TEST(Hypotheses, HolmStaysWithinTheFamily) {
 /// % are 2.1 %.
 template <class Rejects>
 double share_of_studies(const std::vector<double>& realism, const std::vector<double>& sickness,
-                        Rejects rejects) {
+                        const AnalysisPlan& plan, Rejects rejects) {
   constexpr int studies = 1000;
   int count = 0;
   for (std::uint64_t study = 0; study < studies; ++study) {
-    const auto all =
-        task1_hypotheses(normal_table(realism, 0.5, 1.1, 26, 2 * study + 1),
-                         normal_table(sickness, 0.2, 0.4, 26, 2 * study + 2, test::sickness_scale()), {}, "");
+    const auto all = task1_hypotheses(
+        normal_table(realism, 0.5, 1.1, 26, 2 * study + 1),
+        normal_table(sickness, 0.2, 0.4, 26, 2 * study + 2, test::sickness_scale()), plan, "");
     count += rejects(all) ? 1 : 0;
   }
   return 1.0 * count / studies;
@@ -139,12 +193,12 @@ double share_of_studies(const std::vector<double>& realism, const std::vector<do
 TEST(Hypotheses, AFamilyOfEightKeepsItsLevelWhereNothingDiffers) {
   int uncorrected = 0;
   const double share =
-      share_of_studies({4, 4, 4, 4, 4}, {1, 1, 1, 1, 1}, [&](const std::vector<Hypothesis>& all) {
+      share_of_studies({4, 4, 4, 4, 4}, {1, 1, 1, 1, 1}, {}, [&](const std::vector<Hypothesis>& all) {
         const auto& tests = all[0].tests;
         uncorrected +=
             std::any_of(tests.begin(), tests.end(), [](const auto& test) { return *test.paper_p < 0.05; });
         return std::any_of(tests.begin(), tests.end(),
-                           [](const auto& test) { return test.holds || test.against; });
+                           [](const auto& test) { return test.holds_holm || test.against; });
       });
   EXPECT_NEAR(share, 0.05, 0.021);
   EXPECT_GT(uncorrected, 250) << "without correction every fourth study finds something";
@@ -153,8 +207,8 @@ TEST(Hypotheses, AFamilyOfEightKeepsItsLevelWhereNothingDiffers) {
 TEST(Hypotheses, NonInferiorityKeepsItsLevelAtTheMargin) {
   // The accelerated strategy is worse by exactly the margin.
   const double share =
-      share_of_studies({4, 4, 4, 3.5, 4}, {1, 1, 1, 1.25, 1},
-                       [](const std::vector<Hypothesis>& all) { return all[2].confirmed > 0; });
+      share_of_studies({4, 4, 4, 3.5, 4}, {1, 1, 1, 1.25, 1}, one_sided_throughout(),
+                       [](const std::vector<Hypothesis>& all) { return all[2].confirmed_holm > 0; });
   EXPECT_NEAR(share, 0.05, 0.021);
 }
 
@@ -174,6 +228,52 @@ TEST(Hypotheses, OnePersonIsNoData) {
   }
 }
 
+/// Everybody rates the methods alike, each by their own level: no difference has any spread.
+std::vector<Hypothesis> unanimous_verdicts(const std::vector<double>& realism,
+                                           const std::vector<double>& sickness, int n,
+                                           const AnalysisPlan& plan = {}) {
+  const auto table = [&](const std::vector<double>& means, ScoreScale scale) {
+    std::vector<MethodScore> scores;
+    for (int p = 0; p < n; ++p)
+      for (int block = 0; block < 2; ++block)
+        for (int m = 0; m < 5; ++m)
+          scores.push_back({p, block, block, m, means[static_cast<std::size_t>(m)] + p % 3});
+    return ScoreTable(std::move(scale), scores, n, test::n_stars, test::methods);
+  };
+  return task1_hypotheses(table(realism, test::realism_scale()), table(sickness, test::sickness_scale()),
+                          plan, "");
+}
+
+TEST(Hypotheses, UnanimousDifferencesAreTestedBySign) {
+  const auto all = unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 8);
+  for (const auto& one : all) {
+    EXPECT_EQ(one.status, HypothesisStatus::Supported) << one.status_text;
+    for (const auto& test : one.tests) {
+      EXPECT_EQ(test.method, "exact sign test");
+      EXPECT_EQ(*test.p, std::ldexp(1, -7)) << test.label << ": all eight on one side, both sides counted";
+      EXPECT_THAT(test.reason, IsEmpty());
+      EXPECT_FALSE(test.ci.has_value());
+    }
+  }
+  EXPECT_EQ(*all[0].tests[0].estimate, 2);
+  for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 8, one_sided_throughout()))
+    for (const auto& test : one.tests) EXPECT_EQ(*test.p, std::ldexp(1, -8)) << test.label;
+}
+
+TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
+  // Ours equals FovFluid, lies beyond the margin of HiRes, and Ours-TSp is as far below Ours as the margin.
+  const auto all = unanimous_verdicts({1, 2, 2, 1.5, 3}, {2, 1, 1, 1.25, 0}, 12);
+  EXPECT_EQ(*all[0].tests[0].p, 1) << "no difference at all";
+  EXPECT_EQ(*all[0].tests[2].p, std::ldexp(1, -11));
+  EXPECT_TRUE(all[0].tests[2].against);
+  EXPECT_EQ(*all[1].tests[0].p, 1) << "beyond the margin";
+  EXPECT_EQ(*all[2].tests[0].p, 1) << "at the margin";
+  for (const auto& one : all) EXPECT_EQ(one.confirmed, 0);
+  // Few people cannot show anything by sign: 2^-4 on each side.
+  for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 5))
+    EXPECT_EQ(one.status, HypothesisStatus::NotSupported) << one.status_text;
+}
+
 TEST(Hypotheses, AMethodThatWasNotShownIsNamed) {
   std::vector<MethodScore> scores;
   for (int p = 0; p < 5; ++p) {
@@ -186,80 +286,6 @@ TEST(Hypotheses, AMethodThatWasNotShownIsNamed) {
   EXPECT_THAT(all[0].tests, SizeIs(4));
   EXPECT_THAT(all[0].tests[1].reason, HasSubstr("Ours-TSp"));
   EXPECT_EQ(all[1].status, HypothesisStatus::NoData);
-}
-
-/// H4 to H6 of ten pairs, each answered by 26 people; k of the first method named.
-std::vector<Hypothesis> preferences(int tsp_over_ours, int ours_over_fov, int tsp_over_fov,
-                                    int hires_over_ours, int hires_over_tsp,
-                                    const std::string& untestable = "") {
-  std::vector<PairChoice> choices;
-  for (int a = 0; a < 5; ++a) {
-    for (int b = a + 1; b < 5; ++b) {
-      int k = 13;
-      if (a == 2 && b == 3) k = 26 - tsp_over_ours;
-      if (a == 1 && b == 2) k = 26 - ours_over_fov;
-      if (a == 1 && b == 3) k = 26 - tsp_over_fov;
-      if (a == 2 && b == 4) k = 26 - hires_over_ours;
-      if (a == 3 && b == 4) k = 26 - hires_over_tsp;
-      test::add_pair(choices, a, b, k, 26);
-    }
-  }
-  return task2_hypotheses(count_preferences(choices, 5, {}), test::methods, {}, untestable);
-}
-
-TEST(Hypotheses, ThePapersFigureTen) {
-  const auto all = preferences(15, 19, 21, 13, 11);
-  ASSERT_THAT(all, SizeIs(3));
-  EXPECT_EQ(all[0].status, HypothesisStatus::NotSupported);
-  const Hypothesis& h5 = all[1];
-  EXPECT_EQ(h5.status, HypothesisStatus::Supported);
-  EXPECT_EQ(h5.tests[0].k, 19);
-  EXPECT_NEAR(*h5.tests[0].p, 0.029, 0.0005);
-  EXPECT_NEAR(*h5.tests[1].p, 0.002, 0.0006);
-  EXPECT_NEAR(*h5.tests[0].p_holm, 0.029, 0.0005);
-  EXPECT_NEAR(*h5.tests[1].p_holm, 0.005, 0.0003);
-  EXPECT_NEAR(*h5.tests[0].p_holm_of_five, 0.116, 0.001);
-  EXPECT_NEAR(*h5.tests[1].p_holm_of_five, 0.012, 0.0006);
-  EXPECT_NEAR(*h5.tests[0].p_holm_of_ten, 0.261, 0.0015);
-  EXPECT_NEAR(*h5.tests[1].p_holm_of_ten, 0.025, 0.0006);
-  // The paper calls H6 confirmed because nothing is significant; nothing is confirmed.
-  EXPECT_TRUE(all[2].paper_supported);
-  EXPECT_EQ(all[2].status, HypothesisStatus::NotSupported);
-}
-
-TEST(Hypotheses, ThePreferenceMustPointTheRightWay) {
-  const auto all = preferences(3, 2, 3, 24, 23);
-  EXPECT_EQ(all[0].status, HypothesisStatus::NotSupported);
-  EXPECT_TRUE(all[0].tests[0].against);
-  EXPECT_FALSE(all[0].paper_supported);
-  EXPECT_EQ(all[1].status, HypothesisStatus::NotSupported);
-  EXPECT_EQ(all[2].status, HypothesisStatus::Supported);
-}
-
-TEST(Hypotheses, TheLastIsOneSided) {
-  // 18 of 26: two-sided p = .076, one-sided .038.
-  const auto h6 = preferences(13, 13, 13, 18, 18)[2];
-  EXPECT_NEAR(*h6.tests[0].p, 0.0378, 0.0005);
-  EXPECT_NEAR(*h6.tests[0].paper_p, 0.0755, 0.0005);
-  EXPECT_EQ(h6.status, HypothesisStatus::NotSupported) << "2 x .038 after Holm";
-  EXPECT_EQ((*h6.tests[0].ci)[1], 1);
-}
-
-TEST(Hypotheses, WithoutTrackedGazeTheFifthIsNotTestable) {
-  const auto all = preferences(22, 22, 22, 22, 22, "gaze was not tracked");
-  EXPECT_EQ(all[0].status, HypothesisStatus::Supported);
-  EXPECT_EQ(all[1].status, HypothesisStatus::NotTestable);
-  EXPECT_EQ(all[1].status_if_testable, HypothesisStatus::Supported);
-  EXPECT_EQ(all[2].status, HypothesisStatus::Supported);
-}
-
-TEST(Hypotheses, ARefusedPairCountsAsOneInItsFamily) {
-  std::vector<PairChoice> choices;
-  test::add_pair(choices, 1, 2, 5, 26);
-  const auto h5 = task2_hypotheses(count_preferences(choices, 5, {}), test::methods, {}, "")[1];
-  EXPECT_EQ(h5.status, HypothesisStatus::PartlySupported);
-  EXPECT_NEAR(*h5.tests[0].p_holm, 2 * *h5.tests[0].p, 1e-15);
-  EXPECT_THAT(h5.tests[1].reason, Not(IsEmpty()));
 }
 
 }  // namespace

@@ -98,17 +98,32 @@ TEST(Task1, MissingMethodsCostOnlyTheirPairs) {
 }
 
 TEST(Task1, HolmCountsRefusedTestsInItsFamily) {
-  // A and B are equal throughout: their test is refused, and the other two are corrected over three.
-  const auto table = table_of({{5, 5, 4}, {6, 6, 4}, {7, 7, 4}, {4, 4, 3}}, {"A", "B", "C"});
+  // One person alone saw B: its tests are refused, and the other is corrected over three.
+  const auto table =
+      table_of({{5, missing, 4}, {6, 6, 4}, {7, missing, 4}, {4, missing, 3}}, {"A", "B", "C"});
   const auto analysis = analyse_scores(table, quick_plan());
-  const auto& equal = analysis.comparisons[0];
-  EXPECT_FALSE(equal.t);
-  EXPECT_THAT(equal.t.reason(), ::testing::Not(::testing::IsEmpty()));
-  EXPECT_FALSE(equal.wilcoxon);
-  EXPECT_FALSE(equal.p_holm.has_value());
+  const auto& alone = analysis.comparisons[0];
+  EXPECT_FALSE(alone.t);
+  EXPECT_THAT(alone.t.reason(), ::testing::Not(::testing::IsEmpty()));
+  EXPECT_FALSE(alone.p().has_value());
+  EXPECT_FALSE(alone.p_holm.has_value());
   const auto& other = analysis.comparisons[1];
   EXPECT_NEAR(*other.p_holm, std::min(1.0, 3 * other.t->p), 1e-14);
-  EXPECT_NEAR(*other.p_bh, std::min(1.0, 1.5 * other.t->p), 1e-14);  // rank 2 of 3: two equal p
+  EXPECT_NEAR(*other.p_bh, std::min(1.0, 3 * other.t->p), 1e-14);
+}
+
+// "No data" before, though everybody said the same.
+TEST(Task1, DifferencesWithoutSpreadAreTestedBySign) {
+  const auto table = table_of({{5, 5, 4}, {6, 6, 5}, {7, 7, 6}, {4, 4, 3}}, {"A", "B", "C"});
+  const auto analysis = analyse_scores(table, quick_plan());
+  const auto& equal = analysis.comparisons[0];
+  const auto& apart = analysis.comparisons[1];
+  EXPECT_FALSE(equal.t);
+  EXPECT_EQ(*equal.p(), 1);
+  EXPECT_FALSE(apart.t);
+  EXPECT_EQ(apart.unanimous->value, 1);
+  EXPECT_EQ(*apart.p(), 0.125) << "four of four on one side";
+  EXPECT_EQ(*apart.p_holm, 0.375);
 }
 
 TEST(Task1, OneParticipantHasMeansAndNoTests) {

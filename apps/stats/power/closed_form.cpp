@@ -37,28 +37,25 @@ bool claim_is_true(HypothesisKind kind, const stats::HypothesisTest& test, doubl
   return truth > 0.5 + rounding;
 }
 
-std::optional<double> closed_form_power(const PowerRequest& request, HypothesisKind kind,
+std::optional<double> closed_form_power(const PowerRequest& request, const stats::Hypothesis& hypothesis,
                                         const stats::HypothesisTest& test, double truth, int n) {
-  const double alpha = request.plan.plan.alpha, margin = test.margin.value_or(0);
+  // Of a symmetric two-sided test, the side claimed is the one-sided test at half the level.
+  const double level = (hypothesis.one_sided ? 1 : 0.5) * hypothesis.alpha, margin = test.margin.value_or(0);
   const double sd = higher_is_better(test) ? request.sd_realism : request.sd_sickness;
   const double better = higher_is_better(test) ? truth : -truth;
-  switch (kind) {
-    case HypothesisKind::Superiority:  // two-sided, and in the right direction
-      return value_of(stats::t_power(n, better / sd, alpha / 2, stats::Design::Paired, Alternative::Greater));
+  switch (hypothesis.kind) {
+    case HypothesisKind::Superiority:
+      return value_of(stats::t_power(n, better / sd, level, stats::Design::Paired, Alternative::Greater));
     case HypothesisKind::Equivalence:
-      return value_of(stats::tost_power(n, {-margin, margin, sd, truth, alpha}));
+      return value_of(stats::tost_power(n, {-margin, margin, sd, truth, level}));
     case HypothesisKind::NonInferiority:
       return value_of(
-          stats::t_power(n, (better + margin) / sd, alpha, stats::Design::Paired, Alternative::Greater));
+          stats::t_power(n, (better + margin) / sd, level, stats::Design::Paired, Alternative::Greater));
     case HypothesisKind::Preference:
       break;
   }
   if (request.interval_bias != 0) return {};
-  // Of the symmetric two-sided test, the side claimed is the one-sided test at half the level. H6 is
-  // one-sided.
-  const bool one_sided = test.a == "HiRes";
-  const auto power =
-      stats::binomial_power(n, truth, 0.5, one_sided ? alpha : alpha / 2, Alternative::Greater);
+  const auto power = stats::binomial_power(n, truth, 0.5, level, Alternative::Greater);
   return power ? std::optional(power->power) : std::nullopt;
 }
 

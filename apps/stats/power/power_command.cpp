@@ -267,7 +267,8 @@ void add_power_command(CLI::App& app) {
          "Simulated for each n; without: 2000, pilots 400; half of it beyond 12 numbers of participants")
       ->check(CLI::Range(2, 1000000));
   sub->add_option("--seed", request.seed, "Seed")->capture_default_str();
-  sub->add_option("--plan", command->plan, "Analysis plan (TOML): margins, level; without: the defaults");
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML): decision rule, margins, level; without: the defaults");
   sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "File for the same numbers as a table")->check(output_file());

@@ -46,9 +46,10 @@ struct Judged {
   std::vector<HypothesisCount> counts;  ///< by n
 };
 
-TestCount count_test(const stats::Hypothesis& hypothesis, const stats::HypothesisTest& test) {
+TestCount count_test(const stats::HypothesisTest& test) {
   TestCount out;
-  out.holds = test.holds ? 1 : 0;
+  out.holds = test.holds_holm ? 1 : 0;
+  out.uncorrected = test.holds_alone ? 1 : 0;
   out.against = test.against ? 1 : 0;
   out.refused = test.p ? 0 : 1;
   out.participants_least = out.participants_most = static_cast<int>(test.n);
@@ -56,22 +57,17 @@ TestCount count_test(const stats::Hypothesis& hypothesis, const stats::Hypothesi
     out.estimates = 1;
     out.estimate_units = std::llround(*test.estimate / estimate_unit);
   }
-  bool right = true;
-  if (hypothesis.kind == stats::HypothesisKind::Superiority)
-    right = test.estimate && (higher_is_better(test) ? *test.estimate > 0 : *test.estimate < 0);
-  if (hypothesis.kind == stats::HypothesisKind::Preference) right = test.estimate && *test.estimate > 0.5;
-  out.uncorrected = test.p && *test.p < hypothesis.alpha && right ? 1 : 0;
   return out;
 }
 
 HypothesisCount count_hypothesis(const stats::Hypothesis& hypothesis, const std::vector<bool>& claims) {
   HypothesisCount out;
   out.supported = hypothesis.status == stats::HypothesisStatus::Supported ? 1 : 0;
-  out.any = hypothesis.confirmed > 0 ? 1 : 0;
+  out.any = hypothesis.confirmed_holm > 0 ? 1 : 0;
   out.paper = hypothesis.paper_supported ? 1 : 0;
   for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
-    out.tests.push_back(count_test(hypothesis, hypothesis.tests[i]));
-    if (hypothesis.tests[i].holds && !claims[i]) out.any_false = 1;
+    out.tests.push_back(count_test(hypothesis.tests[i]));
+    if (hypothesis.tests[i].holds_holm && !claims[i]) out.any_false = 1;
   }
   return out;
 }
@@ -242,7 +238,7 @@ class Simulation {
       point.participants_most = count.participants_most;
       if (count.participants_least == count.participants_most)
         point.closed_form =
-            closed_form_power(request_, judged.hypothesis.kind, test, out.truth, count.participants_most);
+            closed_form_power(request_, judged.hypothesis, test, out.truth, count.participants_most);
       out.curve.push_back(point);
     }
     if (out.claim_true) out.n_for_power = lasting([&](std::size_t n) { return out.curve[n].holds.value; });

@@ -14,9 +14,9 @@ namespace apps {
 
 /// A test at one number of participants.
 struct TestPoint {
-  Estimated holds;        ///< share of studies in which it holds, corrected
+  Estimated holds;        ///< share of studies in which it holds after Holm
   Estimated uncorrected;  ///< p < alpha in the direction claimed, without Holm
-  Estimated against;      ///< holds in the other direction
+  Estimated against;      ///< the same in the other direction
   Estimated refused;      ///< has no p
   /// Power of the uncorrected test for normal differences (Task 1) or exactly (Task 2); none where the plan
   /// gives different studies different numbers of pairs, or with interval bias.
@@ -35,8 +35,8 @@ struct TestPower {
 };
 
 struct HypothesisPoint {
-  Estimated supported;  ///< every test holds
-  Estimated any;        ///< at least one does
+  Estimated supported;  ///< every test holds by the plan's rule
+  Estimated any;        ///< at least one does after Holm
   Estimated any_false;  ///< at least one does whose claim is false: the family's error rate
   Estimated paper;      ///< the paper's own, uncorrected rule would have confirmed it
 };

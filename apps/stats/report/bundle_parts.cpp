@@ -17,10 +17,10 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
 }
 
 std::string hypothesis_text(const Json& hypothesis) {
-  std::string out =
-      hypothesis.at("id").get<std::string>() + " (" + hypothesis.at("kind").get<std::string>() + "). " +
-      hypothesis.at("title").get<std::string>() + "\n  Rule: " + hypothesis.at("rule").get<std::string>() +
-      "; Holm within the family, alpha = " + svg::number(hypothesis.at("alpha").get<double>(), 3) + ".\n";
+  std::string out = hypothesis.at("id").get<std::string>() + " (" + hypothesis.at("kind").get<std::string>() +
+                    "). " + hypothesis.at("title").get<std::string>() +
+                    "\n  Rule: " + hypothesis.at("rule").get<std::string>() +
+                    "; alpha = " + svg::number(hypothesis.at("alpha").get<double>(), 3) + ".\n";
   for (const Json& test : hypothesis.at("tests")) {
     out += "  - " + test.at("label").get<std::string>();
     if (test.at("margin").is_number()) out += ", margin " + svg::number(test.at("margin").get<double>(), 3);

@@ -66,6 +66,8 @@ std::string Field::reason() const {
     return (*json)[key].get<std::string>();
   };
   if (const std::string own = text(value_, "refused"); !own.empty()) return own;
+  const std::string key = pointer_.substr(pointer_.rfind('/') + 1) + "_reason";
+  if (const std::string its = text(parent_, key.c_str()); !its.empty()) return its;
   const std::string beside = text(parent_, "reason");
   return beside.empty() ? text(parent_, "refused") : beside;
 }

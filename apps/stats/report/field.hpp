@@ -23,7 +23,8 @@ class Field {
   const std::string& pointer() const { return pointer_; }
   /// Neither absent, null nor refused.
   bool there() const;
-  /// Why there is no value: its own "refused", or the "reason" beside it; empty = none is given.
+  /// Why there is no value: its own "refused", its "..._reason" or the "reason" beside it; empty = none is
+  /// given.
   std::string reason() const;
   /// Of a list; empty for anything else.
   std::vector<Field> entries() const;

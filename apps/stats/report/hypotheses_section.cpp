@@ -13,9 +13,12 @@ std::string interval_of(const Field& test) {
          interval(test["ci"], 2);
 }
 
+bool by_sign(const Field& test) { return test["method"].words() == "exact sign test"; }
+
 /// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
+  if (by_sign(test)) return fixed(test["estimate"], 2) + ", " + words(test["method"]) + " (all are equal)";
   return fixed(test["estimate"], 2) + ", " + interval_of(test);
 }
 
@@ -29,11 +32,12 @@ Table tests_table(const Field& hypothesis) {
   const bool preference = hypothesis["kind"].words() == "preference";
   Table table(words(hypothesis["id"]) + ": tests of the family",
               {"Test", "<i>n</i>", preference ? "Share" : "Difference", "Margin", "<i>p</i>", "",
-               "<i>p</i><sub>Holm</sub>", "", "Holds", "<i>p</i> as in the paper", "Holds as in the paper"});
+               "<i>p</i><sub>Holm</sub>", "", "Holds", "Holds after Holm", "<i>p</i> as in the paper",
+               "Holds as in the paper"});
   for (const Field& test : hypothesis["tests"].entries()) {
     table.row({label(test), count(test["n"]), estimate(test), fixed(test["margin"], 2), p_bare(test["p"]),
                words(test["stars"]), p_bare(test["p_holm"]), words(test["stars_holm"]), yes_no(test["holds"]),
-               p_bare(test["paper_p"]), yes_no(test["paper_holds"])});
+               yes_no(test["holds_holm"]), p_bare(test["paper_p"]), yes_no(test["paper_holds"])});
   }
   return table;
 }
@@ -51,7 +55,7 @@ std::string apa(const Field& test, bool preference) {
   } else {
     out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
   }
-  out += ", " + interval_of(test);
+  out += ", " + (by_sign(test) ? words(test["method"]) : interval_of(test));
   if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
   if (test["t"].is_number()) out += ", <i>t</i>(" + fixed(test["df"], 0) + ") = " + fixed(test["t"], 2);
   if (test["d_z"].is_number()) out += ", <i>d<sub>z</sub></i> = " + fixed(test["d_z"], 2);
@@ -82,6 +86,13 @@ std::string one(const Field& hypothesis, bool registered) {
         "Were it testable, the tests below would read: " + words(hypothesis["status_if_testable"]) + ".");
   body += paragraph("Rule: " + words(hypothesis["rule"]) + " (tests in the family: " +
                     count(hypothesis["family"]) + ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ").");
+  if (hypothesis["p_claim"].is_number())
+    body += paragraph(
+        "The claim as a whole: <i>p</i> " + p(hypothesis["p_claim"]) +
+        (hypothesis["p_claim_of_six"].is_number()
+             ? ", after Holm over the claims of H1 to H6 <i>p</i> " + p(hypothesis["p_claim_of_six"])
+             : "") +
+        ".");
   body += tests_table(hypothesis).html() + families(hypothesis);
   std::vector<std::string> lines;
   for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
@@ -93,18 +104,32 @@ std::string one(const Field& hypothesis, bool registered) {
   return subsection(words(hypothesis["id"]) + ", " + words(hypothesis["kind"]), body);
 }
 
+/// How tests become a verdict, by the plan.
+std::string decision_words(const Field& plan) {
+  if (plan["decision"].words() == "holm")
+    return "Each hypothesis is a family of its own; Holm's step-down correction holds the family's error "
+           "rate. ";
+  return "Each hypothesis claims all of its tests: it is supported where every one is significant at "
+         "\xCE\xB1 "
+         "without correction (an intersection-union test), which errs at most at \xCE\xB1. Where not all "
+         "are, those that hold after Holm's step-down correction within the hypothesis may be claimed one by "
+         "one. ";
+}
+
 }  // namespace
 
 std::string decisions_section(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
   Table table("Decisions on the hypotheses", {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold",
-                                              "In words", "The paper's uncorrected procedure", "Published"});
+                                              "In words", "<i>p</i> of the claim", "after Holm over H1 to H6",
+                                              "The paper's uncorrected procedure", "Published"});
   for (const Field& hypothesis : root["hypotheses"].entries()) {
     table.row({words(hypothesis["id"]), words(hypothesis["kind"]),
                badge(preregistered(root, hypothesis["task"].words())),
                "<strong>" + words(hypothesis["status"]) + "</strong>",
                count(hypothesis["confirmed"]) + " of " + count(hypothesis["family"]),
-               words(hypothesis["status_text"]), words(hypothesis["paper"]["status"]),
+               words(hypothesis["status_text"]), p_bare(hypothesis["p_claim"]),
+               p_bare(hypothesis["p_claim_of_six"]), words(hypothesis["paper"]["status"]),
                words(hypothesis["paper"]["published"])});
   }
   return section("decisions", "Decisions", table.html());
@@ -115,19 +140,21 @@ std::string hypotheses_section(const Field& root) {
   for (const Field& hypothesis : root["hypotheses"].entries())
     body += one(hypothesis, preregistered(root, hypothesis["task"].words()));
   if (body.empty()) return "";
-  return section("hypotheses", "Hypotheses",
-                 paragraph("Each hypothesis is a family of its own; Holm's step-down correction holds the "
-                           "family's error rate. Stars: * <i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** "
-                           "<i>p</i> &lt; .001.") +
-                     body);
+  return section(
+      "hypotheses", "Hypotheses",
+      paragraph(decision_words(root["plan"]) +
+                "The claims of H1 to H6 are not corrected for one another; what Holm makes of them "
+                "stands beside. Stars: * <i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** "
+                "<i>p</i> &lt; .001.") +
+          body);
 }
 
 std::string sensitivity_section(const Field& root) {
   if (root["sensitivity"].entries().empty()) return "";
   Table overview("The decisions under other rules",
                  {"Rules", "Task", "Participants", "Answers", "Decisions", "Changed"});
-  Table details("Every test under other rules",
-                {"Test", "<i>n</i>", "Estimate", "<i>p</i><sub>Holm</sub>", "Holds"});
+  Table details("Every test under other rules", {"Test", "<i>n</i>", "Estimate", "<i>p</i>",
+                                                 "<i>p</i><sub>Holm</sub>", "Holds", "Holds after Holm"});
   for (const Field& variant : root["sensitivity"].entries()) {
     std::string decisions, changed;
     for (const Field& hypothesis : variant["hypotheses"].entries()) {
@@ -135,8 +162,8 @@ std::string sensitivity_section(const Field& root) {
           (decisions.empty() ? "" : "; ") + words(hypothesis["id"]) + ": " + words(hypothesis["status"]);
       details.group(words(variant["label"]) + ", " + words(hypothesis["id"]));
       for (const Field& test : hypothesis["tests"].entries())
-        details.row({words(test["label"]), count(test["n"]), fixed(test["estimate"], 2),
-                     p_bare(test["p_holm"]), yes_no(test["holds"])});
+        details.row({words(test["label"]), count(test["n"]), fixed(test["estimate"], 2), p_bare(test["p"]),
+                     p_bare(test["p_holm"]), yes_no(test["holds"]), yes_no(test["holds_holm"])});
     }
     for (const Field& id : variant["changed"].entries()) changed += (changed.empty() ? "" : ", ") + words(id);
     if (variant["hypotheses"].entries().empty() && !variant.reason().empty())

@@ -96,16 +96,28 @@ std::string task1_text(const Field& root) {
          count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". ";
 }
 
+/// "two-sided", or which of H1 to H6 are not.
+std::string sides(const Field& directional) {
+  if (!directional.words().empty()) return "two-sided, but one-sided for " + words(directional);
+  return directional.yes() ? "one-sided, in the direction claimed" : "two-sided";
+}
+
 std::string hypotheses_text(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
-  std::string out = "Within each hypothesis Holm's correction held the family-wise error rate at " +
-                    fixed(root["plan"]["alpha"], 2) + " (tests in each family: ";
+  const Field plan = root["plan"];
+  const bool by_holm = plan["decision"].words() == "holm";
+  std::string out = "Tests of the hypotheses were " + sides(plan["directional"]) + ". " +
+                    (by_holm ? "Within each hypothesis Holm's correction held the family-wise error rate at "
+                             : "A hypothesis needed every one of its tests, each significant without "
+                               "correction (intersection-union) at ") +
+                    fixed(plan["alpha"], 2) + " (tests in each family: ";
   bool first = true;
   for (const Field& h : root["hypotheses"].entries()) {
     out += (first ? "" : ", ") + words(h["id"]) + " " + count(h["family"]);
     first = false;
   }
-  return out + "). ";
+  return out + "). " +
+         (by_holm ? "" : "Single tests were claimed after Holm's correction within their hypothesis. ");
 }
 
 }  // namespace

@@ -47,6 +47,13 @@ std::string cells_table(const Field& task1, const Field& score) {
   });
 }
 
+/// Behind the name of a pair without spread.
+bool by_sign(const Field& pair) { return pair["test"].words() == "exact sign test"; }
+
+std::string sign_test(const Field& pair) {
+  return by_sign(pair) ? " <em>(all differences are equal: " + words(pair["test"]) + ")</em>" : "";
+}
+
 std::string t_tests(const Field& task1, const Field& score) {
   Table table("Paired <i>t</i> tests between methods, " + words(score["label"]),
               {"Pair", "<i>n</i>", "Difference [CI]", "<i>t</i>", "<i>df</i>", "<i>p</i>", "",
@@ -54,22 +61,24 @@ std::string t_tests(const Field& task1, const Field& score) {
                "Hedges' <i>g</i> [CI]"});
   return by_n_star(
       std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
-        if (!c["t"].is_number()) {
+        if (!c["p"].is_number()) {
           t.refused(pair_name(c), "no test: " + svg::escaped(c["t"].reason()));
           return;
         }
-        t.row({pair_name(c), count(c["n"]), fixed(c["difference"], 2) + " " + interval(c["ci"], 2),
-               fixed(c["t"], 2), fixed(c["df"], 0), p_bare(c["p"]), words(c["stars"]), p_bare(c["p_holm"]),
-               words(c["stars_holm"]), p_bare(c["p_bh"]), fixed(c["d_z"], 2) + " " + interval(c["d_z_ci"], 2),
+        t.row({pair_name(c) + sign_test(c), count(c["n"]),
+               fixed(c["difference"], 2) + " " + interval(c["ci"], 2), fixed(c["t"], 2), fixed(c["df"], 0),
+               p_bare(c["p"]), words(c["stars"]), p_bare(c["p_holm"]), words(c["stars_holm"]),
+               p_bare(c["p_bh"]), fixed(c["d_z"], 2) + " " + interval(c["d_z_ci"], 2),
                fixed(c["g"], 2) + " " + interval(c["g_ci"], 2)});
       });
 }
 
 std::string other_tests(const Field& task1, const Field& score) {
   Table table("The same pairs by other tests, " + words(score["label"]),
-              {"Pair", "Wilcoxon <i>V</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>", "Hodges-Lehmann [CI]",
-               "Welch <i>t</i> (<i>df</i>)", "<i>p</i>", "Equivalence within", "CI of equivalence",
-               "<i>p</i>", "Equivalent", "BCa interval of the difference", "Shapiro-Wilk <i>p</i>"});
+              {"Pair", "Wilcoxon <i>V</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>",
+               "Hodges-Lehmann [CI] (its exact level)", "Welch <i>t</i> (<i>df</i>)", "<i>p</i>",
+               "Equivalence within", "CI of equivalence", "<i>p</i>", "Equivalent",
+               "BCa interval of the difference", "Shapiro-Wilk <i>p</i>"});
   return by_n_star(std::move(table), task1, "comparisons", score["code"].words(),
                    [](Table& t, const Field& c) {
                      const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
@@ -77,7 +86,8 @@ std::string other_tests(const Field& task1, const Field& score) {
                        return part.there() ? shown : svg::escaped(part.reason());
                      };
                      t.row({pair_name(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
-                            fixed(w["location"], 2) + " " + interval(w["ci"], 2),
+                            fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
+                                (w["ci"].there() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
                             why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"),
                             p_bare(welch["p"]), why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)),
                             tost.there() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
@@ -95,10 +105,15 @@ std::string apa_lines(const Field& task1, const std::string& score) {
     if (c["score"].words() != score) continue;
     any_tested = any_tested || c["p"].is_number();
     if (c["stars"].words().empty()) continue;
-    lines.push_back(words(c["n_star"]) + ", " + pair_name(c) + ": <i>t</i>(" + fixed(c["df"], 0) +
-                    ") = " + fixed(c["t"], 2) + ", <i>p</i> " + p(c["p"]) + ", <i>p</i><sub>Holm</sub> " +
-                    p(c["p_holm"]) + ", <i>d<sub>z</sub></i> = " + fixed(c["d_z"], 2) + ", CI " +
-                    interval(c["d_z_ci"], 2));
+    const std::string name = words(c["n_star"]) + ", " + pair_name(c) + ": ";
+    const std::string p_values = ", <i>p</i> " + p(c["p"]) + ", <i>p</i><sub>Holm</sub> " + p(c["p_holm"]);
+    if (by_sign(c)) {
+      lines.push_back(name + "all differences = " + fixed(c["difference"], 2) + ", " + words(c["test"]) +
+                      p_values);
+      continue;
+    }
+    lines.push_back(name + "<i>t</i>(" + fixed(c["df"], 0) + ") = " + fixed(c["t"], 2) + p_values +
+                    ", <i>d<sub>z</sub></i> = " + fixed(c["d_z"], 2) + ", CI " + interval(c["d_z_ci"], 2));
   }
   if (!any_tested) return paragraph("No pair could be tested.");
   if (lines.empty()) return paragraph("No pair differs below .05, even without correction.");
@@ -140,7 +155,8 @@ std::string omnibus(const Field& task1) {
 
 std::string ordinal(const Field& task1) {
   Table table("Cumulative-link mixed models of single answers: effects of the method, log odds",
-              {"Method", "Estimate", "<i>SE</i>", "CI", "<i>z</i>", "<i>p</i>", "Odds ratio"});
+              {"Method", "Estimate", "<i>SE</i>", "CI", "<i>z</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>",
+               "<i>p</i><sub>BH</sub>", "Odds ratio"});
   for (const Field& model : task1["ordinal"].entries()) {
     const std::string name = words(model["question"]) + ", " + words(model["n_star"]);
     if (!model["effects"].there()) {
@@ -159,7 +175,8 @@ std::string ordinal(const Field& task1) {
     table.group(title);
     for (const Field& e : model["effects"].entries())
       table.row({words(e["method"]), fixed(e["estimate"], 2), fixed(e["se"], 2), interval(e["ci"], 2),
-                 fixed(e["z"], 2), p_bare(e["p"]), fixed(e["odds_ratio"], 2)});
+                 fixed(e["z"], 2), p_bare(e["p"]), p_bare(e["p_holm"]), p_bare(e["p_bh"]),
+                 fixed(e["odds_ratio"], 2)});
   }
   return table.empty() ? "" : subsection("Ordinal models", table.html());
 }

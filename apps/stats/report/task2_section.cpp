@@ -50,7 +50,10 @@ std::string interval_bias(const Field& bias) {
                 interval(bias["clopper_pearson"], 2) + ", exact binomial <i>p</i> " + p(bias["p"]) + ").");
   if (!bias["warning"].words().empty()) body += paragraph("Note: " + words(bias["warning"]) + ".");
   const Field by = bias["by_participant"];
-  if (by.there()) {
+  if (by["test"].words() == "exact sign test") {
+    body += paragraph("Over participants: every share is " + fixed(by["mean_share"], 2) + ", " +
+                      words(by["test"]) + ", <i>p</i> " + p(by["p"]) + ".");
+  } else if (by.there()) {
     body += paragraph("Over participants: mean share " + fixed(by["mean_share"], 2) + " " +
                       interval(by["ci"], 2) + ", <i>t</i>(" + fixed(by["df"], 0) +
                       ") = " + fixed(by["t"], 2) + ", <i>p</i> " + p(by["p"]) + ".");
@@ -73,20 +76,31 @@ std::string bradley_terry(const Field& model) {
     body += paragraph(
         "A method or a group of methods was always or never chosen over all others: the estimates are "
         "Firth's, penalised.");
+  const Field people = model["people"];
+  body += paragraph(
+      people["errors"].words() == "people"
+          ? "Errors and intervals know whose answers they are of (sandwich over people, <i>t</i> of " +
+                fixed(people["people_df"], 0) + " degrees of freedom)."
+          : "Errors and intervals take all answers as independent: " + words(people["why_independent"]) +
+                ".");
   const auto test = [](const std::string& name, const Field& part) {
     if (!part.there()) return part.reason().empty() ? "" : name + ": " + svg::escaped(part.reason());
     return name + ": \xCF\x87\xC2\xB2(" + count(part["df"]) + ") = " + fixed(part["chi2"], 2) +
            ", <i>p</i> " + p(part["p"]);
   };
   std::vector<std::string> lines;
-  for (const auto& line :
-       {test("All methods equal", model["overall"]), test("Lack of fit over the pairs", model["fit"])})
+  for (const auto& line : {test("All methods equal, if answers were independent", model["overall"]),
+                           test("Lack of fit over the pairs, if answers were independent", model["fit"])})
     if (!line.empty()) lines.push_back(line);
+  const Field equal = people["equal"];
+  if (equal.there())
+    lines.push_back("All methods equal, over people: <i>F</i>(" + fixed(equal["df1"], 0) + ", " +
+                    fixed(equal["df2"], 0) + ") = " + fixed(equal["f"], 2) + ", <i>p</i> " + p(equal["p"]));
   const Field order = model["order"];
   if (order.there())
     lines.push_back("Effect of the order (log odds of the first interval): " + fixed(order["estimate"], 2) +
-                    " " + interval(order["ci"], 2) + ", <i>z</i> = " + fixed(order["z"], 2) + ", <i>p</i> " +
-                    p(order["p"]));
+                    " " + interval(order["ci"], 2) + ", <i>SE</i> = " + fixed(order["se"], 2) +
+                    ", <i>p</i> " + p(order["p"]));
   return subsection("Bradley-Terry model", body + list(lines));
 }
 

@@ -10,6 +10,7 @@ Json test_json(const stats::HypothesisTest& test) {
     json["score"] = test.score;
     json["n_star"] = test.n_star;
   }
+  json["method"] = test.method;
   json["a"] = test.a;
   json["b"] = test.b;
   json["n"] = test.n;
@@ -28,6 +29,7 @@ Json test_json(const stats::HypothesisTest& test) {
   json["stars"] = json_stars(test.p);
   json["stars_holm"] = json_stars(test.p_holm);
   json["holds"] = test.holds;
+  json["holds_holm"] = test.holds_holm;
   json["against"] = test.against;
   json["reason"] = test.reason;
   json["paper_p"] = json_number(test.paper_p);
@@ -48,10 +50,14 @@ Json hypothesis_json(const stats::Hypothesis& one) {
             {"kind", stats::kind_name(one.kind)},
             {"family", one.tests.size()},
             {"alpha", one.alpha},
+            {"one_sided", one.one_sided},
             {"rule", one.rule},
             {"status", stats::status_name(one.status)},
             {"status_text", one.status_text},
             {"confirmed", one.confirmed},
+            {"confirmed_holm", one.confirmed_holm},
+            {"p_claim", json_number(one.p_claim)},
+            {"p_claim_of_six", json_number(one.p_claim_of_six)},
             {"tests", tests},
             {"paper",
              {{"rule", one.paper_rule},
@@ -69,8 +75,10 @@ Json hypothesis_outline_json(const stats::Hypothesis& one) {
     tests.push_back({{"label", test.label},
                      {"n", test.n},
                      {"estimate", json_number(test.estimate)},
+                     {"p", json_number(test.p)},
                      {"p_holm", json_number(test.p_holm)},
-                     {"holds", test.holds}});
+                     {"holds", test.holds},
+                     {"holds_holm", test.holds_holm}});
   }
   return {{"id", one.id},
           {"status", stats::status_name(one.status)},

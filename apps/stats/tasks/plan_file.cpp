@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t largest_plan = 1u << 20;
 constexpr std::array timing_names{"none", "fail", "degraded"};
 constexpr std::array repeated_names{"refuse", "warn"};
+constexpr std::array decision_names{"intersection-union", "holm"};
+constexpr const char* as_once_frozen = "H2, H3 and H6";
 
 std::string shortest(double value) {
   std::array<char, 32> text{};
@@ -56,12 +58,36 @@ void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules)
   rules.min_answered = table.number_or("min_answered", rules.min_answered, share);
 }
 
+/// A file that names protocols was frozen. Where it lacks these keys, that was done before they were there:
+/// then it is analysed as bundles were at the time.
+void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
+  const bool frozen = root.has("protocols");
+  if (frozen && !root.has("decision")) plan.decision = stats::DecisionRule::Holm;
+  if (frozen && !root.has("directional")) plan.directional = stats::Directional::H2H3H6;
+  const auto* const fallback = decision_names[static_cast<std::size_t>(plan.decision)];
+  const auto decision = root.choice_or("decision", fallback, {decision_names.begin(), decision_names.end()});
+  plan.decision = static_cast<stats::DecisionRule>(index_in(decision_names, decision));
+  if (!root.has("directional")) return;
+  if (root.is_text("directional")) {
+    root.choice("directional", {as_once_frozen});
+    plan.directional = stats::Directional::H2H3H6;
+  } else {
+    plan.directional = root.boolean("directional") ? stats::Directional::All : stats::Directional::None;
+  }
+}
+
+Json directional_json(stats::Directional directional) {
+  if (directional == stats::Directional::H2H3H6) return as_once_frozen;
+  return directional == stats::Directional::All;
+}
+
 stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::string>& protocols) {
   stats::AnalysisPlan plan;
   root.integer("format", {1, 1});
   if (root.has("protocols")) protocols = root.strings("protocols");
   constexpr base::Range inside{1e-6, 0.499999};
   plan.alpha = root.number_or("alpha", plan.alpha, inside);
+  read_decision(root, plan);
   plan.confidence = root.number_or("confidence", plan.confidence, {0.5, 0.999999});
   plan.resamples = static_cast<int>(root.integer_or("resamples", plan.resamples, {100, 1000000}));
   plan.seed = static_cast<std::uint64_t>(
@@ -106,7 +132,11 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
   for (const auto& one : protocols) list += (list.empty() ? "" : ", ") + base::toml_quoted(one);
   return "format = 1\nprotocols = [" + list +
          "]                # SHA-256 of the protocols\nalpha = " + shortest(plan.alpha) +
-         "                    # of each family\nconfidence = " + shortest(plan.confidence) +
+         "                    # of each claim\ndecision = \"" +
+         decision_names[static_cast<std::size_t>(plan.decision)] +
+         "\"  # a claim needs all of its tests, each at alpha; or \"holm\": each after Holm\ndirectional = " +
+         directional_json(plan.directional).dump() +
+         "             # true: tests are one-sided\nconfidence = " + shortest(plan.confidence) +
          "               # of intervals\nresamples = " + std::to_string(plan.resamples) +
          "               # of BCa intervals\nseed = " + std::to_string(plan.seed) +
          "\nmore_than_one_trial = \"" + repeated_names[static_cast<std::size_t>(plan.repeated_pairs)] +
@@ -140,6 +170,8 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
           {"sha256", in_force.sha256.empty() ? Json() : Json(in_force.sha256)},
           {"preregistered", registered},
           {"alpha", plan.alpha},
+          {"decision", decision_names[static_cast<std::size_t>(plan.decision)]},
+          {"directional", directional_json(plan.directional)},
           {"confidence", plan.confidence},
           {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
           {"exclusions",

@@ -18,8 +18,9 @@ struct PlanInForce {
   std::vector<std::string> protocols;  ///< SHA-256 of the protocols that it was preregistered for
 };
 
-/// TOML; every key may be left out and then has its default. base::Error at file:line:column for an unknown
-/// key, a wrong type or a value out of range.
+/// TOML; every key may be left out and then has its default, but in a file that names protocols `decision`
+/// and `directional`: it was frozen before they were there, under Holm. base::Error at file:line:column for
+/// an unknown key, a wrong type or a value out of range.
 PlanInForce read_plan(const std::filesystem::path& file);
 
 /// "none", "fail" or "degraded", and back; base::Error for another name.

@@ -87,10 +87,13 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
   for (const TaskPart& part : parts) json[task_name(part.data.task)] = part.results;
   json["hypotheses"] = Json::array();
   json["sensitivity"] = Json::array();
+  std::vector<stats::Hypothesis> claims;
   for (const TaskPart& part : parts) {
-    for (const auto& hypothesis : part.hypotheses) json["hypotheses"].push_back(hypothesis_json(hypothesis));
+    claims.insert(claims.end(), part.hypotheses.begin(), part.hypotheses.end());
     append(json["sensitivity"], part.sensitivity);
   }
+  stats::correct_over_claims(claims);
+  for (const auto& hypothesis : claims) json["hypotheses"].push_back(hypothesis_json(hypothesis));
   return json;
 }
 

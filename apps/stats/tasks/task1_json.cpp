@@ -26,7 +26,9 @@ Json rules_json() {
       {"tests",
        "Paired t tests, two-sided, within each n_*; Holm and Benjamini-Hochberg over the pairs of methods of "
        "one score at one n_*; Welch's test (as if groups were independent) and Wilcoxon's signed-rank test "
-       "beside. Stars mark uncorrected p as in the paper."}};
+       "beside. The effects of an ordinal model are corrected in the same way over the methods of one "
+       "question at "
+       "one n_*. Stars mark uncorrected p as in the paper."}};
 }
 
 Json score_json(const stats::ScoreScale& scale) {
@@ -90,14 +92,16 @@ Json equivalence_json(const stats::Result<stats::EquivalenceTest>& test, double 
   });
 }
 
-/// Null where the t test is refused.
+/// Null where the t test is refused; the exact sign test of differences that are all the same has p.
 void add_t_test(Json& json, const stats::MethodComparison& comparison) {
   const bool ok = static_cast<bool>(comparison.t);
   const auto number = [&](double stats::PairedTTest::*field) {
     return ok ? json_number((*comparison.t).*field) : Json();
   };
-  const std::optional<double> p = ok ? std::optional(comparison.t->p) : std::nullopt;
-  json["difference"] = ok ? json_number(comparison.t->estimate) : Json();
+  const std::optional<double> p = comparison.p();
+  const auto& all = comparison.unanimous;
+  json["test"] = ok ? Json("paired t test") : all ? Json("exact sign test") : Json();
+  json["difference"] = ok ? json_number(comparison.t->estimate) : all ? Json(all->value) : Json();
   json["ci"] = ok ? json_interval(comparison.t->ci) : Json();
   json["t"] = ok ? json_number(comparison.t->t) : Json();
   json["df"] = ok ? json_number(comparison.t->df) : Json();
@@ -211,6 +215,8 @@ Json effects_json(const stats::OrdinalEffects& effects, const std::vector<std::s
                     {"ci", json_interval(effect.ci)},
                     {"z", effect.z},
                     {"p", effect.p},
+                    {"p_holm", json_number(effect.p_holm)},
+                    {"p_bh", json_number(effect.p_bh)},
                     {"odds_ratio", json_number(std::exp(effect.estimate))}});
   }
   return list;
@@ -247,6 +253,7 @@ Json signed_rank_json(const stats::SignedRank& test) {
           {"p_exact", json_number(test.p_exact)},
           {"location", test.hodges_lehmann},
           {"ci", json_interval(test.hodges_lehmann_ci)},
+          {"ci_level", test.hodges_lehmann_ci ? Json(test.hodges_lehmann_level) : Json()},
           {"rank_biserial", test.rank_biserial},
           {"n_used", test.n_nonzero},
           {"n_zero", test.n - test.n_nonzero}};

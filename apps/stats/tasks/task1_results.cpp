@@ -62,7 +62,9 @@ std::vector<OrdinalModel> fit_ordinal(const TaskData& data, const stats::Analysi
       std::vector<stats::MethodScore> block;
       std::copy_if(scores.begin(), scores.end(), std::back_inserter(block),
                    [&](const stats::MethodScore& score) { return score.n_star == n_star; });
-      out.push_back({question, n_star, stats::ordinal_effects(block, reference, plan.confidence)});
+      out.push_back(
+          {question, n_star,
+           stats::ordinal_effects(block, reference, static_cast<int>(methods.size()), plan.confidence)});
     }
   }
   return out;

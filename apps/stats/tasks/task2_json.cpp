@@ -60,8 +60,29 @@ Json pair_json(const stats::PairPreference& pair, const Names& methods) {
 }
 
 Json order_term_json(const stats::OrderTerm& term) {
-  return {{"estimate", term.estimate}, {"se", term.se}, {"ci", json_interval(term.ci)}, {"p", term.lrt_p},
-          {"chi2", term.lrt_chi2},     {"df", 1},       {"p_wald", term.p_wald}};
+  return {{"estimate", term.estimate},    {"se", term.se},    {"se_independent", term.se_independent},
+          {"ci", json_interval(term.ci)}, {"p", term.p_wald}, {"people_df", json_number(term.df)},
+          {"chi2", term.lrt_chi2},        {"df", 1},          {"p_independent", term.lrt_p}};
+}
+
+Json by_participant_json(const stats::IntervalBias& bias) {
+  if (bias.all_alike)
+    return {{"test", "exact sign test"},
+            {"mean_share", bias.all_alike->value},
+            {"ci", Json()},
+            {"n", bias.all_alike->n},
+            {"t", Json()},
+            {"df", Json()},
+            {"p", bias.all_alike->p(stats::Alternative::TwoSided, 0.5)}};
+  return json_result(bias.by_participant, [](const stats::OneSampleTTest& test) {
+    return Json{{"test", "t test"},
+                {"mean_share", test.mean},
+                {"ci", json_interval(test.ci)},
+                {"n", test.n},
+                {"t", test.t},
+                {"df", test.df},
+                {"p", test.p}};
+  });
 }
 
 Json interval_json(const stats::IntervalBias& bias) {
@@ -76,14 +97,7 @@ Json interval_json(const stats::IntervalBias& bias) {
            "this test takes all answers as independent; by_participant holds whatever the answers of one "
            "person have "
            "in common"},
-          {"by_participant", json_result(bias.by_participant, [](const stats::OneSampleTTest& test) {
-             return Json{{"mean_share", test.mean},
-                         {"ci", json_interval(test.ci)},
-                         {"n", test.n},
-                         {"t", test.t},
-                         {"df", test.df},
-                         {"p", test.p}};
-           })}};
+          {"by_participant", by_participant_json(bias)}};
 }
 
 /// The interval's pull on the choice and its drift over the session, within the Bradley-Terry model.
@@ -103,6 +117,7 @@ Json abilities_json(const stats::BradleyTerry& model, const Names& methods) {
     list.push_back({{"method", methods[i]},
                     {"estimate", model.lambda_sum0[i]},
                     {"se", model.se_sum0[i]},
+                    {"se_independent", model.se_sum0_independent[i]},
                     {"ci", json_interval(model.ci_sum0[i])},
                     {"worth", model.worth[i]}});
   }
@@ -116,6 +131,7 @@ Json differences_json(const stats::BradleyTerry& model, const Names& methods) {
                     {"b", name(methods, pair.j)},
                     {"estimate", pair.difference},
                     {"se", pair.se},
+                    {"se_independent", pair.se_independent},
                     {"ci", json_interval(pair.ci)},
                     {"p", pair.p},
                     {"probability", pair.probability},
@@ -124,11 +140,22 @@ Json differences_json(const stats::BradleyTerry& model, const Names& methods) {
   return list;
 }
 
+/// Whose errors the model's are, and Wald's test of equal methods over people.
+Json people_json(const stats::BradleyTerry& model) {
+  const auto& test = model.equal_over_people;
+  return {{"errors", model.people_df ? "people" : "independent answers"},
+          {"people_df", json_number(model.people_df)},
+          {"why_independent", model.why_independent},
+          {"equal",
+           test ? Json{{"f", test->f}, {"df1", test->df1}, {"df2", test->df2}, {"p", test->p}} : Json()}};
+}
+
 Json bradley_terry_json(const stats::PreferenceAnalysis& analysis, const Names& methods) {
   Json json = json_result(analysis.bradley_terry, [&](const stats::BradleyTerry& model) {
     return Json{
         {"penalised", model.bias_reduced},
         {"why_penalised", model.why_bias_reduced},
+        {"people", people_json(model)},
         {"abilities", abilities_json(model, methods)},
         {"differences", differences_json(model, methods)},
         {"overall", {{"chi2", model.lrt_chi2}, {"df", model.lrt_df}, {"p", model.lrt_p}}},

@@ -194,32 +194,48 @@ TEST(BootstrapInterval, CoarseRatingsCountTiesHalf) {
 
 TEST(BootstrapInterval, MissingValuesAreDroppedAndCounted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto got = bootstrap_interval(Values{1, nan, 2, 4, nan, 3}, stats::mean_statistic());
+  const auto got = bootstrap_interval(Values{1, nan, 2, 4, nan, 3, 6, 5}, stats::mean_statistic());
   ASSERT_TRUE(got);
-  EXPECT_EQ(got->n, 4);
+  EXPECT_EQ(got->n, 6);
   EXPECT_EQ(got->n_missing, 2);
-  EXPECT_EQ(got->bca.ci, bootstrap_interval(Values{1, 2, 4, 3}, stats::mean_statistic())->bca.ci);
+  EXPECT_EQ(got->bca.ci, bootstrap_interval(Values{1, 2, 4, 3, 6, 5}, stats::mean_statistic())->bca.ci);
+}
+
+// No bootstrap interval leaves the range of the values, which holds the centre with chance 1 - 2^(1 - n).
+TEST(BootstrapInterval, TooFewValuesForTheLevelAreRefusedInWords) {
+  const Values x{1, 4, 2, 7, 3, 9};
+  for (std::size_t n = 2; n <= 5; ++n) {
+    const auto refused = bootstrap_interval(std::span(x).first(n), stats::mean_statistic());
+    const std::string start = std::to_string(n) +
+                              " values are too few: an interval within their range holds at "
+                              "most ";
+    EXPECT_EQ(refused.reason().substr(0, start.size()), start) << refused.reason();
+  }
+  EXPECT_EQ(bootstrap_interval(std::span(x).first(5), stats::mean_statistic()).reason(),
+            "5 values are too few: an interval within their range holds at most 93.75 %, not 95 %");
+  EXPECT_TRUE(bootstrap_interval(x, stats::mean_statistic()));
+  EXPECT_TRUE(bootstrap_interval(std::span(x).first(5), stats::mean_statistic(), {.confidence = 0.9}));
 }
 
 TEST(BootstrapInterval, RefusesWhatHasNoInterval) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   for (const Values& x : {Values{}, Values{4}, Values{4, nan}, Values{4, 4, 4, 4}, Values{1, 2, inf}})
     EXPECT_NE(bootstrap_interval(x, stats::mean_statistic()).reason(), "") << x.size();
-  EXPECT_NE(bootstrap_interval(Values{1, 2, 3}, [](auto) { return 5.0; }).reason(), "")
+  EXPECT_NE(bootstrap_interval(Values{1, 2, 3, 4, 5, 6}, [](auto) { return 5.0; }).reason(), "")
       << "a statistic that nothing changes";
   EXPECT_NE(bootstrap_interval(Values{3, 4, 4, 4, 4, 4, 5}, stats::median_statistic()).reason(), "")
       << "without any one value the median is the same: no acceleration";
-  EXPECT_NE(bootstrap_interval(Values{1, 2}, stats::dz_statistic()).reason(), "")
+  EXPECT_NE(bootstrap_interval(Values{1, 2}, stats::dz_statistic(), {.confidence = 0.5}).reason(), "")
       << "a single value has no standard deviation";
-  EXPECT_NE(bootstrap_interval(Values{1, 2, 3}, stats::dz_statistic()).reason(), "")
+  EXPECT_NE(bootstrap_interval(Values{1, 2, 3}, stats::dz_statistic(), {.confidence = 0.5}).reason(), "")
       << "a resample of one value three times has none either";
   EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), {.confidence = 1}),
                std::invalid_argument);
   EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), {.resamples = 1}),
                std::invalid_argument);
-  EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), std::vector<int>{0, 1, 2, 0}),
+  EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), std::vector<int>{0, 1, 2, 0}, 0.5),
                std::invalid_argument);
-  EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), std::vector<int>{0, 1, 1}),
+  EXPECT_THROW(bootstrap_interval(Values{1, 2}, stats::mean_statistic(), std::vector<int>{0, 1, 1}, 0.5),
                std::invalid_argument);
 }
 

@@ -185,6 +185,44 @@ TEST(SignedRank, IntervalHoldsTheMedianAsOftenAsItSays) {
   EXPECT_NEAR(covered / static_cast<double>(sets), 0.952, 0.015) << "2 P(W <= 25) = 0.0479 at n = 15";
 }
 
+/// P(W <= w) by going through all signs of the ranks 1 to n.
+double lower_tail(int n, int w) {
+  int as_low = 0;
+  for (int signs = 0; signs < 1 << n; ++signs) {
+    int sum = 0;
+    for (int rank = 1; rank <= n; ++rank) sum += signs >> (rank - 1) & 1 ? rank : 0;
+    as_low += sum <= w ? 1 : 0;
+  }
+  return std::ldexp(as_low, -n);
+}
+
+TEST(SignedRank, TheIntervalSaysItsExactLevel) {
+  std::mt19937_64 random(3);
+  for (int n = 2; n <= 14; ++n) {
+    const auto got = signed_rank(sampling::normal(random, static_cast<std::size_t>(n), 0));
+    // The widest interval that the level asks for, or all there is.
+    int cut = 0;
+    while (1 - 2 * lower_tail(n, cut + 1) >= 0.95) ++cut;
+    EXPECT_NEAR(got->hodges_lehmann_level, 1 - 2 * lower_tail(n, cut), 1e-15) << n;
+    EXPECT_EQ(got->hodges_lehmann_level >= 0.95, n >= 6) << n;
+  }
+  EXPECT_EQ(signed_rank(Values{1, 2, 4, 7, 11})->hodges_lehmann_level, 0.9375);
+}
+
+// 5 values: the range of them all, which holds the centre less often than 95 %.
+TEST(SignedRank, FewValuesHoldTheCentreAsOftenAsTheirLevelSays) {
+  constexpr int sets = 4000;
+  std::mt19937_64 random(11);
+  int covered = 0;
+  double level = 0;
+  for (int i = 0; i < sets; ++i) {
+    const auto got = signed_rank(sampling::normal(random, 5, 2));
+    covered += (*got->hodges_lehmann_ci)[0] <= 2 && 2 <= (*got->hodges_lehmann_ci)[1];
+    level = got->hodges_lehmann_level;
+  }
+  EXPECT_NEAR(covered / static_cast<double>(sets), level, 3 * std::sqrt(level * (1 - level) / sets));
+}
+
 /// p-values of a discrete statistic, spread over their steps (Lewis 1973): uniform under the null.
 double spread(double at_least, double at_most, std::mt19937_64& random) {
   const double step = at_least + at_most - 1;
