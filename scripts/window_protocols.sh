@@ -205,7 +205,10 @@ on_pages=$(ask "select count(*) from response join unit using (unit_id) where tr
 expect "stimuli in BIDS" "$shown" "$(rows "$(find "$out/bids" -name '*_events.tsv')")"
 expect "participants in BIDS" 1 "$(rows "$out/bids/participants.tsv")"
 for block in $(ask "select distinct kind from unit join response using (unit_id) where trial_id is null and kind in ('ssq', 'consent', 'screening')"); do
-  expect "times of $block in BIDS" "$(ask "select count(*) from unit where kind = '$block'")" "$(rows "$out/bids/phenotype/$block.tsv")"
+  table=$out/bids/phenotype/$block.tsv
+  expect "people of $block in BIDS" 1 "$(rows "$table")"
+  [ "$block" != ssq ] || expect "times of ssq in BIDS" "$(ask "select count(*) from unit where kind = 'ssq'")" \
+    "$(head -n 1 "$table" | tr '\t' '\n' | grep -c '_total$')"
 done
 expect "answers to trials in Psych-DS" "$in_trials" "$(rows "$(find "$out/psych-ds/data" -name '*v1_data.csv')")"
 expect "answers on pages in Psych-DS" "$on_pages" "$(rows "$(find "$out/psych-ds/data" -name '*pages_data.csv')")"
