@@ -242,7 +242,8 @@ TEST(Sensitivity, TellsWhichVerdictsAnExclusionMakes) {
   protocol.sessions[3].gaze_source = "none";
   for (auto& trial : protocol.sessions[0].trials) trial.answers[0].score = 1;
   const auto study = of(protocol);
-  const TaskSelection selection{TaskKind::Task1, "", {}};
+  TaskSelection selection{TaskKind::Task1, "", {}};
+  selection.plan.exclusions.straight_lining_answers = 8;
   const auto data = select_task(study, selection).value();
   const auto list = sensitivity_json(study, selection, data, *task1_verdicts(data, {}));
   EXPECT_EQ(variant(list, "planned").at("participants"), 25);
