@@ -76,6 +76,8 @@ expect "events with --mirror" 1 "$(mirrored)"
 
 begin P02
 expect "windows without" 1 "$(windows)"
+# Without a window manager nobody gives the second window the keyboard.
+xdotool windowfocus "$(xdotool search --onlyvisible --name '^vip-study$')"
 to_stimulus
 until_shown played
 sleep 1
