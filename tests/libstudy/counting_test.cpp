@@ -133,6 +133,18 @@ TEST_F(Counting, TheCertificateIsOfJudgedShowingsAlone) {
   EXPECT_EQ(trials, 7);
 }
 
+// A pilot of 40 people holds millions of frames.
+TEST_F(Counting, AShowingsMeansAreReadFromItsOwnFramesAlone) {
+  sqlite::Connection database(path_, Open::Read);
+  sqlite::Statement plan(database,
+                         "EXPLAIN QUERY PLAN SELECT (SELECT tau_fps FROM solving v "
+                         "WHERE v.presentation_id = presentation.presentation_id) FROM presentation");
+  std::string steps;
+  while (plan.step()) steps += plan.text(3) + "\n";
+  EXPECT_THAT(steps, testing::HasSubstr("SEARCH f USING PRIMARY KEY (presentation_id=?)"));
+  EXPECT_THAT(steps, testing::Not(testing::HasSubstr("SCAN f\n")));
+}
+
 TEST_F(Counting, EveryExportSaysOfEachShowingWhetherItCounts) {
   export_csv(path_, folder_ / "csv");
   export_bids(path_, folder_ / "bids");

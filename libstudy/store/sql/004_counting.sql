@@ -81,9 +81,13 @@ INSERT INTO frame_2 (presentation_id, frame_index, content_step, simulation_time
 DROP TABLE frame;
 ALTER TABLE frame_2 RENAME TO frame;
 
--- What the solver went by in each showing: means over those of its frames that measured them.
+-- What the solver went by in each showing: means over those of its frames that measured them. Not grouped: SQLite would go through
+-- the frames of all showings for each one asked for.
 CREATE VIEW solving AS
-  SELECT presentation_id, avg(active_fraction) AS active_fraction, avg(tau_fps) AS tau_fps FROM frame GROUP BY presentation_id;
+  SELECT presentation_id,
+    (SELECT avg(active_fraction) FROM frame f WHERE f.presentation_id = p.presentation_id) AS active_fraction,
+    (SELECT avg(tau_fps) FROM frame f WHERE f.presentation_id = p.presentation_id) AS tau_fps
+  FROM presentation p;
 
 -- A refused consent is a state of its own. Views and references name the table all the while.
 PRAGMA legacy_alter_table = ON;
