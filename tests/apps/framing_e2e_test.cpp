@@ -68,7 +68,7 @@ TEST_F(FramingE2e, ASessionResumedOnAnotherDisplayKeepsBothFramings) {
                                      "cpu", "--participants", "1"});
   Process process(run_arguments(protocol_, database_, arguments));
   while (const auto line = process.read_line())
-    if (line->find("done P01 1 ") == 0) break;
+    if (line->find("done P01 2 stimulus") == 0) break;
   process.send(SIGINT);
   ASSERT_EQ(process.wait().exit_code, 1);
   study::sqlite::Connection(database_, study::sqlite::Open::Write)
