@@ -28,9 +28,10 @@ begin() {  # begin CODE [OPTION ...]: a person's session, up to its first page
   session=$!
   until_begins instructions
 }
+begun() { tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; }
 until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms are over
   local give_up=$((SECONDS + 60))
-  until tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; do
+  until [ -e "$events" ] && begun "$1"; do
     [ $SECONDS -lt $give_up ] && alive || { cat "$out/$code.log" >&2; echo "window_mirror: $code comes to no $1" >&2; exit 1; }
     sleep 0.05
   done
@@ -40,8 +41,7 @@ until_shown() {  # until_shown STATE: of the showing of this session
   until [ "$(ask "select count(*) from presentation join trial using (trial_id) join session using (session_id) where participant = '$code' and presentation.state = '$1'")" = 1 ]; do sleep 0.1; done
 }
 to_stimulus() {  # two seconds into it
-  sleep 3
-  key Return
+  until begun consent; do key Return; sleep 0.5; done  # taken once the time to read is over
   until_begins consent
   key 1 Return
   until_begins stimulus
@@ -76,7 +76,7 @@ expect "events with --mirror" 1 "$(mirrored)"
 
 begin P02
 expect "windows without" 1 "$(windows)"
-# Without a window manager nobody gives the second window the keyboard.
+# Without a window manager nobody gives a second session's window the keyboard.
 xdotool windowfocus "$(xdotool search --onlyvisible --name '^vip-study$')"
 to_stimulus
 until_shown played

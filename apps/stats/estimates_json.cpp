@@ -35,7 +35,7 @@ void add_spread(Json& json, const Result<Spread>& spread) {
 
 void add_spread(Json& json, const Result<CurveSpread>& spread) {
   add_spread(json, spread ? Result<MainSpread>(
-                                MainSpread{spread->a_ci, spread->b_ci, spread->a_se(), spread->b_se()})
+                                MainSpread{spread->a_ci, spread->b_ci, spread->a_se(), spread->b_se(), false})
                           : stats::Refusal{spread.reason()});
 }
 

@@ -16,8 +16,15 @@ constexpr const char* estimator =
     "least squares of all ratings (a participant's mean of each setting): E[score] = level + k u + m u delta "
     "+ "
     "q u^2, u = log mu - log a - b delta, at realised mu and delta";
-constexpr const char* interval_method =
+constexpr const char* direct_interval =
     "jackknife over participants with Student's t, for a on the log scale";
+
+/// Of the a and b at the top.
+std::string interval_method(const MainEstimate& main) {
+  if (main.spread && !main.spread->spans_contour) return direct_interval;
+  return std::string("the range that two intervals span together: the direct estimate's (") +
+         direct_interval + ") and the contour's (expanded percentile bootstrap over participants)";
+}
 constexpr const char* mean_caveat =
     "The paper does not say which mean its 23.68 and 0.02 refer to; settings drawn with a given arithmetic "
     "mean run "
@@ -111,7 +118,7 @@ Json fit_json(const PilotFit& fit) {
   json["flags"] = Json::array();
   for (const auto& flag : fit.flags) json["flags"].push_back({{"code", flag.code}, {"text", flag.text}});
   json["estimator"] = estimator;
-  json["interval"] = {{"method", interval_method}, {"confidence", fit.bootstrap.confidence}};
+  json["interval"] = {{"method", interval_method(fit.main())}, {"confidence", fit.bootstrap.confidence}};
   json["bootstrap"] = {{"resamples", fit.bootstrap.resamples}, {"seed", fit.bootstrap.seed}};
   json["scale_min"] = fit.data.question.scale_min;
   json["scale_max"] = fit.data.question.scale_max;

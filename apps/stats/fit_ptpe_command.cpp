@@ -83,7 +83,7 @@ void print_curve(const PilotFit& fit) {
 void print_fit(const PilotFit& fit) {
   std::printf(
       "%d participants, %zu ratings of %zu settings\nmu = a exp(b delta) with %.0f %% intervals over "
-      "participants; the solver gets the direct estimate:\n",
+      "participants:\n",
       fit.participants, fit.data.ratings.size(), fit.settings, 100 * fit.bootstrap.confidence);
   for (const auto& [level, estimate] : fit.harmonic) {
     print_estimate(level, "direct", estimate.direct.jackknife);
@@ -92,6 +92,10 @@ void print_fit(const PilotFit& fit) {
     print_estimate(level, "direct, arithmetic mean", fit.arithmetic.at(level).direct.jackknife);
     print_contour(level, "contour, arithmetic mean", fit.arithmetic.at(level).contour);
   }
+  const auto main = fit.main();
+  if (main.spread)
+    print_estimate(fit.level, "for the solver", "", main.fit->a, main.fit->b, &main.spread->a_ci,
+                   &main.spread->b_ci);
   print_curve(fit);
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }

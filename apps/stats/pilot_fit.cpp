@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "apps/common/program.hpp"
 #include "stats/base/file.hpp"
+#include "stats/ptpe/solver_interval.hpp"
 
 namespace apps {
 
@@ -121,8 +123,11 @@ void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direc
                                          " the curve lies outside the frame rates shown; those settings are "
                                          "left out and the curve is extrapolated there"});
   }
-  if (!direct.jackknife) return;
-  if (direct.jackknife->b_ci[0] <= 0 && direct.jackknife->b_ci[1] >= 0) {
+}
+
+void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main) {
+  if (!main.spread) return;
+  if (main.spread->b_ci[0] <= 0 && main.spread->b_ci[1] >= 0) {
     flags.push_back({"b_holds_zero", "the interval of b holds 0: no effect of the fluctuation is shown"});
   }
 }
@@ -163,11 +168,16 @@ MainEstimate PilotFit::main() const {
   const MainFit fit{direct.fit->curve.a(), direct.fit->curve.b};
   if (!direct.jackknife) return {fit, stats::Refusal{direct.jackknife.reason()}};
   const auto& spread = *direct.jackknife;
-  return {fit, MainSpread{spread.a_ci, spread.b_ci, spread.a_se(), spread.b_se()}};
+  const auto open = stats::solver_interval(spread, chosen().contour.spread);
+  return {fit, MainSpread{open.a_ci, open.b_ci, spread.a_se(), spread.b_se(), open.spans_contour}};
 }
 
 double PilotFit::relative_half_width() const {
-  return chosen().direct.jackknife->largest_relative_half_width(deltas);
+  const auto& direct = chosen().direct;
+  std::vector<double> in_reach;
+  std::set_difference(deltas.begin(), deltas.end(), direct.out_of_reach.begin(), direct.out_of_reach.end(),
+                      std::back_inserter(in_reach));
+  return direct.jackknife->largest_relative_half_width(in_reach);
 }
 
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap) {
@@ -198,6 +208,7 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
   flag_data(fit.flags, data, table);
   flag_direct(fit.flags, fit.chosen().direct);
+  flag_main(fit.flags, fit.main());
   flag_contour(fit.flags, fit.chosen().contour.contour);
   flag_resamples(fit.flags, fit.chosen().contour);
   fit.data = std::move(data);

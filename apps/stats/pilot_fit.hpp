@@ -33,8 +33,9 @@ struct MainFit {
   double a = 0, b = 0;
 };
 struct MainSpread {
-  std::array<double, 2> a_ci{}, b_ci{};
-  double a_se = 0, b_se = 0;
+  std::array<double, 2> a_ci{}, b_ci{};  ///< reach over the contour's too (stats/ptpe/solver_interval.hpp)
+  double a_se = 0, b_se = 0;             ///< of the direct estimate
+  bool spans_contour = false;
 };
 /// What goes to the solver.
 struct MainEstimate {
@@ -60,10 +61,10 @@ struct PilotFit {
 
   bool ok() const { return reason.empty(); }
   const LevelFit& chosen() const { return harmonic.at(level); }
-  /// The direct estimate with its jackknife: level wished, harmonic mean, as the solver's own mu.
+  /// The direct estimate: level wished, harmonic mean, as the solver's own mu.
   MainEstimate main() const;
-  /// Largest half width of the curve's 95 % band over the deltas shown, as a share of mu(delta). The fit is
-  /// ok().
+  /// Largest half width of the direct curve's 95 % band, as a share of mu(delta), over the deltas shown at
+  /// which the curve is in reach: beyond them it is extrapolated and flagged. The fit is ok().
   double relative_half_width() const;
 };
 

@@ -169,8 +169,10 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
                                "deviations, and at least %d are needed",
                                direct.in_reach, least_deltas_in_reach)});
     if (spread.b_ci[1] < 0)
-      doubts.push_back({"b_below_zero", words("b is below zero, [%.4f, %.4f]: fluctuation would be liked",
-                                              spread.b_ci[0], spread.b_ci[1])});
+      doubts.push_back(
+          {"b_below_zero", words("b is below zero, [%.4f, %.4f] by the direct estimate: fluctuation "
+                                 "would be liked",
+                                 spread.b_ci[0], spread.b_ci[1])});
   }
   std::vector<Intervals> estimators;
   if (direct.jackknife) estimators.push_back({"direct", {direct.jackknife->a_ci, direct.jackknife->b_ci}});

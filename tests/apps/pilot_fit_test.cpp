@@ -72,6 +72,21 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_EQ(file.n_simulated, 16);
 }
 
+// At a = 18, b = 0.01 the curve lies below the frame rates shown at large deviations.
+TEST(PilotFit, WidthIsJudgedWhereTheCurveIsInReach) {
+  const auto fit = fit_of(simulated_pilot("ptpe:a=18,b=0.01", 16, 3));
+  const auto& direct = fit.chosen().direct;
+  ASSERT_FALSE(direct.out_of_reach.empty());
+  EXPECT_LT(fit.relative_half_width(), direct.jackknife->largest_relative_half_width(fit.deltas));
+  double widest = 0;
+  for (const double delta : fit.deltas) {
+    if (std::count(direct.out_of_reach.begin(), direct.out_of_reach.end(), delta) > 0) continue;
+    const auto point = direct.jackknife->band(delta);
+    widest = std::max(widest, (point.pointwise[1] - point.pointwise[0]) / 2 / point.mu);
+  }
+  EXPECT_EQ(fit.relative_half_width(), widest);
+}
+
 TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
   auto& trials = pilot.sessions[0].trials;

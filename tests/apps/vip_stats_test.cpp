@@ -73,19 +73,24 @@ TEST(VipStatsE2e, ReportsAllThreeEstimators) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   const auto json = read_json(json_path);
   std::map<std::string, int> levels;
+  std::map<std::string, nlohmann::json> at_level;
   for (const auto& entry : json.at("estimators")) {
     ++levels[entry.at("code")];
-    if (entry.at("main") == true && entry.at("level") == 4) {
-      EXPECT_EQ(entry.at("a"), json.at("a"));
-      EXPECT_EQ(entry.at("b_ci"), json.at("b_ci"));
-    }
+    if (entry.at("level") == 4) at_level[entry.at("code")] = entry;
+  }
+  EXPECT_EQ(at_level.at("direct").at("main"), true);
+  EXPECT_EQ(at_level.at("direct").at("a"), json.at("a"));
+  for (const char* interval : {"a_ci", "b_ci"}) {
+    const auto &direct = at_level.at("direct").at(interval), &contour = at_level.at("contour").at(interval);
+    EXPECT_EQ(json.at(interval)[0], std::min(direct[0].get<double>(), contour[0].get<double>()));
+    EXPECT_EQ(json.at(interval)[1], std::max(direct[1].get<double>(), contour[1].get<double>()));
   }
   EXPECT_EQ(levels, (std::map<std::string, int>{{"contour", 2}, {"direct", 2}, {"ordinal", 2}}));
   EXPECT_EQ(json.at("bands").size(), 2u * 21);
-  EXPECT_EQ(json.at("bands")[0].at("ci"), json.at("a_ci"));
+  EXPECT_EQ(json.at("bands")[0].at("ci"), at_level.at("direct").at("a_ci"));
   EXPECT_TRUE(json.at("lack_of_fit").at("p").is_number());
-  for (const char* words :
-       {"direct", "contour (the paper's)", "ordinal mixed", "shape of the scores", "mu(20)"})
+  for (const char* words : {"direct", "contour (the paper's)", "ordinal mixed", "for the solver",
+                            "shape of the scores", "mu(20)"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << outcome.out;
 }
 

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"
 #include "stats/ptpe/pilot_doubts.hpp"
+#include "stats/ptpe/solver_interval.hpp"
 #include "tests/stats/ptpe/surfaces.hpp"
 
 namespace {
@@ -20,13 +23,14 @@ namespace {
 using surfaces::Population;
 using surfaces::Truth;
 
-constexpr std::array names{"direct", "contour", "ordinal"};
-constexpr double widest = 0.35;  // as vip-stats fit-ptpe --max-width
+constexpr std::array names{"solver", "direct", "contour",
+                           "ordinal"};  // the solver's: direct, spanned interval
+constexpr double widest = 0.35;         // as vip-stats fit-ptpe --max-width
 
 /// What one estimator made of one pilot.
 struct One {
   bool given = false;  ///< an interval and no doubt, so that a file would be written
-  double a = 0, b = 0, curve_error = 0;
+  double a = 0, b = 0;
   bool holds_a = false, holds_b = false;
 };
 
@@ -38,12 +42,7 @@ bool holds(const std::array<double, 2>& interval, double value) {
 
 One judged(const stats::Curve& curve, const std::array<double, 2>& a_ci, const std::array<double, 2>& b_ci,
            const Truth& truth) {
-  One out{true, curve.a(), curve.b, 0, holds(a_ci, truth.a), holds(b_ci, truth.b)};
-  for (std::size_t i = 0; i < truth.delta.size(); ++i)
-    out.curve_error +=
-        std::pow(curve.mu(truth.delta[i]) / truth.mu[i] - 1, 2) / static_cast<double>(truth.delta.size());
-  out.curve_error = std::sqrt(out.curve_error);
-  return out;
+  return {true, curve.a(), curve.b, holds(a_ci, truth.a), holds(b_ci, truth.b)};
 }
 
 All estimate(const Population& population, const Truth& truth, int participants, std::uint64_t seed) {
@@ -56,21 +55,27 @@ All estimate(const Population& population, const Truth& truth, int participants,
   const auto ordinal = stats::estimate_ordinal_pilot(ratings, stats::PilotMean::Harmonic, 4, 0.95);
   All out;
   const bool doubted = !stats::pilot_doubts(table, direct, contour, ordinal).empty();
-  const auto add = [&](One& one, const auto& fit, const auto& spread) {
-    if (doubted || !spread || spread->largest_relative_half_width(surfaces::deviations) > widest) return;
-    one = judged(fit->curve, spread->a_ci, spread->b_ci, truth);
+  std::vector<double> in_reach;
+  std::set_difference(surfaces::deviations.begin(), surfaces::deviations.end(), direct.out_of_reach.begin(),
+                      direct.out_of_reach.end(), std::back_inserter(in_reach));
+  const auto usable = [&](const auto& spread) {
+    return !doubted && spread && spread->largest_relative_half_width(in_reach) <= widest;
   };
-  add(out[0], direct.fit, direct.jackknife);
+  if (usable(direct.jackknife)) {
+    const auto open = stats::solver_interval(*direct.jackknife, contour.spread);
+    out[0] = judged(direct.fit->curve, open.a_ci, open.b_ci, truth);
+    out[1] = judged(direct.fit->curve, direct.jackknife->a_ci, direct.jackknife->b_ci, truth);
+  }
   if (!doubted && contour.spread)
-    out[1] =
+    out[2] =
         judged({std::log(contour.fit->a), contour.fit->b}, contour.spread->a_ci, contour.spread->b_ci, truth);
-  add(out[2], ordinal.fit, ordinal.jackknife);
+  if (usable(ordinal.jackknife))
+    out[3] = judged(ordinal.fit->curve, ordinal.jackknife->a_ci, ordinal.jackknife->b_ci, truth);
   return out;
 }
 
 struct Row {
-  double refused = 0, bias_a = 0, error_a = 0, bias_b = 0, error_b = 0, curve_error = 0, holds_a = 0,
-         holds_b = 0;
+  double refused = 0, bias_a = 0, error_a = 0, bias_b = 0, error_b = 0, holds_a = 0, holds_b = 0;
   int given = 0;
 };
 
@@ -84,13 +89,11 @@ Row summary(const std::vector<All>& all, std::size_t estimator, const Truth& tru
     row.error_a += std::pow(one.a - truth.a, 2);
     row.bias_b += one.b - truth.b;
     row.error_b += std::pow(one.b - truth.b, 2);
-    row.curve_error += one.curve_error;
     row.holds_a += one.holds_a;
     row.holds_b += one.holds_b;
   }
   row.refused = 1 - row.given / static_cast<double>(all.size());
-  for (double* sum :
-       {&row.bias_a, &row.error_a, &row.bias_b, &row.error_b, &row.curve_error, &row.holds_a, &row.holds_b})
+  for (double* sum : {&row.bias_a, &row.error_a, &row.bias_b, &row.error_b, &row.holds_a, &row.holds_b})
     *sum /= std::max(1, row.given);
   row.error_a = std::sqrt(row.error_a);
   row.error_b = std::sqrt(row.error_b);
@@ -100,8 +103,7 @@ Row summary(const std::vector<All>& all, std::size_t estimator, const Truth& tru
 struct Kind {
   Population population;
   int participants;
-  bool near;            ///< a lab may meet it: few refusals
-  double least = 0.92;  ///< share of intervals that hold
+  bool near = false;  ///< a lab may meet it: few refusals
 };
 
 void recover(const Kind& kind, int pilots) {
@@ -113,19 +115,17 @@ void recover(const Kind& kind, int pilots) {
   std::printf("| %s, %d | %.1f, %.3f", population.name.c_str(), kind.participants, truth.a, truth.b);
   for (std::size_t e = 0; e < names.size(); ++e) {
     const Row row = summary(all, e, truth);
-    std::printf(" | %.2f", row.refused);
-    if (row.given < 20) {
-      std::printf(" | | | |");
-      continue;
-    }
-    std::printf(" | %+.2f, %+.4f | %.2f, %.4f | %.1f | %.2f, %.2f", row.bias_a, row.bias_b, row.error_a,
-                row.error_b, 100 * row.curve_error, row.holds_a, row.holds_b);
-    // Where most are refused, as where b is below zero, the others are those that erred one way.
-    if (e > 0 || row.refused > 0.5) continue;
-    // Of the estimate that feeds the solver, less two and a half Monte-Carlo standard errors.
+    const bool few = row.given < 20;
+    if (e != 1) std::printf(" | %.2f", row.refused);  // the direct one's is the solver's
+    if (e != 1 && few) std::printf(" | ");
+    if (e != 1 && !few)
+      std::printf(" | %+.2f, %+.4f (%.2f, %.4f)", row.bias_a, row.bias_b, row.error_a, row.error_b);
+    few ? std::printf(" | ") : std::printf(" | %.2f, %.2f", row.holds_a, row.holds_b);
+    if (e > 0 || few) continue;
+    // Of what feeds the solver, less two and a half Monte-Carlo standard errors.
     const double error = 2.5 * std::sqrt(0.08 * 0.92 / row.given);
-    EXPECT_GE(row.holds_a, kind.least - error) << population.name << ", " << kind.participants;
-    EXPECT_GE(row.holds_b, kind.least - error) << population.name << ", " << kind.participants;
+    EXPECT_GE(row.holds_a, 0.92 - error) << population.name << ", " << kind.participants;
+    EXPECT_GE(row.holds_b, 0.92 - error) << population.name << ", " << kind.participants;
     if (kind.near) {
       EXPECT_LE(row.refused, 0.05 + 2.5 * std::sqrt(0.05 * 0.95 / pilots)) << population.name;
     }
@@ -135,26 +135,22 @@ void recover(const Kind& kind, int pilots) {
 }
 
 TEST(EstimatorRecoverySlow, Grid) {
-  constexpr int pilots = 150;
+  constexpr int pilots = 500;
   std::printf(
-      "| truth, people | a, b | direct: refused | bias | error | curve %% | holds | contour: ... | ordinal: "
-      "... |\n");
+      "| truth, people | a, b | direct: refused | bias (error) of a, b | spanned interval holds a, b | its "
+      "own "
+      "holds | contour: refused | bias (error) | holds | ordinal: refused | bias (error) | holds |\n");
   std::vector<Kind> kinds;
   for (const double a : {12.0, 18.0, 24.0, 30.0, 36.0}) {
     for (const double b : {-0.01, 0.01, 0.03, 0.05})
-      // Below 20 frames/s at delta = 10 the curve leaves the settings of three deltas.
-      kinds.push_back(
-          {surfaces::parametric(a, b), 16, a * std::exp(10 * b) >= 20 && a <= 30 && b > 0 && b < 0.04});
+      kinds.push_back({surfaces::parametric(a, b), 16, a >= 18 && a <= 30 && b > 0 && b < 0.04});
   }
   kinds.push_back({surfaces::parametric(18, 0.01), 40, true});
   for (const int people : {6, 40}) {
     for (const double a : {18.0, 24.0, 30.0})
       kinds.push_back({surfaces::parametric(a, 0.02), people, people > 6});
   }
-  // Scores that hardly rise at the level and steeply away from it bend the quadratic: .86
-  // (docs/statistics.md).
-  for (const auto& population : surfaces::strange())
-    kinds.push_back({population, 16, true, population.name == "cubic" ? 0.86 : 0.92});
+  for (const auto& population : surfaces::strange()) kinds.push_back({population, 16, true});
   for (const auto& kind : kinds) recover(kind, pilots);
 }
 
