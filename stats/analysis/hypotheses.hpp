@@ -11,6 +11,7 @@
 #include "stats/analysis/plan.hpp"
 #include "stats/analysis/score_table.hpp"
 #include "stats/analysis/task2.hpp"
+#include "stats/analysis/tipping.hpp"
 
 namespace stats {
 
@@ -30,18 +31,19 @@ const char* kind_name(HypothesisKind kind);
 
 struct HypothesisTest {
   std::string label;
-  std::string method;              ///< "paired t test", "exact sign test" (all differences equal), ...
+  std::string method;              ///< "paired t test", "t test of the mixed model", ...
   std::string score, n_star;       ///< of Task 1
   std::string a, b;                ///< methods
-  std::size_t n = 0;               ///< participants with both; answers
+  std::size_t n = 0;               ///< participants with both, or of the mixed model; answers
   std::optional<int> k;            ///< a chosen (Task 2)
   std::optional<double> estimate;  ///< mean difference a - b, or share of a
   std::optional<std::array<double, 2>> ci;
   double ci_confidence = 0.95;
   std::optional<double> margin;
   /// Task 1: statistic to which p belongs (of two one-sided tests the one nearer to zero), and the paired
-  /// effect size.
+  /// effect size, which the mixed model does not have.
   std::optional<double> t, df, d_z;
+  std::optional<double> se;  ///< of the estimate
   std::optional<double> p, p_holm;
   bool holds_alone = false;       ///< p < alpha in the direction claimed
   bool holds_holm = false;        ///< p_holm < alpha in the direction claimed
@@ -53,6 +55,14 @@ struct HypothesisTest {
   /// Of a two-sided test of preference: what Holm makes of p over the five pairs of the paper's Fig. 10 and
   /// over all ten. The choice of the family decides, so all are shown.
   std::optional<double> p_holm_of_five, p_holm_of_ten;
+  std::optional<Result<TippingPoint>> tipping;  ///< of `holds`; see add_tipping_points
+};
+
+/// What the paired tests say where the plan decides by the mixed model.
+struct PairedVerdict {
+  HypothesisStatus status = HypothesisStatus::NoData;  ///< were the hypothesis testable
+  int confirmed = 0;
+  std::vector<HypothesisTest> tests;
 };
 
 struct Hypothesis {
@@ -74,16 +84,23 @@ struct Hypothesis {
   std::optional<double> p_claim;
   std::optional<double> p_claim_of_six;  ///< see correct_over_claims
   std::vector<HypothesisTest> tests;
+  std::optional<PairedVerdict> paired;
   std::string paper_rule, paper_text;
   bool paper_supported = false;
   std::string paper_published;  ///< what the paper said of its own data
 };
 
 /// H1 to H3. `untestable`: why H1 cannot be tested, such as gaze that was not tracked; empty: it can.
-/// Paired t tests over participants, within each n_*. Two-sided or one-sided as the plan says; of a test
-/// against margins two-sided means twice the one-sided p and the interval of 1 - alpha.
+/// Within each n_*, by paired t tests over participants, or by the mixed model of each score with the paired
+/// tests beside. Two-sided or one-sided as the plan says; of a test against margins two-sided means twice the
+/// one-sided p and the interval of 1 - alpha. What the paper's rule says is of the paired tests.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
+
+/// Tipping points of the tests of H1 to H3: by how many points missing answers must be worse before the
+/// plan's decision on the test (`holds`) changes, the other tests and the error of this one being as they
+/// are. `tables`: those that the tests were made of, among others.
+void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
 /// H4 to H6 by exact binomial tests. `untestable`: why H5 cannot be tested.
 std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,

@@ -42,6 +42,12 @@ enum class DecisionRule {
   Holm,  ///< every test after Holm, as bundles were frozen before the key was there
 };
 
+/// What the tests of H1 to H3 are made of.
+enum class ScoreTests {
+  Paired,  ///< paired t tests of participants' means
+  Mixed,   ///< t tests of the mixed model of all answers (mixed_scores.hpp)
+};
+
 /// Which hypotheses are tested one-sided. All claim a direction.
 enum class Directional {
   None,    ///< two-sided: the interval of 1 - alpha lies wholly where it is claimed to
@@ -53,6 +59,7 @@ struct AnalysisPlan {
   double alpha = 0.05;  ///< of each claim, in (0, 0.5)
   DecisionRule decision = DecisionRule::IntersectionUnion;
   Directional directional = Directional::None;
+  ScoreTests tests = ScoreTests::Paired;
   double confidence = 0.95;       ///< of intervals, in (0, 1)
   double margin_realism = 0.5;    ///< points on 1 to 7, > 0
   double margin_sickness = 0.25;  ///< points on 0 to 3, > 0

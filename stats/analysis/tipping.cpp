@@ -41,7 +41,7 @@ double room_of(const ScoreScale& scale, double mean) {
 /// How far an estimate can fall before it crosses into, or out of, the range.
 std::optional<double> way_down(double estimate, DecisionRange holds) {
   const double edge = estimate > holds.high ? holds.high : holds.low;
-  if (estimate < holds.low || std::isinf(edge)) return {};
+  if (estimate < holds.low || std::isinf(edge) || holds.low >= holds.high) return {};
   return estimate - edge;
 }
 
@@ -76,6 +76,15 @@ Result<TippingPoint> tipping_point_two_sided(const ScoreTable& table, int n_star
   if (!undecided) return undecided;
   TippingPoint out = *undecided;
   out.holds = !out.holds;
+  return out;
+}
+
+Result<TippingPoint> no_tipping_point(const ScoreTable& table, int n_star, int a, int b, bool holds) {
+  const auto counted = tipping_point(table, n_star, a, b, 0, {});
+  if (!counted) return counted;
+  TippingPoint out = *counted;
+  out.holds = holds;
+  out.reason = "all differences are equal, so they have no error to hold a shift against";
   return out;
 }
 

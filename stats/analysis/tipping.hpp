@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "stats/analysis/score_table.hpp"
 #include "stats/result.hpp"
@@ -18,7 +19,7 @@ struct MissingAnswers {
   std::size_t missing = 0;  ///< who lack it, of those who were to judge both
   double room =
       0;  ///< points that their answers can be worse before they leave the scale, as expected of them
-  std::optional<double> shift;  ///< points by which they must be worse; empty: none is enough
+  std::optional<double> shift;  ///< points by which they must be worse; empty: none is enough, or unknown
   bool within_scale() const { return shift && *shift <= room; }
 };
 
@@ -26,9 +27,10 @@ struct TippingPoint {
   std::size_t planned = 0;  ///< participants who were to judge both
   bool holds = false;       ///< the decision on the answers there are
   MissingAnswers a, b;
+  std::string reason;  ///< why no shift is known; empty: they are
 };
 
-/// Estimates a - b by which a decision is taken, low < high; either may be infinite.
+/// Estimates a - b by which a decision is taken; either end may be infinite. Nothing holds where low >= high.
 struct DecisionRange {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 };
@@ -42,5 +44,8 @@ Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, i
 /// `half` is the half width of the interval of 1 - alpha about the estimate.
 Result<TippingPoint> tipping_point_two_sided(const ScoreTable& table, int n_star, int a, int b,
                                              double estimate, double half);
+
+/// Of differences that are all equal, which have no error: who is missing, and that no shift is known.
+Result<TippingPoint> no_tipping_point(const ScoreTable& table, int n_star, int a, int b, bool holds);
 
 }  // namespace stats

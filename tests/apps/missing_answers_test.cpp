@@ -28,8 +28,9 @@ study::TaskProtocol with_dropout(int participants) {
   return protocol;
 }
 
-Json results_of(const study::TaskProtocol& protocol) {
+Json results_of(const study::TaskProtocol& protocol, stats::ScoreTests tests = stats::ScoreTests::Paired) {
   PlanInForce plan;
+  plan.plan.tests = tests;
   plan.plan.resamples = 100;
   return make_results({{protocol}, 0}, {"study.db", {TaskKind::Task1}, "", plan}).json;
 }
@@ -125,6 +126,55 @@ TEST(MissingAnswers, TippingPointsStandBesideEachPair) {
     }
   }
   EXPECT_GT(tipped, 0);
+}
+
+TEST(MissingAnswers, TheTestsOfHypothesesHaveTippingPoints) {
+  int missing = 0;
+  const auto json = results_of(with_dropout(12));
+  for (const auto& hypothesis : json.at("hypotheses")) {
+    for (const auto& test : hypothesis.at("tests")) {
+      const Json& tipping = test.at("tipping");
+      EXPECT_EQ(tipping.at("planned"), 12);
+      EXPECT_EQ(tipping.at("holds"), test.at("holds"));
+      missing += tipping.at("a").at("missing").get<int>() + tipping.at("b").at("missing").get<int>();
+    }
+  }
+  EXPECT_GT(missing, 0);
+  EXPECT_THAT(report::results_page(json), HasSubstr("Tipping points of the tests of H1 to H3"));
+  EXPECT_THAT(report::results_page(results_of(made_study::task1(12))), Not(HasSubstr("Tipping points of")));
+}
+
+// What is tested stands in the results of each pair already.
+TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
+  const auto json = results_of(with_dropout(12), stats::ScoreTests::Mixed);
+  EXPECT_EQ(json.at("plan").at("tests"), "mixed");
+  const auto paired = results_of(with_dropout(12));
+  EXPECT_EQ(paired.at("plan").at("tests"), "paired");
+  int compared = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& hypothesis = json.at("hypotheses")[i];
+    EXPECT_THAT(hypothesis.at("rule").get<std::string>(), HasSubstr("t tests of the mixed model"));
+    const Json& of_pairs = paired.at("hypotheses")[i];
+    EXPECT_EQ(hypothesis.at("paired").at("status"), of_pairs.at("status"));
+    EXPECT_FALSE(of_pairs.contains("paired"));
+    for (std::size_t k = 0; k < hypothesis.at("tests").size(); ++k) {
+      const Json& test = hypothesis.at("tests")[k];
+      EXPECT_EQ(test.at("method"), "t test of the mixed model");
+      EXPECT_EQ(test.at("tipping").at("holds"), test.at("holds"));
+      EXPECT_EQ(hypothesis.at("paired").at("tests")[k].at("p"), of_pairs.at("tests")[k].at("p"));
+      for (const auto& one : json.at("task1").at("comparisons")) {
+        if (hypothesis.at("id") != "H1" || one.at("score") != test.at("score") ||
+            one.at("n_star") != test.at("n_star") || one.at("a") != test.at("b") ||
+            one.at("b") != test.at("a"))
+          continue;
+        EXPECT_NEAR(test.at("t"), -one.at("mixed").at("t").get<double>(), 1e-12);
+        EXPECT_NEAR(test.at("df"), one.at("mixed").at("df"), 1e-12);
+        EXPECT_NEAR(test.at("p"), one.at("mixed").at("p"), 1e-12);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 8);
 }
 
 }  // namespace

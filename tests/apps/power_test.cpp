@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "apps/stats/power/power_figure.hpp"
 #include "apps/stats/power/power_json.hpp"
+#include "apps/stats/power/shown.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/inference/power.hpp"
@@ -114,6 +116,51 @@ TEST(Power, SupportIsJudgedByThePlansRule) {
   const auto corrected = apps::simulate_task_power(request)[0].hypotheses[1].curve[0];
   EXPECT_GT(both.supported.value, corrected.supported.value);
   EXPECT_EQ(both.any.value, corrected.any.value);
+}
+
+// Of complete answers the mixed model says nearly what the paired tests say.
+TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
+  auto request = task1({"effect"}, 60);
+  request.effect = 0.8;
+  request.plan.plan.tests = stats::ScoreTests::Mixed;
+  const auto mixed = apps::simulate_task_power(request);
+  request.plan.plan.tests = stats::ScoreTests::Paired;
+  const auto paired = apps::simulate_task_power(request);
+  int differ = 0;
+  for (std::size_t h = 0; h < 3; ++h) {
+    EXPECT_NE(mixed[0].hypotheses[h].rule.find("mixed model"), std::string::npos);
+    for (std::size_t i = 0; i < mixed[0].hypotheses[h].tests.size(); ++i) {
+      const auto &one = mixed[0].hypotheses[h].tests[i].curve[0],
+                 &other = paired[0].hypotheses[h].tests[i].curve[0];
+      EXPECT_EQ(one.refused.value, 0) << "every model was fitted";
+      EXPECT_FALSE(one.closed_form);
+      EXPECT_NEAR(one.uncorrected.value, other.uncorrected.value, 0.2);
+      EXPECT_NEAR(one.mean_estimate, other.mean_estimate, 0.1);
+      differ += one.uncorrected.value != other.uncorrected.value ? 1 : 0;
+    }
+  }
+  EXPECT_GT(differ, 0);
+}
+
+// As the data of a study have it: position in the plan, and a period for each scene at one n_*.
+TEST(Power, TrialsHaveThePeriodsOfThePlan) {
+  const auto request = task1({"effect"}, 1);
+  const apps::ShownFactors factors(request.protocol.design);
+  const auto trials = apps::planned_trials(request.protocol, 1, 2);
+  std::set<int> periods;
+  for (std::size_t i = 1; i < trials.size(); ++i) {
+    periods.insert(trials[i].period);
+    if (trials[i].participant != trials[i - 1].participant) {
+      EXPECT_EQ(trials[i].period, 0);
+      continue;
+    }
+    const auto &here = factors.cells[static_cast<std::size_t>(trials[i].first)],
+               &before = factors.cells[static_cast<std::size_t>(trials[i - 1].first)];
+    const bool another = here.scene != before.scene || here.n_star != before.n_star;
+    EXPECT_EQ(trials[i].period, trials[i - 1].period + (another ? 1 : 0));
+    EXPECT_EQ(trials[i].position, trials[i - 1].position + 1);
+  }
+  EXPECT_GT(periods.size(), 1u);
 }
 
 TEST(Power, DifferencesAndMarginsFollowTheFormulas) {

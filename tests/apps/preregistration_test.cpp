@@ -246,6 +246,22 @@ TEST(Preregistration, AnotherDecisionRuleIsNamed) {
   EXPECT_FALSE(check.at("holds").get<bool>());
 }
 
+TEST(Preregistration, TestsByTheMixedModelAreFrozenAndNotTakenForPairedOnes) {
+  const TemporaryFolder folder;
+  auto request = both_tasks();
+  request.plan.tests = stats::ScoreTests::Mixed;
+  report::freeze_bundle(request, folder / "bundle");
+  auto bundle = report::read_bundle(folder / "bundle");
+  EXPECT_EQ(bundle.plan.plan.tests, stats::ScoreTests::Mixed);
+  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  EXPECT_EQ(report::compare_with_bundle(bundle, study.rows, study.results).at("differences"), Json::array());
+  bundle.plan.plan.tests = stats::ScoreTests::Paired;
+  const auto other = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto check = report::compare_with_bundle(bundle, other.rows, other.results);
+  EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered \\\"t tests of the mixed"));
+  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+}
+
 TEST(Preregistration, ATouchedFileTakesTheNameAway) {
   const TemporaryFolder folder;
   report::freeze_bundle(both_tasks(), folder / "bundle");

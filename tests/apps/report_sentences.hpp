@@ -110,6 +110,11 @@ inline std::vector<Case> head_and_methods() {
        "cybersickness.",
        refused("/task1")},
       {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
+      {"H1 to H3 were tested by paired t tests.", set("/plan/tests", "mixed")},
+      {"H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of freedom; "
+       "paired "
+       "t tests stand beside.",
+       set("/plan/tests", "paired"), set("/plan/tests", "mixed")},
       {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
       {"Tests of the hypotheses were two-sided.", set("/plan/directional", true)},
       {"Tests of the hypotheses were one-sided, in the direction claimed.", set("/plan/directional", false),
@@ -247,8 +252,9 @@ inline std::vector<Case> task1() {
        set("/task1/mixed", Json::array())},
       {"A tipping point is by how many points missing answers to one method must be worse than those of the "
        "others let expect before the decision changes; any: none is enough.",
-       no_pairs},
+       all({no_pairs, set("/hypotheses", Json::array())})},
       {"# Tipping points of the paired t tests", no_pairs},
+      {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
       {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
        set("/task1/ordinal", Json::array())},
       {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
@@ -347,6 +353,10 @@ inline std::vector<Case> hypotheses() {
   const Change none = set("/hypotheses", Json::array());
   const Change untestable = all(
       {set("/hypotheses/0/status", "not testable"), set("/hypotheses/0/status_if_testable", "supported")});
+  const Change by_pairs = set("/hypotheses/0/paired", nullptr), by_model = [](Json&json) {
+    Json& h1 = json["hypotheses"][0];
+    h1["paired"] = {{"status", "supported"}, {"tests", h1["tests"]}};
+  };
   return {
       {"# Decisions on the hypotheses", none},
       {"Exploratory #.", all({set("/preregistration", bundle()), set("/preregistration/tasks/task2", true)})},
@@ -369,6 +379,8 @@ inline std::vector<Case> hypotheses() {
        untestable},
       {"Rule: # (tests in the family: #, \u03b1 = #).", none},
       {"# #: tests of the family", none},
+      {"By paired t tests, which the plan does not decide by: #.", by_pairs, by_model},
+      {"# #: paired tests beside", by_pairs, by_model},
       {"# The same p in larger families", none},
       {"#: Mdiff = #, # CI [[]#, #]*, p *, pHolm *", none},
       {"#: *share = #, # CI [[]#, #], p *, pHolm *", none},

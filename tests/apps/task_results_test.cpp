@@ -255,6 +255,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   plan.margin_sickness = 0.3;
   plan.decision = stats::DecisionRule::Holm;
   plan.directional = stats::Directional::All;
+  plan.tests = stats::ScoreTests::Mixed;
   plan.exclusions.timing = stats::TimingRule::Degraded;
   plan.exclusions.straight_lining_answers = 9;
   plan.exclusions.max_repeat_difference.reset();
@@ -267,6 +268,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   EXPECT_EQ(read.plan.alpha, 0.01);
   EXPECT_EQ(read.plan.decision, stats::DecisionRule::Holm);
   EXPECT_EQ(read.plan.directional, stats::Directional::All);
+  EXPECT_EQ(read.plan.tests, stats::ScoreTests::Mixed);
   EXPECT_EQ(read.plan.exclusions.timing, stats::TimingRule::Degraded);
   EXPECT_FALSE(read.plan.exclusions.max_repeat_difference.has_value());
   EXPECT_EQ(read.plan.repeated_pairs, stats::RepeatedPairs::Warn);
@@ -290,6 +292,7 @@ TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
       plan_of("format = 1\nprotocols = [\"ab\"]\n[exclusions]\nstraight_lining_answers = 8\n");
   EXPECT_EQ(frozen.decision, stats::DecisionRule::Holm);
   EXPECT_EQ(frozen.directional, stats::Directional::H2H3H6);
+  EXPECT_EQ(frozen.tests, stats::ScoreTests::Paired);
   EXPECT_EQ(frozen.exclusions.straight_lining_answers, 8);
   const auto again = plan_of(format_plan(frozen, {}));
   EXPECT_EQ(again.decision, stats::DecisionRule::Holm);
@@ -320,6 +323,7 @@ TEST(AnalysisPlan, MistakesAreNamedWithTheirPlace) {
   refuse("format = 1\ndecision = \"bonferroni\"\n", "decision");
   refuse("format = 1\ndirectional = \"H1\"\n", "directional");
   refuse("format = 1\ndirectional = 1\n", "directional");
+  refuse("format = 1\ntests = \"welch\"\n", "tests");
   refuse("format = 1\n[exclusions]\ntiming = \"all\"\n", "timing");
   refuse("format = 1\n[exclusions]\nmin_catch_correct = \"never\"\n", "min_catch_correct");
   refuse("format = 1\n[margins]\nrealism = 0\n", "realism");

@@ -119,8 +119,9 @@ void names_of(const Json& json, const std::string& name, std::set<std::string>& 
 /// What the script does not make: bootstrap intervals, whose resamples are the program's own, and models that
 /// have fixtures of their own or no function in R alone (mixed_model.R, tests/stats/oracle).
 bool is_left_to_others(const std::string& name) {
-  for (const std::string part : {".task1.ordinal", ".task1.mixed", ".task1.comparisons.mixed",
-                                 ".task1.comparisons.tipping", ".task1.people", ".bca"})
+  for (const std::string part :
+       {".task1.ordinal", ".task1.mixed", ".task1.comparisons.mixed", ".task1.comparisons.tipping",
+        ".hypotheses.tests.tipping", ".task1.people", ".bca"})
     if (name.find(part) != std::string::npos) return true;
   return false;
 }

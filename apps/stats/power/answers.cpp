@@ -106,9 +106,10 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
       sickness += answer(scatter, latent, scatter.item_min, scatter.item_max);
     }
     out.realism.push_back({trial.participant, place.scene, place.n_star, place.method,
-                           answer(scatter, realism, scatter.realism_min, scatter.realism_max)});
-    out.sickness.push_back(
-        {trial.participant, place.scene, place.n_star, place.method, sickness, sickness_items});
+                           answer(scatter, realism, scatter.realism_min, scatter.realism_max), 1,
+                           trial.position, trial.period});
+    out.sickness.push_back({trial.participant, place.scene, place.n_star, place.method, sickness,
+                            sickness_items, trial.position, trial.period});
   }
   return out;
 }

@@ -39,6 +39,8 @@ bool claim_is_true(HypothesisKind kind, const stats::HypothesisTest& test, doubl
 
 std::optional<double> closed_form_power(const PowerRequest& request, const stats::Hypothesis& hypothesis,
                                         const stats::HypothesisTest& test, double truth, int n) {
+  const bool by_model = request.plan.plan.tests == stats::ScoreTests::Mixed;
+  if (by_model && hypothesis.kind != HypothesisKind::Preference) return {};
   // Of a symmetric two-sided test, the side claimed is the one-sided test at half the level.
   const double level = (hypothesis.one_sided ? 1 : 0.5) * hypothesis.alpha, margin = test.margin.value_or(0);
   const double sd = higher_is_better(test) ? request.sd_realism : request.sd_sickness;

@@ -1,8 +1,10 @@
 #include "apps/stats/power/shown.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "libstudy/design/plan.hpp"
+#include "stats/analysis/mixed_scores.hpp"
 
 namespace apps {
 
@@ -15,6 +17,17 @@ int index_or_add(std::vector<std::string>& list, const std::string& item) {
   return static_cast<int>(list.size()) - 1;
 }
 
+/// Of one participant's trials. A block is a scene at one n_*.
+void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
+  std::vector<int> blocks;
+  for (const auto& trial : trials) {
+    const auto& place = factors.cells[static_cast<std::size_t>(trial.first)];
+    blocks.push_back(place.scene * static_cast<int>(factors.n_stars.size()) + place.n_star);
+  }
+  const auto periods = stats::periods_of(blocks);
+  for (std::size_t i = 0; i < trials.size(); ++i) trials[i].period = periods[i];
+}
+
 }  // namespace
 
 ShownFactors::ShownFactors(const study::Design& design) {
@@ -25,15 +38,18 @@ ShownFactors::ShownFactors(const study::Design& design) {
 
 std::vector<ShownTrial> planned_trials(const study::Protocol& protocol, std::uint64_t seed, int n) {
   const int slots = study::slot_count(protocol);
+  const ShownFactors factors(protocol.design);
   std::vector<ShownTrial> out;
   for (int participant = 0; participant < n; ++participant) {
     // The least taken slot comes next: 0, 1, ..., then from the start.
     const auto plan =
         study::make_plan(protocol, "P" + std::to_string(participant + 1), seed, participant % slots);
+    const auto before = out.size();
     for (const auto& trial : plan.trials) {
       if (protocol.blocks[static_cast<std::size_t>(trial.block)].kind == study::BlockKind::Stimulus)
-        out.push_back({participant, trial.first, trial.second.value_or(-1), trial.position});
+        out.push_back({participant, trial.first, trial.second.value_or(-1), trial.position, 0});
     }
+    count_periods(std::span(out).subspan(before), factors);
   }
   return out;
 }

@@ -25,6 +25,7 @@ struct ShownTrial {
   int first = 0;        ///< cell
   int second = -1;      ///< cell of the second interval, or -1
   int position = 0;
+  int period = 0;  ///< as stats::MethodScore::period
 };
 
 /// Trials of blocks of kind stimulus for n participants who take the assignment's slots in turn, each with

@@ -15,6 +15,9 @@ std::string interval_of(const Field& test) {
 
 bool by_sign(const Field& test) { return test["method"].words() == "exact sign test"; }
 
+/// Satterthwaite's degrees of freedom are not whole.
+bool by_model(const Field& test) { return test["method"].words() == "t test of the mixed model"; }
+
 /// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
@@ -28,13 +31,13 @@ std::string label(const Field& test) {
   return words(test["label"]) + (reason.empty() ? "" : " <em>(no test: " + words(test["reason"]) + ")</em>");
 }
 
-Table tests_table(const Field& hypothesis) {
+Table tests_table(const Field& hypothesis, const Field& tests, const std::string& title) {
   const bool preference = hypothesis["kind"].words() == "preference";
-  Table table(words(hypothesis["id"]) + ": tests of the family",
+  Table table(words(hypothesis["id"]) + ": " + title,
               {"Test", "<i>n</i>", preference ? "Share" : "Difference", "Margin", "<i>p</i>", "",
                "<i>p</i><sub>Holm</sub>", "", "Holds", "Holds after Holm", "<i>p</i> as in the paper",
                "Holds as in the paper"});
-  for (const Field& test : hypothesis["tests"].entries()) {
+  for (const Field& test : tests.entries()) {
     table.row({label(test), count(test["n"]), estimate(test), fixed(test["margin"], 2), p_bare(test["p"]),
                words(test["stars"]), p_bare(test["p_holm"]), words(test["stars_holm"]), yes_no(test["holds"]),
                yes_no(test["holds_holm"]), p_bare(test["paper_p"]), yes_no(test["paper_holds"])});
@@ -57,7 +60,8 @@ std::string apa(const Field& test, bool preference) {
   }
   out += ", " + (by_sign(test) ? words(test["method"]) : interval_of(test));
   if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
-  if (test["t"].is_number()) out += ", <i>t</i>(" + fixed(test["df"], 0) + ") = " + fixed(test["t"], 2);
+  if (test["t"].is_number())
+    out += ", <i>t</i>(" + fixed(test["df"], by_model(test) ? 1 : 0) + ") = " + fixed(test["t"], 2);
   if (test["d_z"].is_number()) out += ", <i>d<sub>z</sub></i> = " + fixed(test["d_z"], 2);
   return out + ", <i>p</i> " + p(test["p"]) + ", <i>p</i><sub>Holm</sub> " + p(test["p_holm"]);
 }
@@ -73,6 +77,15 @@ std::string families(const Field& hypothesis) {
                p_bare(test["p_holm_of_five"]), p_bare(test["p_holm_of_ten"])});
   }
   return table.empty() ? "" : table.html();
+}
+
+/// The paired tests beside those of the mixed model.
+std::string paired(const Field& hypothesis) {
+  const Field beside = hypothesis["paired"];
+  if (!beside.there()) return "";
+  return paragraph("By paired <i>t</i> tests, which the plan does not decide by: " + words(beside["status"]) +
+                   ".") +
+         tests_table(hypothesis, beside["tests"], "paired tests beside").html();
 }
 
 std::string one(const Field& hypothesis, bool registered) {
@@ -93,10 +106,10 @@ std::string one(const Field& hypothesis, bool registered) {
              ? ", after Holm over the claims of H1 to H6 <i>p</i> " + p(hypothesis["p_claim_of_six"])
              : "") +
         ".");
-  body += tests_table(hypothesis).html() + families(hypothesis);
+  body += tests_table(hypothesis, hypothesis["tests"], "tests of the family").html() + families(hypothesis);
   std::vector<std::string> lines;
   for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
-  body += list(lines);
+  body += list(lines) + paired(hypothesis);
   if (paper.there())
     body += paragraph("The paper's own procedure on these data (" + words(paper["rule"]) +
                       "): " + words(paper["status"]) + ". " + words(paper["text"]) +

@@ -93,7 +93,11 @@ std::string task1_text(const Field& root) {
          "Welch's tests beside them. Equivalence was tested by two one-sided tests with margins of " +
          fixed(plan["margins"]["realism"], 2) + " points on realism and " +
          fixed(plan["margins"]["sickness"], 2) + " on cybersickness. Bootstrap intervals of Task 1 use " +
-         count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". ";
+         count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". " +
+         (plan["tests"].words() == "mixed"
+              ? "H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of "
+                "freedom; paired <i>t</i> tests stand beside. "
+              : "H1 to H3 were tested by paired <i>t</i> tests. ");
 }
 
 /// "two-sided", or which of H1 to H6 are not.

@@ -85,8 +85,11 @@ bool anyone_missing(const Field& comparison) {
   return tipping["a"]["missing"].number() + tipping["b"]["missing"].number() > 0;
 }
 
-std::string worse_by(const Field& side) {
+std::string worse_by(const Field& tipping, const char* which) {
+  const Field side = tipping[which];
   if (side["missing"].number() == 0) return "\xE2\x80\x93";
+  if (!tipping["reason"].words().empty())
+    return count(side["missing"]) + ": unknown, " + words(tipping["reason"]);
   if (!side["worse_by"].is_number()) return count(side["missing"]) + ": any";
   return count(side["missing"]) + ": " + fixed(side["worse_by"], 2) +
          (side["within_scale"].yes() ? "" : " (beyond the scale)");
@@ -99,19 +102,40 @@ std::string tipping(const Field& task1) {
   by_score(table, task1, anyone_missing, [&](const Field& c) {
     const Field t = c["tipping"];
     table.row({pair_name(c), count(c["n"]) + " of " + count(t["planned"]), yes_no(t["holds"]),
-               worse_by(t["a"]), worse_by(t["b"])});
+               worse_by(t, "a"), worse_by(t, "b")});
   });
-  if (table.empty()) return "";
+  return table.empty() ? "" : table.html();
+}
+
+std::string decisions_tipping(const Field& hypotheses) {
+  Table table("Tipping points of the tests of H1 to H3",
+              {"Test", "Planned", "Holds", "First: missing, worse by", "Second: missing, worse by"});
+  for (const Field& hypothesis : hypotheses.entries()) {
+    std::string group;
+    for (const Field& test : hypothesis["tests"].entries()) {
+      if (!anyone_missing(test)) continue;
+      if (group.empty()) table.group(group = words(hypothesis["id"]));
+      const Field t = test["tipping"];
+      table.row({words(test["label"]), count(t["planned"]), yes_no(t["holds"]), worse_by(t, "a"),
+                 worse_by(t, "b")});
+    }
+  }
+  return table.empty() ? "" : table.html();
+}
+
+std::string tipping_points(const Field& root) {
+  const std::string tables = tipping(root["task1"]) + decisions_tipping(root["hypotheses"]);
+  if (tables.empty()) return "";
   return paragraph(
              "A tipping point is by how many points missing answers to one method must be worse than those "
-             "of "
-             "the others let expect before the decision changes; any: none is enough.") +
-         table.html();
+             "of the others let expect before the decision changes; any: none is enough.") +
+         tables;
 }
 
 }  // namespace
 
-std::string missing_answers(const Field& task1) {
+std::string missing_answers(const Field& root) {
+  const Field task1 = root["task1"];
   const std::string fits = models(task1), pairs = comparisons(task1);
   if (fits.empty() && pairs.empty()) return "";
   return subsection("Missing answers: the mixed model and tipping points",
@@ -119,7 +143,7 @@ std::string missing_answers(const Field& task1) {
                         paragraph("The mixed model takes every answer, with scene, position and period as "
                                   "terms and random effects of the participant and of the participant with "
                                   "each method; degrees of freedom are Satterthwaite's.") +
-                        pairs + fits + tipping(task1));
+                        pairs + fits + tipping_points(root));
 }
 
 }  // namespace apps::report

@@ -32,7 +32,7 @@ std::string timing_section(const Field& root);
 std::string pilot_section(const Field& root);
 std::string task1_section(const Field& root);
 /// Of the section of Task 1: on whom pairs rest, the mixed model, tipping points.
-std::string missing_answers(const Field& task1);
+std::string missing_answers(const Field& root);
 std::string task2_section(const Field& root);
 std::string sickness_section(const Field& root);
 std::string hypotheses_section(const Field& root);

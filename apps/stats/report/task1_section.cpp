@@ -237,7 +237,7 @@ std::string task1_section(const Field& root) {
   body += list(rules);
   for (const Field& score : task1["scores"].entries()) body += one_score(task1, score);
   return section("task1", "Task 1: realism and cybersickness",
-                 body + omnibus(task1) + missing_answers(task1) + ordinal(task1) + by_scene(task1) + retest(task1));
+                 body + omnibus(task1) + missing_answers(root) + ordinal(task1) + by_scene(task1) + retest(task1));
 }
 
 }  // namespace apps::report

@@ -1,5 +1,7 @@
 #include "apps/stats/tasks/hypotheses_json.hpp"
 
+#include "apps/stats/tasks/missing_json.hpp"
+
 namespace apps {
 
 namespace {
@@ -36,14 +38,19 @@ Json test_json(const stats::HypothesisTest& test) {
   json["paper_holds"] = test.paper_holds;
   if (test.p_holm_of_five) json["p_holm_of_five"] = *test.p_holm_of_five;
   if (test.p_holm_of_ten) json["p_holm_of_ten"] = *test.p_holm_of_ten;
+  if (test.tipping) json["tipping"] = json_result(*test.tipping, tipping_json);
   return json;
+}
+
+Json tests_json(const std::vector<stats::HypothesisTest>& tests) {
+  Json list = Json::array();
+  for (const auto& test : tests) list.push_back(test_json(test));
+  return list;
 }
 
 }  // namespace
 
 Json hypothesis_json(const stats::Hypothesis& one) {
-  Json tests = Json::array();
-  for (const auto& test : one.tests) tests.push_back(test_json(test));
   Json json{{"id", one.id},
             {"title", one.title},
             {"task", one.task == 1 ? "task1" : "task2"},
@@ -58,7 +65,7 @@ Json hypothesis_json(const stats::Hypothesis& one) {
             {"confirmed_holm", one.confirmed_holm},
             {"p_claim", json_number(one.p_claim)},
             {"p_claim_of_six", json_number(one.p_claim_of_six)},
-            {"tests", tests},
+            {"tests", tests_json(one.tests)},
             {"paper",
              {{"rule", one.paper_rule},
               {"status", one.paper_supported ? "supported" : "not supported"},
@@ -66,6 +73,10 @@ Json hypothesis_json(const stats::Hypothesis& one) {
               {"published", one.paper_published}}}};
   if (one.status == stats::HypothesisStatus::NotTestable)
     json["status_if_testable"] = stats::status_name(one.status_if_testable);
+  if (one.paired)
+    json["paired"] = {{"status", stats::status_name(one.paired->status)},
+                      {"confirmed", one.paired->confirmed},
+                      {"tests", tests_json(one.paired->tests)}};
   return json;
 }
 

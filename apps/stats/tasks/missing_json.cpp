@@ -43,8 +43,11 @@ Json answers_json(const stats::MissingAnswers& one) {
           {"within_scale", one.within_scale()}};
 }
 
-/// Of the decision by the paired t test.
+/// Of the decision by the paired t test, or by the exact sign test in its place.
 Json pair_tipping_json(const ScoreTable& table, const stats::MethodComparison& one, double alpha) {
+  if (one.unanimous)
+    return json_result(stats::no_tipping_point(table, one.n_star, one.a, one.b, *one.p() < alpha),
+                       tipping_json);
   if (!one.t) return json_refused(one.t.reason());
   const double half = stats::student_upper_quantile(0.5 * alpha, one.t->df) * one.t->stderr_estimate;
   return json_result(stats::tipping_point_two_sided(table, one.n_star, one.a, one.b, one.t->estimate, half),
@@ -57,7 +60,8 @@ Json tipping_json(const stats::TippingPoint& tipping) {
   return {{"planned", tipping.planned},
           {"holds", tipping.holds},
           {"a", answers_json(tipping.a)},
-          {"b", answers_json(tipping.b)}};
+          {"b", answers_json(tipping.b)},
+          {"reason", tipping.reason}};
 }
 
 void add_missing_data(Json& comparison, const ScoreTable& table, const stats::MethodComparison& one,

@@ -17,6 +17,7 @@ constexpr std::size_t largest_plan = 1u << 20;
 constexpr std::array timing_names{"none", "fail", "degraded"};
 constexpr std::array repeated_names{"refuse", "warn"};
 constexpr std::array decision_names{"intersection-union", "holm"};
+constexpr std::array tests_names{"paired", "mixed"};
 constexpr const char* as_once_frozen = "H2, H3 and H6";
 
 std::string shortest(double value) {
@@ -67,6 +68,8 @@ void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   const auto* const fallback = decision_names[static_cast<std::size_t>(plan.decision)];
   const auto decision = root.choice_or("decision", fallback, {decision_names.begin(), decision_names.end()});
   plan.decision = static_cast<stats::DecisionRule>(index_in(decision_names, decision));
+  const auto tests = root.choice_or("tests", "paired", {tests_names.begin(), tests_names.end()});
+  plan.tests = static_cast<stats::ScoreTests>(index_in(tests_names, tests));
   if (!root.has("directional")) return;
   if (root.is_text("directional")) {
     root.choice("directional", {as_once_frozen});
@@ -135,8 +138,11 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "                    # of each claim\ndecision = \"" +
          decision_names[static_cast<std::size_t>(plan.decision)] +
          "\"  # a claim needs all of its tests, each at alpha; or \"holm\": each after Holm\ndirectional = " +
-         directional_json(plan.directional).dump() +
-         "             # true: tests are one-sided\nconfidence = " + shortest(plan.confidence) +
+         directional_json(plan.directional).dump() + "             # true: tests are one-sided\ntests = \"" +
+         tests_names[static_cast<std::size_t>(plan.tests)] +
+         "\"                # of H1 to H3: paired t tests, or the \"mixed\" model of all answers\nconfidence "
+         "= " +
+         shortest(plan.confidence) +
          "               # of intervals\nresamples = " + std::to_string(plan.resamples) +
          "               # of BCa intervals\nseed = " + std::to_string(plan.seed) +
          "\nmore_than_one_trial = \"" + repeated_names[static_cast<std::size_t>(plan.repeated_pairs)] +
@@ -172,6 +178,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
           {"alpha", plan.alpha},
           {"decision", decision_names[static_cast<std::size_t>(plan.decision)]},
           {"directional", directional_json(plan.directional)},
+          {"tests", tests_names[static_cast<std::size_t>(plan.tests)]},
           {"confidence", plan.confidence},
           {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
           {"exclusions",

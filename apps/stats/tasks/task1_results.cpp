@@ -125,6 +125,7 @@ stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::Ana
   const auto hypotheses = verdicts(out.tables, data, plan);
   if (!hypotheses) return stats::Refusal{hypotheses.reason()};
   out.hypotheses = *hypotheses;
+  stats::add_tipping_points(out.hypotheses, out.tables);
   for (const auto& table : out.tables) out.analyses.push_back(stats::analyse_scores(table, plan));
   out.ordinal = fit_ordinal(data, plan);
   return out;

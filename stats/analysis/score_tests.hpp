@@ -1,0 +1,42 @@
+#pragma once
+/// The tests of H1 to H3, each of one difference between two methods at one n_*: by a paired t test, or by
+/// the mixed model.
+
+#include <optional>
+#include <string>
+
+#include "stats/analysis/hypothesis_family.hpp"
+#include "stats/analysis/mixed_scores.hpp"
+#include "stats/inference/alternative.hpp"
+#include "stats/inference/unanimous.hpp"
+
+namespace stats {
+
+/// a - b with its standard error.
+struct ScoreDifference {
+  double estimate = 0, se = 0, df = 0;
+  double t(double null = 0) const { return (estimate - null) / se; }
+  double p(Alternative side, double null = 0) const;
+};
+
+/// What a test is made of.
+struct ScoreContrast {
+  HypothesisTest test;  ///< what is known without a difference, and why there is none
+  std::optional<ScoreDifference> difference;
+  std::optional<Unanimous> unanimous;  ///< all paired differences are the same, and tested by sign
+  bool higher_is_better = true;
+  double margin = 0;
+};
+
+/// `model`: of all answers of the table; null: paired.
+ScoreContrast score_contrast(const ScoreTable& table, const Result<MixedScores>* model, int n_star,
+                             const std::string& a, const std::string& b);
+
+/// a is better than b.
+FamilyTest superiority(ScoreContrast contrast, const Family& family);
+/// a and b differ by less than the margin: two one-sided tests.
+FamilyTest equivalence(ScoreContrast contrast, const Family& family);
+/// a is not worse than b by the margin.
+FamilyTest non_inferiority(ScoreContrast contrast, const Family& family);
+
+}  // namespace stats
