@@ -41,7 +41,7 @@ void add_preregister_command(CLI::App& app) {
   sub->add_option("--out", command->out, "Folder to be made")->required()->check(output_folder());
   sub->add_option(
       "--plan", command->plan,
-      "Analysis plan (TOML): decision rule, margins, level, exclusion rules; without: the defaults");
+      "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules; without: the defaults");
   sub->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--power", command->power, "Result of vip-stats power --json, to be frozen as well");

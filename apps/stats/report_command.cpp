@@ -92,9 +92,9 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
-  auto* plan = sub->add_option(
-      "--plan", command->plan,
-      "Analysis plan (TOML): decision rule, margins, level, exclusion rules, seed; without: the defaults");
+  auto* plan = sub->add_option("--plan", command->plan,
+                               "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, "
+                               "seed; without: the defaults");
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
       ->excludes(plan);

@@ -144,6 +144,26 @@ TEST(MissingAnswers, TheTestsOfHypothesesHaveTippingPoints) {
   EXPECT_THAT(report::results_page(results_of(made_study::task1(12))), Not(HasSubstr("Tipping points of")));
 }
 
+TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
+  auto protocol = with_dropout(12);
+  for (auto& session : protocol.sessions)
+    for (auto& trial : session.trials)
+      for (auto& answer : trial.answers)
+        if (answer.score) answer.score = trial.position % 3;
+  const auto json = results_of(protocol);
+  int without = 0;
+  for (const auto& one : json.at("task1").at("comparisons")) {
+    const Json& tipping = one.at("tipping");
+    EXPECT_EQ(one.at("test"), "exact sign test");
+    EXPECT_EQ(tipping.at("holds"), one.at("p") < 0.05);
+    EXPECT_THAT(tipping.at("reason").get<std::string>(), HasSubstr("all differences are equal"));
+    EXPECT_TRUE(tipping.at("a").at("worse_by").is_null());
+    without += tipping.at("a").at("missing") > 0 ? 1 : 0;
+  }
+  EXPECT_GT(without, 0);
+  EXPECT_THAT(report::results_page(json), HasSubstr("unknown, "));
+}
+
 // What is tested stands in the results of each pair already.
 TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
   const auto json = results_of(with_dropout(12), stats::ScoreTests::Mixed);

@@ -268,7 +268,7 @@ void add_power_command(CLI::App& app) {
       ->check(CLI::Range(2, 1000000));
   sub->add_option("--seed", request.seed, "Seed")->capture_default_str();
   sub->add_option("--plan", command->plan,
-                  "Analysis plan (TOML): decision rule, margins, level; without: the defaults");
+                  "Analysis plan (TOML): decision rule, tests, margins, level; without: the defaults");
   sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "File for the same numbers as a table")->check(output_file());

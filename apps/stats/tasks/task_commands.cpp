@@ -139,9 +139,9 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
   sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
-  sub->add_option(
-      "--plan", command->plan,
-      "Analysis plan (TOML): decision rule, margins, level, exclusion rules, seed; without: the defaults");
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, seed; "
+                  "without: the defaults");
   sub->add_option("--protocol", command->protocol, "First digits of the protocol's SHA-256");
   sub->footer(
       "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
