@@ -1,7 +1,7 @@
 #pragma once
 /// Where the paper can be read in more than one way: one switch each, two presets. `paper` follows the
 /// paper's own equation wherever it is possible, with plain misprints mended; `tuned` takes the reading that
-/// is recommended. README.md compares their pictures.
+/// is recommended. docs/figures.md compares their pictures.
 
 #include <string>
 #include <string_view>

@@ -141,7 +141,7 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
   }
 }
 
-/// 520 mm seen from 600 mm, 16:9: what the README's flags once made of the camera.
+/// 520 mm seen from 600 mm, 16:9: what docs/session.md's flags once made of the camera.
 TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
     const sim::Scene scene = shipped(name);
