@@ -94,8 +94,8 @@ void print_fit(const PilotFit& fit) {
   }
   const auto main = fit.main();
   if (main.spread)
-    print_estimate(fit.level, "for the solver", "", main.fit->a, main.fit->b, &main.spread->a_ci,
-                   &main.spread->b_ci);
+    print_estimate(fit.level, fit.doubts.empty() ? "for the solver" : "not for a solver", "", main.fit->a,
+                   main.fit->b, &main.spread->a_ci, &main.spread->b_ci);
   print_curve(fit);
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }

@@ -125,8 +125,13 @@ void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direc
   }
 }
 
-void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main) {
+void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const PilotEstimate& contour) {
   if (!main.spread) return;
+  if (!main.spread->spans_contour) {
+    flags.push_back({"contour_without_interval",
+                     "the contour has no interval (" + contour.spread.reason() +
+                         "): those for the solver are the direct estimate's alone, which may be too narrow"});
+  }
   if (main.spread->b_ci[0] <= 0 && main.spread->b_ci[1] >= 0) {
     flags.push_back({"b_holds_zero", "the interval of b holds 0: no effect of the fluctuation is shown"});
   }
@@ -208,7 +213,7 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
   flag_data(fit.flags, data, table);
   flag_direct(fit.flags, fit.chosen().direct);
-  flag_main(fit.flags, fit.main());
+  flag_main(fit.flags, fit.main(), fit.chosen().contour);
   flag_contour(fit.flags, fit.chosen().contour.contour);
   flag_resamples(fit.flags, fit.chosen().contour);
   fit.data = std::move(data);

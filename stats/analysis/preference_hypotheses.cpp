@@ -17,7 +17,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
   test.label = a + " preferred to " + b;
   test.a = a;
   test.b = b;
-  test.ci_confidence = plan.confidence;
+  test.ci_confidence = 1 - plan.alpha;
   for (const PairPreference& pair : pairs) {
     const std::string& first = methods[static_cast<std::size_t>(pair.a)];
     const std::string& second = methods[static_cast<std::size_t>(pair.b)];
@@ -27,7 +27,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
     test.k = forwards ? pair.k : pair.n - pair.k;
     test.reason = pair.test.reason();
     if (!pair.test) return {test};
-    const auto own = binomial_test(*test.k, pair.n, 0.5, side, plan.confidence);
+    const auto own = binomial_test(*test.k, pair.n, 0.5, side, test.ci_confidence);
     test.estimate = own->estimate;
     test.ci = own->clopper_pearson;
     test.p = own->p;

@@ -199,7 +199,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearModel& model, std::span<const 
   if (!all_finite(start) || !all_finite(residuals)) return Refusal{"the model is not finite at the start"};
   NonlinearFit out;
   const auto best = search(model, start, out.runs);
-  if (!std::isfinite(best.rss) || !best.converged()) return Refusal{"the solver did not converge"};
+  if (!std::isfinite(best.rss) || !best.converged()) return Refusal{"the least squares did not converge"};
   out.parameters = best.parameters;
   out.standard_errors = best.standard_errors;
   out.rss = best.rss;

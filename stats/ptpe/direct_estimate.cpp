@@ -50,7 +50,10 @@ Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>
   const double mm = jackknife_covariance(m, m), mq = jackknife_covariance(m, q),
                qq = jackknife_covariance(q, q);
   const double determinant = mm * qq - mq * mq, n = static_cast<double>(m.size());
-  if (!(determinant > 1e-12 * mm * qq)) return Refusal{"the participants agree: m and q have no spread"};
+  // What is left where people do not differ is rounding (and an F of 1e18).
+  const auto no_spread = [](double variance, double value) { return !(variance > 1e-18 * value * value); };
+  if (no_spread(mm, fit.m) || no_spread(qq, fit.q) || !(determinant > 1e-12 * mm * qq))
+    return Refusal{"the participants agree: m and q have no spread"};
   const double t2 = (qq * fit.m * fit.m - 2 * mq * fit.m * fit.q + mm * fit.q * fit.q) / determinant;
   LackOfFit test;
   test.m = fit.m;

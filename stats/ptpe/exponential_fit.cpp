@@ -268,7 +268,7 @@ Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<cons
   if (!std::isfinite(best.rss) || std::abs(best.B) > largest_rate) {
     return Refusal{"no finite minimum: the sum of squares falls for ever steeper curves"};
   }
-  if (!is_minimum(data, best)) return Refusal{"the solver did not converge"};
+  if (!is_minimum(data, best)) return Refusal{"the least squares did not converge"};
   const auto fit = unscaled(data, best);
   if (!std::isfinite(fit.a) || !std::isfinite(fit.b) || !std::isfinite(fit.rss)) {
     return Refusal{"a, b or the sum of squares is beyond double precision"};

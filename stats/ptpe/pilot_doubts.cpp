@@ -123,8 +123,8 @@ void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& peop
   if (least >= fall_level) return;
   doubts.push_back(
       {"falls", words("the scores fall where the mean frame rate rises: %+.2f points from %g to %g "
-                      "frames/s (one-sided p = %.4f after Bonferroni, limit %g)",
-                      change, low, high, least, fall_level)});
+                      "frames/s (one-sided p %s %.4f after Bonferroni, limit %g)",
+                      change, low, high, least < 1e-4 ? "<" : "=", std::max(least, 1e-4), fall_level)});
 }
 
 /// The intervals that an estimator gives a and b, 0 and 1.

@@ -73,6 +73,8 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     EXPECT_EQ(refused.exit_code, 1) << refused.out;
     EXPECT_THAT(refused.out, HasSubstr("mend: "));
     EXPECT_THAT(refused.out, HasSubstr(bad.reason));
+    EXPECT_THAT(refused.out, testing::Not(HasSubstr(" for the solver "))) << "as a name of an estimate";
+    EXPECT_EQ(refused.out.find("not for a solver  ") != std::string::npos, bad.forced);
     for (const char* name : {"ptpe.toml", "ptpe.toml.history.jsonl", "heat.svg"})
       EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
     // The numbers may be looked at, with the reason in them.

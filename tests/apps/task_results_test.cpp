@@ -322,6 +322,7 @@ TEST(AnalysisPlan, MistakesAreNamedWithTheirPlace) {
   refuse("format = 2\n", "format");
   refuse("format = 1\ndecision = \"bonferroni\"\n", "decision");
   refuse("format = 1\ndirectional = \"H1\"\n", "directional");
+  refuse("format = 1\ndirectional = \"yes\"\n", "use true or false, without quotes");
   refuse("format = 1\ndirectional = 1\n", "directional");
   refuse("format = 1\ntests = \"welch\"\n", "tests");
   refuse("format = 1\n[exclusions]\ntiming = \"all\"\n", "timing");

@@ -113,6 +113,10 @@ TEST(Hypotheses, TestsAreThoseOfTheTable) {
   };
   EXPECT_NEAR(*h3.p, against_margin(Alternative::TwoSided), 1e-12);
   const auto sided = task1_hypotheses(realism, sickness, one_sided_throughout(), "");
+  AnalysisPlan strict;
+  strict.alpha = 0.01;
+  for (const auto& hypothesis : task1_hypotheses(realism, sickness, strict, ""))
+    for (const auto& test : hypothesis.tests) EXPECT_DOUBLE_EQ(test.ci_confidence, 0.99) << hypothesis.id;
   EXPECT_NEAR(*sided[0].tests[1].p,
               t_test_paired(realism.column(1, 2), realism.column(1, 1), {Alternative::Greater, 0.95, 0})->p,
               1e-12);

@@ -81,6 +81,16 @@ TEST(PreferenceHypotheses, ThePreferenceMustPointTheRightWay) {
   EXPECT_EQ(all[2].status, HypothesisStatus::Supported);
 }
 
+TEST(PreferenceHypotheses, IntervalsHoldWhatTheLevelLeaves) {
+  AnalysisPlan plan;
+  plan.alpha = 0.01;
+  // 20 of 26: p = .0094.
+  const auto h6 = preferences(13, 13, 13, 20, 13, "", plan)[2];
+  EXPECT_DOUBLE_EQ(h6.tests[0].ci_confidence, 0.99);
+  EXPECT_LT(*h6.tests[0].p, 0.01);
+  EXPECT_GT((*h6.tests[0].ci)[0], 0.5);
+}
+
 TEST(PreferenceHypotheses, OneSidedWhereThePlanSaysSo) {
   // 18 of 26: two-sided p = .076, one-sided .038.
   const auto two = preferences(13, 13, 13, 18, 18)[2];
@@ -90,6 +100,8 @@ TEST(PreferenceHypotheses, OneSidedWhereThePlanSaysSo) {
   EXPECT_NEAR(*one.tests[0].p, 0.0378, 0.0005);
   EXPECT_NEAR(*one.tests[0].paper_p, 0.0755, 0.0005);
   EXPECT_EQ((*one.tests[0].ci)[1], 1);
+  EXPECT_GT((*one.tests[0].ci)[0], 0.5) << "the bound decides as p does";
+  EXPECT_LT((*two.tests[0].ci)[0], 0.5);
   EXPECT_EQ(one.status, HypothesisStatus::Supported) << "each below .05, which is what the claim needs";
   const auto earlier = preferences(13, 13, 13, 18, 18, "", frozen_earlier())[2];
   EXPECT_NEAR(*earlier.tests[0].p, 0.0378, 0.0005) << "H6 was one-sided";

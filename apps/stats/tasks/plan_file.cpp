@@ -72,7 +72,9 @@ void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   plan.tests = static_cast<stats::ScoreTests>(index_in(tests_names, tests));
   if (!root.has("directional")) return;
   if (root.is_text("directional")) {
-    root.choice("directional", {as_once_frozen});
+    if (root.string("directional") != as_once_frozen)
+      root.fail("directional", "is '" + root.string("directional") + "'",
+                "use true or false, without quotes, or \"" + std::string(as_once_frozen) + "\"");
     plan.directional = stats::Directional::H2H3H6;
   } else {
     plan.directional = root.boolean("directional") ? stats::Directional::All : stats::Directional::None;

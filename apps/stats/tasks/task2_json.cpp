@@ -94,9 +94,8 @@ Json interval_json(const stats::IntervalBias& bias) {
           {"clopper_pearson", ok ? json_interval(bias.test->clopper_pearson) : Json()},
           {"wilson", ok ? json_interval(bias.test->wilson) : Json()},
           {"warning",
-           "this test takes all answers as independent; by_participant holds whatever the answers of one "
-           "person have "
-           "in common"},
+           "this test takes all answers as independent; the one over participants' shares holds whatever the "
+           "answers of one person have in common"},
           {"by_participant", by_participant_json(bias)}};
 }
 

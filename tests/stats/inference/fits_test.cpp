@@ -138,7 +138,7 @@ TEST(NonlinearFit, FindsWhatMadeTheData) {
 TEST(NonlinearFit, DoesNotBelieveTheSolver) {
   // From b2 = 800 the model is 0 but at x = 0: the solver stops there at once, b2 is not identifiable.
   const Values x{0, 1, 2, 3}, y{4, 2.1, 0.9, 0.6};
-  EXPECT_EQ(fit_nonlinear(decay(x, y), Values{4, 800}).reason(), "the solver did not converge");
+  EXPECT_EQ(fit_nonlinear(decay(x, y), Values{4, 800}).reason(), "the least squares did not converge");
   const std::vector<Values> starts{{4, 800}, {1, 1}};
   const auto fit = fit_nonlinear(decay(x, y), std::span<const Values>(starts));
   ASSERT_TRUE(fit) << fit.reason();

@@ -64,6 +64,9 @@ TEST(PilotDoubts, ScoresThatLevelOffAreNotAFall) {
 TEST(PilotDoubts, PeopleWhoAllAgreeHaveNoSpread) {
   auto one = simulated::pilot({24, 0.02, 0.14, 0, 0}, 8, 1);
   EXPECT_THAT(doubts_of(one), Contains("no_spread"));
+  const stats::PilotTable table(one);
+  const auto direct = stats::estimate_direct(table.observations(stats::PilotMean::Harmonic), 4, {0, 1, 0.95});
+  EXPECT_THAT(direct.lack_of_fit.reason(), testing::HasSubstr("the participants agree"));
 }
 
 TEST(PilotDoubts, ALikingOfFluctuationIsDoubted) {

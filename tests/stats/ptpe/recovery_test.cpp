@@ -145,6 +145,7 @@ TEST(EstimatorRecoverySlow, Grid) {
     for (const double b : {-0.01, 0.01, 0.03, 0.05})
       kinds.push_back({surfaces::parametric(a, b), 16, a >= 18 && a <= 30 && b > 0 && b < 0.04});
   }
+  for (const int people : {16, 40}) kinds.push_back({surfaces::parametric(15, 0.015), people});
   kinds.push_back({surfaces::parametric(18, 0.01), 40, true});
   for (const int people : {6, 40}) {
     for (const double a : {18.0, 24.0, 30.0})
