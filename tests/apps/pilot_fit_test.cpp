@@ -87,6 +87,21 @@ TEST(PilotFit, WidthIsJudgedWhereTheCurveIsInReach) {
   EXPECT_EQ(fit.relative_half_width(), widest);
 }
 
+TEST(PilotFit, AContourWithoutAnIntervalIsFlagged) {
+  // The contour of few people at the edge of the settings often has no fit; the first such pilot will do.
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const auto fit = fit_of(simulated_pilot("ptpe:a=15,b=0.015", 8, seed));
+    if (!fit.ok()) continue;
+    const auto& direct = *fit.chosen().direct.jackknife;
+    EXPECT_EQ(has_flag(fit, "contour_without_interval"), !fit.chosen().contour.spread) << seed;
+    if (fit.chosen().contour.spread) continue;
+    EXPECT_EQ(fit.main().spread->a_ci, direct.a_ci);
+    EXPECT_EQ(fit.main().spread->b_ci, direct.b_ci);
+    return;
+  }
+  FAIL() << "no pilot without a contour";
+}
+
 TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 6, 3);
   auto& trials = pilot.sessions[0].trials;
