@@ -117,6 +117,8 @@ Json fit_json(const PilotFit& fit) {
   json["n_settings"] = fit.settings;
   json["flags"] = Json::array();
   for (const auto& flag : fit.flags) json["flags"].push_back({{"code", flag.code}, {"text", flag.text}});
+  json["doubts"] = Json::array();
+  for (const auto& doubt : fit.doubts) json["doubts"].push_back(doubt.code);
   json["estimator"] = estimator;
   json["interval"] = {{"method", interval_method(fit.main())}, {"confidence", fit.bootstrap.confidence}};
   json["bootstrap"] = {{"resamples", fit.bootstrap.resamples}, {"seed", fit.bootstrap.seed}};

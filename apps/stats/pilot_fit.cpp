@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
 
 #include "apps/common/program.hpp"
@@ -179,10 +178,7 @@ MainEstimate PilotFit::main() const {
 
 double PilotFit::relative_half_width() const {
   const auto& direct = chosen().direct;
-  std::vector<double> in_reach;
-  std::set_difference(deltas.begin(), deltas.end(), direct.out_of_reach.begin(), direct.out_of_reach.end(),
-                      std::back_inserter(in_reach));
-  return direct.jackknife->largest_relative_half_width(in_reach);
+  return direct.jackknife->largest_relative_half_width(direct.in_reach_of(deltas));
 }
 
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap) {

@@ -119,7 +119,7 @@ FamilyTest superiority(ScoreContrast contrast, const Family& family) {
   test.t = d.t();
   test.p = d.p(one_sided ? better_side(contrast) : Alternative::TwoSided);
   test.paper_holds = test.paper_p && paper_differs(contrast, family) && better;
-  set_interval(contrast, 1 - (one_sided ? 2 : 1) * family.plan.alpha);
+  set_interval(contrast, 1 - 2 * level_of(family));
   return {test, one_sided || better};
 }
 

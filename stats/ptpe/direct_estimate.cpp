@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -132,6 +133,13 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
   std::erase_if(out.kept, [&](const auto& o) { return beyond[o.nominal_delta] > farthest; });
   leave_out_far_above(out, level);
   return out;
+}
+
+std::vector<double> DirectEstimate::in_reach_of(std::span<const double> deltas) const {
+  std::vector<double> kept;
+  std::set_difference(deltas.begin(), deltas.end(), out_of_reach.begin(), out_of_reach.end(),
+                      std::back_inserter(kept));
+  return kept;
 }
 
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,

@@ -92,6 +92,10 @@ struct DirectEstimate {
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
+
+  /// Of these nominal deltas, ascending, those that are not out_of_reach: beyond them the curve is
+  /// extrapolated.
+  std::vector<double> in_reach_of(std::span<const double> deltas) const;
 };
 
 /// By this factor a curve may run outside the frame rates shown at a delta and still be within reach, so that
@@ -99,7 +103,7 @@ struct DirectEstimate {
 inline constexpr double reach_margin = 1.15;
 /// Settings above this multiple of the curve are left out: towards the top of the scale the scores level off,
 /// and a quadratic that follows them there misses the level (a = 18, b = 0.01, 40 people: a's bias falls from
-/// 1.4 to 0.4 frames/s, the intervals hold it in 94 instead of 67 %).
+/// 1.4 to 0.4 frames/s, the intervals hold it in 93 instead of 67 %).
 inline constexpr double far_factor = 2.46;
 
 /// What within_reach found.

@@ -15,7 +15,7 @@ struct SolverInterval {
 };
 
 /// The direct estimate has the smaller error, but an interval that knows of chance alone: where the scores
-/// are no quadratic it held b in as few as 86 %. The contour assumes no shape of the scores and has the
+/// are no quadratic it held b in as few as 84 %. The contour assumes no shape of the scores and has the
 /// larger error. So the intervals reach over both (measured: docs/statistics.md).
 SolverInterval solver_interval(const CurveSpread& direct, const Result<PilotSpread>& contour);
 

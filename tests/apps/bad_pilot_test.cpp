@@ -82,6 +82,14 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     if (bad.forced) {
       EXPECT_FALSE(json.at("solver_file").at("refused").empty());
     }
+    const std::string page = (folder / "report.html").string();
+    EXPECT_EQ(apps::test::run_shell(VIP_BIN_DIR "/vip-stats report " + (folder / "study.db").string() +
+                                    " --html " + page)
+                  .exit_code,
+              0);
+    const std::string report = base::read_file(page, 1 << 24);
+    EXPECT_THAT(report, testing::Not(HasSubstr("For the solver, at level")));
+    EXPECT_EQ(report.find("Not for a solver, at level") != std::string::npos, bad.forced);
     EXPECT_EQ(apps::test::run_shell(fit + " --force").exit_code, bad.forced ? 0 : 1);
     EXPECT_EQ(std::filesystem::exists(folder / "ptpe.toml"), bad.forced);
   }

@@ -61,13 +61,6 @@ std::string estimates(const Field& pilot) {
   return table.empty() ? "" : table.html();
 }
 
-/// A doubt of pilot_doubts stands among the flags.
-bool refused(const Field& pilot) {
-  const auto flags = pilot["flags"].entries();
-  return std::any_of(flags.begin(), flags.end(),
-                     [](const Field& flag) { return flag["text"].words().starts_with("not for a solver"); });
-}
-
 std::string bands(const Field& pilot) {
   Table table("The curve \xCE\xBC(\xCE\xB4) with its bands, frames/s",
               {"\xCE\xB4", "\xCE\xBC", "CI at this \xCE\xB4", "band over all \xCE\xB4"});
@@ -127,11 +120,12 @@ std::string pilot_section(const Field& root) {
     return section("pilot", "Pilot: tolerance of frame rates",
                    "<p class=\"refused\">No fit: " + svg::escaped(reason) + ".</p>\n");
   }
-  std::string body = paragraph(
-      count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) + " ratings of " +
-      count(pilot["n_settings"]) + " settings. " + (refused(pilot) ? "Not for a solver" : "For the solver") +
-      ", at level " + fixed(pilot["level"], 1) + ": <i>a</i> = " + a_with_interval(pilot) +
-      " frames/s, <i>b</i> = " + b_with_interval(pilot) + " s/frame.");
+  std::string body =
+      paragraph(count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) +
+                " ratings of " + count(pilot["n_settings"]) + " settings. " +
+                (pilot["doubts"].entries().empty() ? "For the solver" : "Not for a solver") + ", at level " +
+                fixed(pilot["level"], 1) + ": <i>a</i> = " + a_with_interval(pilot) +
+                " frames/s, <i>b</i> = " + b_with_interval(pilot) + " s/frame.");
   for (const Field& flag : pilot["flags"].entries())
     body += "<p class=\"warning\">" + words(flag["text"]) + "</p>\n";
   if (!pilot["cells"].entries().empty() && pilot["a_ci"].entries().size() == 2)

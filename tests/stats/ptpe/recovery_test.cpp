@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,9 +54,7 @@ All estimate(const Population& population, const Truth& truth, int participants,
   const auto ordinal = stats::estimate_ordinal_pilot(ratings, stats::PilotMean::Harmonic, 4, 0.95);
   All out;
   const bool doubted = !stats::pilot_doubts(table, direct, contour, ordinal).empty();
-  std::vector<double> in_reach;
-  std::set_difference(surfaces::deviations.begin(), surfaces::deviations.end(), direct.out_of_reach.begin(),
-                      direct.out_of_reach.end(), std::back_inserter(in_reach));
+  const auto in_reach = direct.in_reach_of(surfaces::deviations);
   const auto usable = [&](const auto& spread) {
     return !doubted && spread && spread->largest_relative_half_width(in_reach) <= widest;
   };
