@@ -1,7 +1,7 @@
 #include "apps/study/bakes/bake_plan.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "apps/study/check/rehearsal.hpp"
@@ -33,11 +33,7 @@ std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
-  if (one.rate) {
-    char rate[64];
-    std::snprintf(rate, sizeof rate, "_%.6g_%.6g", one.rate->mean, one.rate->sd);
-    out += rate;
-  }
+  if (one.rate) out += fmt::format("_{:.6g}_{:.6g}", one.rate->mean, one.rate->sd);
   return out + ".bake";
 }
 
