@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"

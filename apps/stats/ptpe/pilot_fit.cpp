@@ -1,4 +1,4 @@
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

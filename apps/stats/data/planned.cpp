@@ -1,4 +1,4 @@
-#include "apps/stats/tasks/planned.hpp"
+#include "apps/stats/data/planned.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,11 +1,11 @@
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
-#include "apps/stats/tasks/planned.hpp"
-#include "apps/stats/tasks/trial_record.hpp"
+#include "apps/stats/data/planned.hpp"
+#include "apps/stats/data/trial_record.hpp"
 
 namespace apps {
 

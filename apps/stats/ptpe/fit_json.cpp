@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
-#include "apps/stats/estimates_json.hpp"
-#include "apps/stats/pilot_fit.hpp"
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/ptpe/estimates_json.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 #include "stats/base/file.hpp"
 #include "stats/gsl_errors.hpp"
 #include "stats/inference/describe.hpp"

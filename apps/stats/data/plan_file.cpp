@@ -1,4 +1,4 @@
-#include "apps/stats/tasks/plan_file.hpp"
+#include "apps/stats/data/plan_file.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
-#include "apps/stats/tasks/trial_record.hpp"
+#include "apps/stats/data/trial_record.hpp"
 
 #include <algorithm>
 #include <tuple>
 
-#include "apps/stats/tasks/task_choice.hpp"
+#include "apps/stats/data/task_choice.hpp"
 
 namespace apps {
 

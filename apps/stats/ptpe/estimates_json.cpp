@@ -1,4 +1,4 @@
-#include "apps/stats/estimates_json.hpp"
+#include "apps/stats/ptpe/estimates_json.hpp"
 
 #include <cmath>
 #include <cstdio>

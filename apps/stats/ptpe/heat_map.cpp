@@ -1,4 +1,4 @@
-#include "apps/stats/heat_map.hpp"
+#include "apps/stats/ptpe/heat_map.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "apps/stats/contour_lines.hpp"
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/contour_lines.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 
 namespace apps {
 

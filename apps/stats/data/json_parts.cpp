@@ -1,4 +1,4 @@
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
 
 #include <cmath>
 

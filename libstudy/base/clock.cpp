@@ -1,4 +1,4 @@
-#include "libstudy/pacing/clock.hpp"
+#include "libstudy/base/clock.hpp"
 
 #include <ctime>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Task 1: what was planned for those whose answers count.
 
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 namespace apps {
 

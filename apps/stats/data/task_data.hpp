@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/task_choice.hpp"
+#include "apps/stats/data/task_choice.hpp"
 #include "stats/analysis/exclusions.hpp"
 #include "stats/analysis/score_table.hpp"
 #include "stats/analysis/task2.hpp"

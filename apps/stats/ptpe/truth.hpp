@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
 namespace apps {

@@ -1,4 +1,4 @@
-#include "apps/stats/tasks/task_choice.hpp"
+#include "apps/stats/data/task_choice.hpp"
 
 #include <algorithm>
 

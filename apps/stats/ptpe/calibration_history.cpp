@@ -1,4 +1,4 @@
-#include "apps/stats/calibration_history.hpp"
+#include "apps/stats/ptpe/calibration_history.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sstream>

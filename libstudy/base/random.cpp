@@ -1,4 +1,4 @@
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "apps/stats/truth.hpp"
+#include "apps/stats/ptpe/truth.hpp"
 
 #include <array>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "apps/stats/contour_lines.hpp"
+#include "apps/stats/ptpe/contour_lines.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 
 namespace apps {
 
