@@ -98,45 +98,40 @@ class ColumnView {
   /// Of particles that nobody may change.
   explicit ColumnView(const Particles& particles) requires(may_write.empty())
       : particles_(const_cast<Particles*>(&particles)) {}
+  /// Of a view that declares at least as much.
   template <ColumnSet R, ColumnSet W, ColumnSet I, ColumnSet WI>
-  ColumnView(const ColumnView<R, W, I, WI>& wider) : particles_(wider.particles_) {
-    static_assert((R | W).holds(Reads) && W.holds(Writes) && (R | W | I | WI).holds(may_read) &&
-                      (W | WI).holds(may_write),
-                  "the caller does not declare what this pass reads or writes");
-  }
+  requires((R | W).holds(Reads) && W.holds(Writes) && (R | W | I | WI).holds(may_read) &&
+           (W | WI).holds(may_write)) ColumnView(const ColumnView<R, W, I, WI>& wider)
+      : particles_(wider.particles_) {}
 
   int size() const { return particles_->size(); }
   int capacity() const { return particles_->capacity(); }
   bool has(Column column) const { return particles_->has(column); }
 
-#define SIM_ACCESS(Name, member, Type, life)                                                     \
-  auto member() const->std::conditional_t<may_write.has(Column::Name), Type*, const Type*> {     \
-    static_assert(may_read.has(Column::Name), "this pass does not declare the column " #member); \
-    return particles_->all().member.data();                                                      \
+#define SIM_ACCESS(Name, member, Type, life)                                   \
+  std::conditional_t<may_write.has(Column::Name), Type*, const Type*> member() \
+      const requires(may_read.has(Column::Name)) {                             \
+    return particles_->all().member.data();                                    \
   }
   SIM_COLUMNS(SIM_ACCESS, SIM_NOTHING)
 #undef SIM_ACCESS
 
   /// The first column gets the second one's values.
   template <Column To, Column From>
-  void copy() const {
-    static_assert(may_write.has(To) && may_read.has(From));
+  void copy() const requires(may_write.has(To) && may_read.has(From)) {
     const auto& from = array<From>();
     copy_within(array<To>().data(), from.data(), from.size() * sizeof(*from.data()));
   }
   template <Column A, Column B>
-  void swap() const {
-    static_assert(may_write.has(A) && may_write.has(B));
+  void swap() const requires(may_write.has(A) && may_write.has(B)) {
     array<A>().swap(array<B>());
   }
   template <Column C, class T>
-  void swap(Array<T>& values) const {
-    static_assert(may_write.has(C));
+  void swap(Array<T>& values) const requires(may_write.has(C)) {
     array<C>().swap(values);
   }
   template <Column C>
-  void zero() const {
-    static_assert(may_write.has(C));
+  void zero() const requires(may_write.has(C)) {
     array<C>().zero();
   }
 
