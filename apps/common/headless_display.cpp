@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "libstudy/pacing/clock.hpp"
+#include "libstudy/base/clock.hpp"
 
 namespace apps {
 

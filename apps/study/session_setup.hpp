@@ -8,8 +8,8 @@
 #include "apps/study/run_options.hpp"
 #include "apps/study/session_framing.hpp"
 #include "apps/study/window_parts.hpp"
+#include "libstudy/base/clock.hpp"
 #include "libstudy/observer/observer.hpp"
-#include "libstudy/pacing/clock.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/session/session.hpp"
 

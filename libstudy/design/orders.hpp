@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 
 namespace study {
 

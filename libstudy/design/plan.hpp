@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 #include "libstudy/protocol/protocol.hpp"
 
 namespace study {

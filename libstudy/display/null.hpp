@@ -1,8 +1,8 @@
 #pragma once
 /// Nothing to see: for plans, observers and stores that are tried without a fluid or a screen.
 
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/pacing/clock.hpp"
 
 namespace study {
 

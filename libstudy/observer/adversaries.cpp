@@ -1,6 +1,6 @@
 #include "libstudy/observer/adversaries.hpp"
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 #include "libstudy/observer/specification.hpp"
 
 namespace study {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 
 namespace study {
 

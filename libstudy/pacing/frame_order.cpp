@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 
 namespace study {
 

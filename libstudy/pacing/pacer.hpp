@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/pacing/clock.hpp"
 #include "libstudy/pacing/schedule.hpp"
 #include "stats/fps_window.hpp"
 

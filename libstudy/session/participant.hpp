@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/pacing/clock.hpp"
+#include "libstudy/base/clock.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/fps_window.hpp"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/pacing/clock.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/session/participant.hpp"

@@ -1,12 +1,16 @@
-/// The arrows between the libraries, as the includes draw them.
+/// The arrows between the libraries and between the rooms inside them, as the includes draw them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stats/base/file.hpp"
@@ -27,6 +31,7 @@ std::vector<Include> includes_of(const std::string& from, const std::string& tex
   std::istringstream lines(text);
   std::smatch match;
   for (std::string line; std::getline(lines, line);) {
+    if (line.find("include") == std::string::npos) continue;
     if (std::regex_search(line, match, pattern)) found.push_back({from, match[1]});
   }
   return found;
@@ -62,6 +67,10 @@ struct Rule {
 
 const std::vector<Rule> rules{
     {{"apps/"}, {"apps/"}},
+    {{"apps/bench/"}, {"apps/bench/"}},
+    {{"apps/stats/"}, {"apps/stats/"}},
+    {{"apps/study/"}, {"apps/study/"}},
+    {{"apps/view/"}, {"apps/view/"}},
     {{"libsim/"}, {"apps/", "libsim/"}},
     {{"libstudy/"}, {"apps/", "libstudy/"}},
     {{"tests/"}, {}},
@@ -76,6 +85,85 @@ const std::vector<Rule> rules{
     {{"epoxy/", "GL/", "EGL/"}, {"apps/", "libsim/render/"}},
     {{"cuda", "cub/", "thrust/"}, {"libsim/exec/"}},
 };
+
+/// A folder of a library. Its files include their own room and rooms of the same library on lower floors.
+struct Room {
+  std::string folder;
+  int floor;
+  /// Rooms of the same floor that it includes too; each stands above it in the table, so that none go round.
+  std::vector<std::string> beside = {};
+};
+using Rooms = std::vector<Room>;
+
+/// Each folder with sources in one of these has a row in `rooms`.
+const std::vector<std::string> libraries{"apps", "libsim", "libstudy", "stats"};
+
+const Rooms rooms{
+    {"stats/base", 0},       {"stats", 1},
+    {"stats/image", 2},      {"stats/ordinal", 2},
+    {"stats/inference", 3},  {"stats/preference", 4},
+    {"stats/ptpe", 4},       {"stats/analysis", 5},
+
+    {"libsim/exec", 0},      {"libsim/methods", 0},
+    {"libsim/ptpe", 0},      {"libsim/scene", 1},
+    {"libsim/particles", 1}, {"libsim/view", 2},
+    {"libsim/neighbors", 2}, {"libsim/pressure", 2},
+    {"libsim/flow", 2},      {"libsim/activation", 2},
+    {"libsim/levels", 3},    {"libsim/saliency", 3},
+    {"libsim", 4},           {"libsim/solver/stages", 4},
+    {"libsim/solver", 5},    {"libsim/render", 5},
+    {"libsim/bake", 5},
+
+    {"libstudy/base", 0},    {"libstudy/display", 1},
+    {"libstudy/pacing", 2},  {"libstudy/protocol", 3},
+    {"libstudy/design", 4},  {"libstudy/store", 5},
+    {"libstudy/session", 6}, {"libstudy/observer", 7},
+
+    {"apps/common", 0},      {"apps/common/window", 1},
+    {"apps/bench", 2},       {"apps/stats/data", 2},
+    {"apps/stats/power", 3}, {"apps/stats/ptpe", 3},
+    {"apps/stats/tasks", 4}, {"apps/stats/report", 5},
+    {"apps/stats", 6},       {"apps/study/check", 2},
+    {"apps/study/desk", 2},  {"apps/study/bakes", 3},
+    {"apps/study", 4},       {"apps/study/window", 5},
+    {"apps/view", 2},        {"apps/view/window", 3},
+};
+
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path(); }
+std::string library_of(const std::string& path) { return *fs::path(path).begin(); }
+
+/// Empty, or why no file of the room `from` may include the room `what`; both are rows of one table.
+std::string forbidden(const Room& from, const Room& what) {
+  if (what.folder == from.folder || what.floor < from.floor) return "";
+  if (what.floor > from.floor) return "goes up";
+  const bool named = std::find(from.beside.begin(), from.beside.end(), what.folder) != from.beside.end();
+  return named ? "" : "goes to another room of its floor";
+}
+
+/// Arrows inside the libraries that the table does not allow, and folders that it lacks.
+std::vector<std::string> arrows_against(const Rooms& table, const std::vector<Include>& includes) {
+  std::set<std::string> missing;
+  const auto find = [&](const std::string& folder) {
+    const auto row =
+        std::find_if(table.begin(), table.end(), [&](const Room& room) { return room.folder == folder; });
+    if (row == table.end()) missing.insert(folder);
+    return row;
+  };
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    if (std::count(libraries.begin(), libraries.end(), library_of(include.from)) == 0) continue;
+    const auto from = find(folder_of(include.from));
+    if (library_of(include.what) != library_of(include.from)) continue;
+    const auto what = find(folder_of(include.what));
+    if (from == table.end() || what == table.end()) continue;
+    const std::string why = forbidden(*from, *what);
+    if (!why.empty()) found.push_back(include.from + " includes " + include.what + ", which " + why);
+  }
+  for (const std::string& folder : missing) {
+    found.push_back(folder + " has no floor: add a row to `rooms` in tests/apps/architecture_test.cpp");
+  }
+  return found;
+}
 
 std::vector<std::string> violations(const std::vector<Include>& includes) {
   std::vector<std::string> found;
@@ -106,9 +194,59 @@ TEST(Architecture, EachForbiddenArrowIsSeen) {
                                        {"libstudy/session/a.cpp", "sqlite3.h"},
                                        {"stats/base/file.cpp", "toml++/toml.h"},
                                        {"libsim/stages/a.cpp", "cuda_runtime.h"},
-                                       {"libsim/scene/a.cpp", "apps/common/program.hpp"}};
+                                       {"libsim/scene/a.cpp", "apps/common/program.hpp"},
+                                       {"apps/common/a.cpp", "apps/view/choices.hpp"},
+                                       {"apps/study/a.cpp", "apps/bench/film.hpp"},
+                                       {"apps/view/a.cpp", "apps/stats/commands.hpp"},
+                                       {"apps/bench/a.cpp", "apps/study/desk/words.hpp"}};
   for (const Include& one : forbidden) {
     EXPECT_EQ(violations(includes_of(one.from, "#include <" + one.what + ">\n")).size(), 1u) << one.from;
+  }
+}
+
+TEST(Architecture, RoomsIncludeLowerFloorsOnly) {
+  EXPECT_THAT(arrows_against(rooms, project_includes()), ::testing::IsEmpty());
+}
+
+TEST(Architecture, RoomsHaveOneRowEachAndNoneGoRound) {
+  std::map<std::string, int> floors;  // of the rows above
+  for (const Room& room : rooms) {
+    for (const std::string& other : room.beside) {
+      ASSERT_TRUE(floors.contains(other)) << room.folder << " goes to " << other << ", which stands below";
+      EXPECT_EQ(floors.at(other), room.floor) << room.folder << " goes to " << other << ", of another floor";
+    }
+    EXPECT_TRUE(floors.emplace(room.folder, room.floor).second) << room.folder << " stands there twice";
+    EXPECT_TRUE(fs::is_directory(fs::path(VIP_TEST_DIR).parent_path() / room.folder)) << room.folder;
+  }
+}
+
+TEST(Architecture, EachArrowAgainstTheFloorsIsSeen) {
+  const Rooms house{{"stats/cellar", 0},
+                    {"stats", 1},
+                    {"stats/left", 2},
+                    {"stats/right", 2, {"stats/left"}},
+                    {"stats/roof", 3}};
+  const auto arrow = [&](const std::string& from, const std::string& what) {
+    return arrows_against(house, includes_of(from + "/a.cpp", "#include \"" + what + "/b.hpp\"\n"));
+  };
+  using ::testing::ElementsAre;
+  using ::testing::HasSubstr;
+  EXPECT_THAT(arrow("stats/cellar", "stats/roof"), ElementsAre(HasSubstr("stats/roof/b.hpp, which goes up")));
+  EXPECT_THAT(arrow("stats/cellar", "stats"), ElementsAre(HasSubstr("stats/b.hpp, which goes up")));
+  EXPECT_THAT(arrow("stats", "stats/left"), ElementsAre(HasSubstr("goes up")));
+  EXPECT_THAT(arrow("stats/left", "stats/right"), ElementsAre(HasSubstr("another room of its floor")));
+  const std::string mend = " has no floor: add a row to `rooms` in tests/apps/architecture_test.cpp";
+  EXPECT_THAT(arrow("stats/shed", "stats/cellar"), ElementsAre("stats/shed" + mend));
+  EXPECT_THAT(arrow("stats/shed", "gsl"), ElementsAre("stats/shed" + mend));
+  EXPECT_THAT(arrow("stats/roof", "stats/left/cupboard"), ElementsAre("stats/left/cupboard" + mend));
+
+  for (const auto& [from, what] :
+       std::vector<std::pair<std::string, std::string>>{{"stats/right", "stats/left"},
+                                                        {"stats/roof", "stats"},
+                                                        {"stats/left", "stats/left"},
+                                                        {"stats", "gsl"},
+                                                        {"stats/left", "libsim/render"}}) {
+    EXPECT_THAT(arrow(from, what), ::testing::IsEmpty()) << from << " to " << what;
   }
 }
 

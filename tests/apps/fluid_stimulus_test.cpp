@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "apps/common/headless_display.hpp"
-#include "libstudy/pacing/clock.hpp"
+#include "libstudy/base/clock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libsim/bake/make_bake.hpp"

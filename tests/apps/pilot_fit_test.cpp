@@ -1,4 +1,4 @@
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/contour_lines.hpp"
-#include "apps/stats/heat_map.hpp"
+#include "apps/stats/ptpe/contour_lines.hpp"
+#include "apps/stats/ptpe/heat_map.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace {

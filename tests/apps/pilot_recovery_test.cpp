@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "stats/ptpe/pilot.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 

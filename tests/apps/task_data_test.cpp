@@ -1,6 +1,6 @@
 /// What is analysed of Task 1 and Task 2, and what is not.
 
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

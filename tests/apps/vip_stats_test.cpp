@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/store/sqlite.hpp"
 #include "libstudy/store/store.hpp"

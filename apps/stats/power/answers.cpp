@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/pacing/schedule.hpp"
 #include "stats/base/error.hpp"

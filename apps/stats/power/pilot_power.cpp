@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "apps/stats/power/answers.hpp"
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 #include "stats/base/error.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 

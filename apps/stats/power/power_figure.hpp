@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
 
 namespace apps {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/power/pilot_power.hpp"
 #include "apps/stats/power/task_power.hpp"
-#include "apps/stats/tasks/json_parts.hpp"
 
 namespace apps {
 

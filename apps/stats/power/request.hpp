@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/plan_file.hpp"
+#include "apps/stats/data/plan_file.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "apps/stats/power/answers.hpp"
 #include "apps/stats/power/closed_form.hpp"
-#include "libstudy/design/random.hpp"
+#include "libstudy/base/random.hpp"
 #include "stats/analysis/task2.hpp"
 
 namespace apps {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "apps/common/svg.hpp"
-#include "apps/stats/tasks/plan_file.hpp"
+#include "apps/stats/data/plan_file.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps::report {

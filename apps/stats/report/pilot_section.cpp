@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "apps/stats/heat_map.hpp"
+#include "apps/stats/ptpe/heat_map.hpp"
 #include "apps/stats/report/figures.hpp"
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"

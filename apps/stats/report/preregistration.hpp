@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/plan_file.hpp"
+#include "apps/stats/data/plan_file.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/analysis/plan.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
 
 namespace apps {
 

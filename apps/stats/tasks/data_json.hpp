@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 namespace apps {
 

@@ -2,8 +2,8 @@
 /// What speaks of missing answers in Task 1's results (docs/results.md): the mixed model of all answers, on
 /// whom pairs rest, tipping points.
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "stats/analysis/task1.hpp"
 #include "stats/analysis/tipping.hpp"
 

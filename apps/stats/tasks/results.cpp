@@ -1,6 +1,6 @@
 #include "apps/stats/tasks/results.hpp"
 
-#include "apps/stats/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/tasks/data_json.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/plan_file.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/plan_file.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 namespace apps {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// How alike repeated showings were answered.
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/task_data.hpp"
 
 namespace apps {
 

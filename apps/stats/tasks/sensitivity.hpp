@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "stats/analysis/hypotheses.hpp"
 
 namespace apps {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
 #include "libstudy/store/sickness.hpp"
 #include "stats/analysis/plan.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Task 1's part of the results (docs/results.md).
 
-#include "apps/stats/tasks/json_parts.hpp"
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/tasks/task1_results.hpp"
 
 namespace apps {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "stats/analysis/hypotheses.hpp"
 #include "stats/analysis/ordinal_effects.hpp"
 #include "stats/analysis/task1.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 /// Task 2's part of the results (docs/results.md).
 
-#include "apps/stats/tasks/json_parts.hpp"
-#include "apps/stats/tasks/task_data.hpp"
+#include "apps/stats/data/json_parts.hpp"
+#include "apps/stats/data/task_data.hpp"
 #include "stats/analysis/task2.hpp"
 
 namespace apps {

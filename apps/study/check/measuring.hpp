@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/study/check/rehearsal.hpp"
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/pacing/clock.hpp"
 
 namespace apps {
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/gaze.hpp"
-#include "libstudy/pacing/clock.hpp"
 
 namespace apps {
 

@@ -9,8 +9,8 @@
 #include "apps/study/desk/refresh.hpp"
 #include "apps/study/window/participant_window.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
-#include "libstudy/pacing/clock.hpp"
 
 namespace apps {
 

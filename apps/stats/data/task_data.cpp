@@ -1,0 +1,224 @@
+#include "apps/stats/data/task_data.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "apps/stats/data/planned.hpp"
+#include "apps/stats/data/trial_record.hpp"
+
+namespace apps {
+
+namespace {
+
+using study::TaskSession;
+using study::TaskTrial;
+
+/// Fills a TaskData from the sessions that may be pooled.
+class Collector {
+ public:
+  explicit Collector(TaskData& data) : data_(data) {}
+
+  void collect(const stats::ExclusionRules& rules) {
+    leave_out_sessions();
+    data_.exclusions = find_exclusions(data_.protocol, data_.question, rules);
+    for (const TaskSession& session : data_.protocol.sessions) add_session(session);
+    count_excluded_people();
+    data_.flow.analysed = static_cast<int>(data_.participants.size());
+  }
+
+ private:
+  /// Test data beside real ones, observer models beside people.
+  void leave_out_sessions() {
+    auto& sessions = data_.protocol.sessions;
+    data_.test_data =
+        !has_real_answers(data_.protocol) &&
+        std::any_of(sessions.begin(), sessions.end(), [](const auto& one) { return one.test_data; });
+    data_.flow.test_left_out = static_cast<int>(
+        std::erase_if(sessions, [&](const TaskSession& one) { return one.test_data && !data_.test_data; }));
+    const bool people = std::any_of(sessions.begin(), sessions.end(), [](const TaskSession& one) {
+      return one.observer.empty() && has_answers(one);
+    });
+    data_.flow.simulated_left_out = static_cast<int>(
+        std::erase_if(sessions, [&](const TaskSession& one) { return people && !one.observer.empty(); }));
+    for (const TaskSession& session : sessions) {
+      ++data_.flow.by_state[session.state];
+      const std::string& utc = session.first_answer_utc;
+      if (!utc.empty() && (data_.first_answer_utc.empty() || utc < data_.first_answer_utc))
+        data_.first_answer_utc = utc;
+    }
+    data_.flow.started = static_cast<int>(sessions.size());
+  }
+
+  void add_session(const TaskSession& session) {
+    bool counted = false;
+    for (const TaskTrial& trial : session.trials) counted = add_trial(session, trial) || counted;
+    if (!counted) return;
+    ++data_.gaze[session.gaze_source];
+    ++data_.stations[session.station];
+    ++data_.displays[session.display];
+    if (!session.angles.empty()) ++data_.angles[session.angles];
+    if (!session.unblinded.empty()) ++data_.unblinded[session.unblinded];
+    if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
+    if (session.observer.empty()) return;
+    add_once(data_.simulated, session.participant);
+    add_once(data_.observers, session.observer);
+  }
+
+  /// True when an answer about it counts.
+  bool add_trial(const TaskSession& session, const TaskTrial& trial) {
+    if (trial.kind == "practice") {
+      ++data_.flow.practice;
+      return false;
+    }
+    const bool repeat = trial.kind == "repeat";
+    const bool excluded =
+        stats::is_excluded(data_.exclusions, session.participant, session.visit, trial.position);
+    const auto record = record_of(session, trial, data_.question);
+    const bool analysed = !repeat && record.answers > 0 && !excluded;
+    add_showings(trial, analysed);
+    if (repeat) {
+      ++data_.flow.repeat;
+      if (!excluded) add_repeat(session, trial);
+      return false;
+    }
+    ++data_.flow.trials_planned;
+    if (record.answers == 0) return false;
+    answered_.insert(session.participant);
+    ++data_.flow.trials_answered;
+    ++(excluded ? data_.flow.trials_excluded : data_.flow.trials_analysed);
+    return analysed && add_answer(session, trial, record.answer);
+  }
+
+  bool add_answer(const TaskSession& session, const TaskTrial& trial, double answer) {
+    if (data_.task == TaskKind::Task1) return add_report(session, trial);
+    if (answer != answer) return false;
+    data_.task == TaskKind::Task2 ? add_choice(session, trial, answer) : add_rating(session, trial, answer);
+    return true;
+  }
+
+  void add_repeat(const TaskSession& session, const TaskTrial& repeat) {
+    if (!repeat.repeats ||
+        stats::is_excluded(data_.exclusions, session.participant, session.visit, *repeat.repeats))
+      return;
+    for (const TaskTrial& original : session.trials) {
+      if (original.position != *repeat.repeats) continue;
+      for (const study::Question& question : data_.protocol.questions) {
+        const double before = answer_to(original, question), after = answer_to(repeat, question);
+        if (before == before && after == after) data_.repeats[question.id].push_back({before, after});
+      }
+    }
+  }
+
+  void add_showings(const TaskTrial& trial, bool analysed) {
+    if (trial.first.played) data_.showings.push_back({trial.first, analysed});
+    if (trial.second && trial.second->played) data_.showings.push_back({*trial.second, analysed});
+  }
+
+  bool add_report(const TaskSession& session, const TaskTrial& trial) {
+    Report report{person(session), session.visit, trial.position, 0, 0, 0, 0, {}};
+    report.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
+    report.n_star = index_of(data_.protocol.n_stars, trial.first.what.n_star);
+    report.method = index_of(data_.protocol.methods, trial.first.what.method);
+    for (const study::TaskAnswer& answer : trial.answers) {
+      if (answer.score) report.answers[answer.question] = *answer.score;
+    }
+    data_.reports.push_back(std::move(report));
+    return true;
+  }
+
+  void add_choice(const TaskSession& session, const TaskTrial& trial, double interval) {
+    stats::PairChoice choice;
+    choice.participant = person(session);
+    choice.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
+    choice.first = index_of(data_.protocol.methods, trial.first.what.method);
+    choice.second = index_of(data_.protocol.methods, trial.second->what.method);
+    choice.first_chosen = interval == 1;
+    choice.position = trial.position;
+    data_.choices.push_back(choice);
+  }
+
+  void add_rating(const TaskSession& session, const TaskTrial& trial, double score) {
+    const auto& nominal = trial.first.nominal;
+    const auto& shown = trial.first.realised;
+    data_.ratings.push_back(
+        {person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic, shown.sd, score});
+  }
+
+  int person(const TaskSession& session) {
+    add_once(data_.participants, session.participant);
+    return index_of(data_.participants, session.participant);
+  }
+
+  static void add_once(std::vector<std::string>& list, const std::string& item) {
+    if (index_of(list, item) < 0) list.push_back(item);
+  }
+
+  static int index_of(const std::vector<std::string>& list, const std::string& item) {
+    const auto found = std::find(list.begin(), list.end(), item);
+    return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+  }
+
+  void count_excluded_people() {
+    data_.flow.excluded_visits =
+        static_cast<int>(std::count_if(data_.exclusions.begin(), data_.exclusions.end(),
+                                       [](const stats::Exclusion& one) { return one.position < 0; }));
+    data_.flow.excluded_participants =
+        static_cast<int>(std::count_if(answered_.begin(), answered_.end(), [&](const std::string& code) {
+          return index_of(data_.participants, code) < 0;
+        }));
+  }
+
+  TaskData& data_;
+  std::set<std::string> answered_;  ///< codes
+};
+
+}  // namespace
+
+std::string TaskData::gaze_problem() const {
+  int sessions = 0;
+  std::string sources;
+  for (const auto& [source, n] : gaze) {
+    sessions += n;
+    if (source != "tracked") sources += (sources.empty() ? "" : ", ") + source + " in " + std::to_string(n);
+  }
+  if (sources.empty()) return {};
+  return "gaze was not tracked in every session (" + sources + " of " + std::to_string(sessions) +
+         "), and what the methods refine depends on it";
+}
+
+stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection) {
+  const auto chosen = choose_protocol(study, selection);
+  if (!chosen) return stats::Refusal{chosen.reason()};
+  const auto question = main_question(chosen->protocol, selection);
+  if (!question) return stats::Refusal{question.reason()};
+  TaskData data;
+  data.task = selection.task;
+  data.protocol = chosen->protocol;
+  data.set_aside = chosen->set_aside;
+  data.question = *question;
+  for (const std::string& scene : data.protocol.scenes) data.scenes.push_back(scene_name(scene));
+  data.flow.withdrawn = study.withdrawn;
+  Collector(data).collect(selection.plan.exclusions);
+  if (data.task == TaskKind::Task1) add_planned(data);
+  return data;
+}
+
+std::string nothing_counts(const TaskData& data) {
+  if (!data.participants.empty()) return {};
+  return "no answer counts: " + std::to_string(data.flow.started) + " sessions of protocol " +
+         data.protocol.name + ", " + std::to_string(data.flow.trials_answered) + " trials answered, " +
+         std::to_string(data.flow.trials_excluded) + " excluded";
+}
+
+stats::Result<TaskData> select_task(const study::TaskStudy& study, const TaskSelection& selection) {
+  const auto data = collect_task(study, selection);
+  if (!data) return stats::Refusal{data.reason()};
+  const std::string nothing = nothing_counts(*data);
+  if (!nothing.empty()) return stats::Refusal{nothing};
+  return data;
+}
+
+std::string scene_name(const std::string& scene) { return std::filesystem::path(scene).stem().string(); }
+
+}  // namespace apps

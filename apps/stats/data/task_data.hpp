@@ -1,0 +1,86 @@
+#pragma once
+/// From the sessions of a database to the answers that are analysed, with a count of all that is left out.
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/stats/data/task_choice.hpp"
+#include "stats/analysis/exclusions.hpp"
+#include "stats/analysis/score_table.hpp"
+#include "stats/analysis/task2.hpp"
+#include "stats/ptpe/pilot.hpp"
+
+namespace apps {
+
+/// What became of the sessions of one protocol, and of their trials.
+struct TaskFlow {
+  std::map<std::string, int>
+      by_state;  ///< sessions: "open", "done", "refused", "not eligible", "stopped", "dropped out"
+  int started = 0;
+  int withdrawn = 0;           ///< participants, from whatever protocol of the database
+  int test_left_out = 0;       ///< sessions of test data beside real ones
+  int simulated_left_out = 0;  ///< sessions of observer models beside those of people
+  int excluded_visits = 0;
+  int excluded_participants = 0;  ///< who answered, and of whom nothing is left
+  int analysed = 0;               ///< participants with an answer that counts
+  int trials_planned = 0, trials_answered = 0, trials_excluded = 0, trials_analysed = 0;
+  int practice = 0, repeat = 0;
+};
+
+/// A showing that was played, practice aside.
+struct TimedShowing {
+  study::TaskShowing shown;
+  bool analysed = false;  ///< its trial is: answered, not excluded, no repeat
+};
+
+/// Task 1: one page.
+struct Report {
+  int participant = 0, visit = 1, position = 0;
+  int scene = 0, n_star = 0, method = 0;
+  int period = 0;                         ///< stats::periods_of(), counted on over visits
+  std::map<std::string, double> answers;  ///< by question; those left out are absent
+};
+
+/// The answers of one task, or of the pilot, that count. Indices are of the lists here.
+struct TaskData {
+  TaskKind task = TaskKind::Task1;
+  study::TaskProtocol protocol;           ///< its sessions are those analysed
+  std::vector<std::string> set_aside;     ///< protocols with nothing but test data
+  bool test_data = false;                 ///< there are no real data: test data are analysed
+  std::vector<std::string> participants;  ///< codes
+  std::vector<std::string> scenes;        ///< short: "single_dam"
+  std::vector<std::string> simulated;     ///< participants answered by observer models
+  std::vector<std::string> observers;     ///< different models
+  std::map<std::string, int> gaze, stations, displays, angles, unblinded, mixed_pictures;  ///< sessions
+  std::string first_answer_utc;  ///< of the sessions analysed; empty: none
+  TaskFlow flow;
+  std::vector<stats::Exclusion> exclusions;
+  std::vector<TimedShowing> showings;
+  std::vector<Report> reports;              ///< Task 1: answered pages
+  std::vector<Report> unanswered;           ///< Task 1: planned for these participants, no answer counts
+  std::vector<stats::PairChoice> choices;   ///< Task 2
+  std::vector<stats::PilotRating> ratings;  ///< pilot
+  study::Question question;                 ///< the main one: realism, preference, the pilot's scale
+  /// Repeated showings: answers of the original and of the repeat, by question (Task 2: 1 / 2).
+  std::map<std::string, std::vector<std::array<double, 2>>> repeats;
+
+  /// Empty, or why hypotheses about adaptive methods against FovFluid cannot be tested.
+  std::string gaze_problem() const;
+};
+
+/// Refused with the reason: no protocol or question of this task, several and none chosen. Whether any answer
+/// counts is not asked.
+stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection);
+
+/// Why there is nothing to analyse; empty = there is.
+std::string nothing_counts(const TaskData& data);
+
+/// The same, refused without an answer that counts.
+stats::Result<TaskData> select_task(const study::TaskStudy& study, const TaskSelection& selection);
+
+/// "data/scenes/single_dam.toml" -> "single_dam".
+std::string scene_name(const std::string& scene);
+
+}  // namespace apps

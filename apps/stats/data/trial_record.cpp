@@ -1,0 +1,92 @@
+#include "apps/stats/data/trial_record.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "apps/stats/data/task_choice.hpp"
+
+namespace apps {
+
+namespace {
+
+using study::TaskSession;
+using study::TaskTrial;
+
+stats::TrialTiming timing_of(const study::TaskShowing& shown) {
+  if (!shown.verdict) return stats::TrialTiming::Unjudged;
+  if (*shown.verdict == study::Verdict::Pass) return stats::TrialTiming::Pass;
+  return *shown.verdict == study::Verdict::Degraded ? stats::TrialTiming::Degraded : stats::TrialTiming::Fail;
+}
+
+/// A pilot's predictor is what was really shown: where no frame is recorded there is none.
+void exclude_unrecorded(std::vector<stats::Exclusion>& list, const TaskSession& session,
+                        const study::Question& question) {
+  for (const TaskTrial& trial : session.trials) {
+    const auto record = record_of(session, trial, question);
+    if (trial.kind == "practice" || record.answers == 0 || trial.first.realised.frames > 0 ||
+        stats::is_excluded(list, session.participant, session.visit, trial.position))
+      continue;
+    list.push_back({session.participant, session.visit, trial.position, "timing",
+                    "no frame of the showing is recorded", record.answers});
+  }
+}
+
+}  // namespace
+
+double answer_to(const TaskTrial& trial, const study::Question& question) {
+  for (const study::TaskAnswer& answer : trial.answers) {
+    if (answer.question != question.id || !answer.score) continue;
+    if (question.kind != study::AnswerKind::Choice) return *answer.score;
+    return *answer.score == question.anchors.front().first ? 1 : 2;
+  }
+  return stats::TrialRecord::unanswered;
+}
+
+stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial,
+                             const study::Question& question) {
+  stats::TrialRecord out;
+  out.participant = session.participant;
+  out.visit = session.visit;
+  out.position = trial.position;
+  out.timing = timing_of(trial.first);
+  out.timing_reason = trial.first.reason;
+  if (trial.second && timing_of(*trial.second) > out.timing) {
+    out.timing = timing_of(*trial.second);
+    out.timing_reason = trial.second->reason;
+  }
+  out.interrupted = trial.excluded == study::interrupted_reason;
+  if (trial.excluded && !out.interrupted)
+    out.by_experimenter = trial.excluded->empty() ? "no reason given" : *trial.excluded;
+  out.answer = answer_to(trial, question);
+  out.answers =
+      static_cast<int>(std::count_if(trial.answers.begin(), trial.answers.end(),
+                                     [](const study::TaskAnswer& one) { return one.score.has_value(); }));
+  // A repeat without an original compares with nothing.
+  if (trial.kind == "repeat") out.repeats = trial.repeats.value_or(trial.position);
+  return out;
+}
+
+std::vector<stats::Exclusion> find_exclusions(const study::TaskProtocol& protocol,
+                                              const study::Question& question,
+                                              const stats::ExclusionRules& rules) {
+  std::vector<stats::TrialRecord> trials;
+  std::vector<stats::CatchRecord> catches;
+  for (const TaskSession& session : protocol.sessions) {
+    if (!has_answers(session)) continue;
+    for (const TaskTrial& trial : session.trials) {
+      if (trial.kind != "practice") trials.push_back(record_of(session, trial, question));
+    }
+    for (const study::CatchAnswer& page : session.catches) {
+      if (page.score) catches.push_back({session.participant, session.visit, *page.score == page.expected});
+    }
+  }
+  auto list = stats::find_exclusions(trials, catches, rules, protocol.pairs);
+  if (!protocol.pilot()) return list;
+  for (const TaskSession& session : protocol.sessions) exclude_unrecorded(list, session, question);
+  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.participant, a.visit, a.position) < std::tie(b.participant, b.visit, b.position);
+  });
+  return list;
+}
+
+}  // namespace apps

@@ -1,0 +1,227 @@
+#include "apps/stats/ptpe/pilot_fit.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "apps/common/program.hpp"
+#include "stats/base/file.hpp"
+#include "stats/ptpe/solver_interval.hpp"
+
+namespace apps {
+
+namespace {
+
+using stats::PilotEstimate;
+using stats::PilotMean;
+
+std::string counted(int n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour) {
+  const auto lines = [&](int n) { return std::to_string(n) + " of " + counted(contour.lines, "line"); };
+  if (contour.above_grid > 0) {
+    flags.push_back(
+        {"leaves_grid_above", "on " + lines(contour.above_grid) +
+                                  " the contour lies above the largest mean frame rate; the fit uses "
+                                  "its inner part"});
+  }
+  if (contour.below_grid > 0) {
+    flags.push_back(
+        {"leaves_grid_below", "on " + lines(contour.below_grid) +
+                                  " the contour lies below the smallest mean frame rate; the fit uses "
+                                  "its inner part"});
+  }
+  if (contour.on_node > 0) {
+    flags.push_back(
+        {"on_node", "on " + lines(contour.on_node) +
+                        " the level is met at a setting and not crossed; such lines are left out"});
+  }
+  if (contour.crossed_twice > 0) {
+    flags.push_back(
+        {"not_monotone", "on " + lines(contour.crossed_twice) +
+                             " the scores cross the level more than once; every crossing is used"});
+  }
+  if (2 * contour.crossed < contour.lines) {
+    flags.push_back({"short_contour", "only " + lines(contour.crossed) + " cross the level"});
+  }
+}
+
+/// "3 answers left out: 1 by timing, 2 by straight lining".
+void flag_exclusions(std::vector<FitFlag>& flags, const TaskData& data) {
+  std::map<std::string, int> by_rule;
+  int all = 0;
+  for (const auto& one : data.exclusions) {
+    by_rule[one.rule] += one.answers;
+    all += one.answers;
+  }
+  if (all == 0) return;
+  std::string rules;
+  for (const auto& [rule, n] : by_rule)
+    if (n > 0) rules += (rules.empty() ? "" : ", ") + rule + " " + std::to_string(n);
+  flags.push_back({"excluded_answers", counted(all, "answer") + " left out by rule or by hand: " + rules});
+}
+
+void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::PilotTable& table) {
+  if (data.test_data) flags.push_back({"test_data", "these are test data, not a study"});
+  if (!data.simulated.empty()) {
+    flags.push_back(
+        {"simulated", counted(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
+  }
+  for (const auto& protocol : data.set_aside)
+    flags.push_back({"protocol_left_out", "protocol " + protocol + " left out: it holds no real answers"});
+  if (data.flow.test_left_out > 0) {
+    flags.push_back(
+        {"test_data_left_out", counted(data.flow.test_left_out, "session") + " of test data left out"});
+  }
+  if (data.flow.simulated_left_out > 0) {
+    flags.push_back({"simulated_left_out",
+                     counted(data.flow.simulated_left_out, "session") + " of simulated observers left out"});
+  }
+  if (table.incomplete_participants() > 0) {
+    flags.push_back(
+        {"incomplete_participants", counted(table.incomplete_participants(), "participant") +
+                                        " lack settings that others rated; means use what is there"});
+  }
+  flag_exclusions(flags, data);
+  const auto degraded = std::count_if(data.showings.begin(), data.showings.end(), [](const auto& one) {
+    return one.analysed && one.shown.verdict == study::Verdict::Degraded;
+  });
+  if (degraded > 0) {
+    flags.push_back({"degraded_trials", counted(static_cast<int>(degraded), "trial") +
+                                            " with degraded timing enter at what was really shown"});
+  }
+}
+
+void flag_resamples(std::vector<FitFlag>& flags, const PilotEstimate& contour) {
+  if (!contour.spread) return;
+  if (contour.spread->failed > 0) {
+    flags.push_back({"resamples_without_fit",
+                     counted(contour.spread->failed, "resample") + " without a contour left out"});
+  }
+  if (contour.spread->extremes) {
+    flags.push_back(
+        {"few_participants", "the contour's intervals end at the outermost resamples and are too narrow"});
+  }
+}
+
+void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direct) {
+  if (!direct.out_of_reach.empty()) {
+    flags.push_back(
+        {"out_of_reach", fmt::format("at standard deviations of {:g} the curve lies outside the frame "
+                                     "rates shown; those settings are left out and the curve is "
+                                     "extrapolated there",
+                                     fmt::join(direct.out_of_reach, ", "))});
+  }
+}
+
+void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const PilotEstimate& contour) {
+  if (!main.spread) return;
+  if (!main.spread->spans_contour) {
+    flags.push_back({"contour_without_interval",
+                     "the contour has no interval (" + contour.spread.reason() +
+                         "): those for the solver are the direct estimate's alone, which may be too narrow"});
+  }
+  if (main.spread->b_ci[0] <= 0 && main.spread->b_ci[1] >= 0) {
+    flags.push_back({"b_holds_zero", "the interval of b holds 0: no effect of the fluctuation is shown"});
+  }
+}
+
+/// What the solver's file cannot take is no usable fit.
+std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
+  if (table.ratings() == 0) return "no answered trial is left to analyse";
+  if (!(fit.level > data.question.scale_min && fit.level < data.question.scale_max)) {
+    return "the level does not lie within the rating scale, " + std::to_string(data.question.scale_min) +
+           " to " + std::to_string(data.question.scale_max);
+  }
+  if (table.all_equal()) return "all ratings are equal: there is no contour";
+  const auto main = fit.main();
+  if (!main.fit) return main.fit.reason();
+  if (!main.spread) return main.spread.reason();
+  if (!(main.fit->a >= 1e-3 && main.fit->a <= 1e4 && std::abs(main.fit->b) <= 1)) {
+    return "the curve is none that a solver can use: a = " + std::to_string(main.fit->a) +
+           ", b = " + std::to_string(main.fit->b);
+  }
+  return "";
+}
+
+LevelFit fit_level(const TaskData& data, const stats::PilotTable& table, PilotMean mean, double level,
+                   const stats::BootstrapOptions& options) {
+  LevelFit fit;
+  fit.direct = stats::estimate_direct(table.observations(mean), level, options);
+  fit.contour = stats::estimate_pilot(table, mean, level, options);
+  if (mean == PilotMean::Harmonic)
+    fit.ordinal = stats::estimate_ordinal_pilot(data.ratings, mean, level, options.confidence);
+  return fit;
+}
+
+}  // namespace
+
+MainEstimate PilotFit::main() const {
+  const auto& direct = chosen().direct;
+  if (!direct.fit) return {stats::Refusal{direct.fit.reason()}, stats::Refusal{direct.fit.reason()}};
+  const MainFit fit{direct.fit->curve.a(), direct.fit->curve.b};
+  if (!direct.jackknife) return {fit, stats::Refusal{direct.jackknife.reason()}};
+  const auto& spread = *direct.jackknife;
+  const auto open = stats::solver_interval(spread, chosen().contour.spread);
+  return {fit, MainSpread{open.a_ci, open.b_ci, spread.a_se(), spread.b_se(), open.spans_contour}};
+}
+
+double PilotFit::relative_half_width() const {
+  const auto& direct = chosen().direct;
+  return direct.jackknife->largest_relative_half_width(direct.in_reach_of(deltas));
+}
+
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap) {
+  const stats::PilotTable table(data.ratings);
+  PilotFit fit;
+  fit.level = level;
+  fit.bootstrap = bootstrap;
+  fit.participants = table.participants();
+  fit.settings = table.settings();
+  fit.grid = table.grid(PilotMean::Harmonic);
+  for (std::size_t cell = 0; cell < fit.grid.nodes.size(); ++cell) fit.scores.push_back(table.scores(cell));
+  fit.deltas = fit.grid.delta;
+  const std::set<double> levels{4.0, 5.0, level};
+  Progress progress("resampling participants",
+                    4 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
+  std::size_t done = 0;
+  auto options = bootstrap;
+  options.progress = [&](int) { progress.update(++done); };
+  for (const double at : levels) {
+    fit.harmonic[at] = fit_level(data, table, PilotMean::Harmonic, at, options);
+    fit.arithmetic[at] = fit_level(data, table, PilotMean::Arithmetic, at, options);
+  }
+  fit.reason = unusable(fit, data, table);
+  if (fit.ok()) {
+    const LevelFit& chosen = fit.chosen();
+    fit.doubts = stats::pilot_doubts(table, chosen.direct, chosen.contour, chosen.ordinal);
+  }
+  for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
+  flag_data(fit.flags, data, table);
+  flag_direct(fit.flags, fit.chosen().direct);
+  flag_main(fit.flags, fit.main(), fit.chosen().contour);
+  flag_contour(fit.flags, fit.chosen().contour.contour);
+  flag_resamples(fit.flags, fit.chosen().contour);
+  fit.data = std::move(data);
+  return fit;
+}
+
+sim::PtpeFile ptpe_file(const PilotFit& fit) {
+  sim::PtpeFile file;
+  const auto main = fit.main();
+  file.model = {main.fit->a, main.fit->b};
+  file.level = fit.level;
+  file.a_ci = main.spread->a_ci;
+  file.b_ci = main.spread->b_ci;
+  file.n_participants = fit.participants;
+  file.n_simulated = static_cast<int>(fit.data.simulated.size());
+  file.test_data = fit.data.test_data;
+  file.protocol_sha256 = fit.data.protocol.sha256;
+  file.date_utc = base::utc_now();
+  return file;
+}
+
+}  // namespace apps

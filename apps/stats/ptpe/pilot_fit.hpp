@@ -1,0 +1,81 @@
+#pragma once
+/// The fit of a pilot: everything between its ratings and the files.
+
+#include <array>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/stats/data/task_data.hpp"
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/ptpe/direct_fit.hpp"
+#include "stats/ptpe/ordinal_pilot.hpp"
+#include "stats/ptpe/pilot.hpp"
+#include "stats/ptpe/pilot_doubts.hpp"
+
+namespace apps {
+
+/// Something a reader of the fit has to know.
+struct FitFlag {
+  std::string code;  ///< stable, snake_case
+  std::string text;
+};
+
+/// All estimates at one level, with one of the realised means as predictor.
+struct LevelFit {
+  stats::DirectEstimate direct;  ///< the main one
+  stats::PilotEstimate contour;  ///< the paper's
+  stats::OrdinalPilotEstimate ordinal;
+};
+
+struct MainFit {
+  double a = 0, b = 0;
+};
+struct MainSpread {
+  std::array<double, 2> a_ci{}, b_ci{};  ///< reach over the contour's too (stats/ptpe/solver_interval.hpp)
+  double a_se = 0, b_se = 0;             ///< of the direct estimate
+  bool spans_contour = false;
+};
+/// What goes to the solver.
+struct MainEstimate {
+  stats::Result<MainFit> fit;
+  stats::Result<MainSpread> spread;
+};
+
+/// The estimates at the level wished and at 4.0 and 5.0, with the harmonic and with the arithmetic realised
+/// mean. The ordinal one is made with the harmonic mean only.
+struct PilotFit {
+  TaskData data;
+  double level = 4;
+  stats::BootstrapOptions bootstrap;
+  int participants = 0;
+  std::size_t settings = 0;
+  stats::ScoreGrid grid;                            ///< harmonic
+  std::vector<std::vector<double>> scores;          ///< of the grid's nodes: a mean for each participant
+  std::vector<double> deltas;                       ///< nominal, ascending
+  std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
+  std::vector<FitFlag> flags;
+  std::string reason;                     ///< why there is no usable fit; empty = there is one
+  std::vector<stats::PilotDoubt> doubts;  ///< why the fit there is must not steer a solver
+
+  bool ok() const { return reason.empty(); }
+  const LevelFit& chosen() const { return harmonic.at(level); }
+  /// The direct estimate: level wished, harmonic mean, as the solver's own mu.
+  MainEstimate main() const;
+  /// Largest half width of the direct curve's 95 % band, as a share of mu(delta), over the deltas shown at
+  /// which the curve is in reach: beyond them it is extrapolated and flagged. The fit is ok().
+  double relative_half_width() const;
+};
+
+/// `level` is finite; outside the rating scale there is no fit.
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap);
+
+/// The same for a database without usable data: only the reason is known.
+nlohmann::ordered_json failed_fit_json(double level, const std::string& reason);
+/// Every number of the fit, for fit.json. No NaN: what is undefined is null with its reason beside it.
+nlohmann::ordered_json fit_json(const PilotFit& fit);
+/// For the solver; the fit is ok().
+sim::PtpeFile ptpe_file(const PilotFit& fit);
+
+}  // namespace apps

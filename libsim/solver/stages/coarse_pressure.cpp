@@ -1,0 +1,201 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+constexpr float fixed_point = 1 << 20;
+/// More than this is not compression but particles on top of each other, which the projections part.
+constexpr float most_excess = 0.5f;
+
+/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. A particle
+/// that is not solved brings a trace: it marks its cell as fluid and leaves the mean to the others.
+template <class Selection>
+struct Gather {
+  Selection select;
+  const Vec4* predicted;
+  const float* density;
+  const float* ease;  ///< of its constraint; nullptr where nothing splits or merges
+  PressureFrame frame;
+  CellBlock block;
+  CellSum* sums;
+  float unit_volume;
+
+  SIM_FN void operator()(int i) const {
+    const Vec4 p = predicted[i];
+    const Vec3 at = frame.in_cells(xyz(p));
+    const int x = static_cast<int>(floorf(at.x));
+    const int y = static_cast<int>(floorf(at.y));
+    const int z = static_cast<int>(floorf(at.z));
+    if (!block.holds(x, y, z)) return;
+    CellSum& sum = sums[block.index(x, y, z)];
+    float volume = mass_of(p.w, 1) / unit_volume;
+    float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
+    // Not much less: the cells are what keeps a whole tank that splits from getting too dense, and what they
+    // leave for later comes back as speed.
+    if (ease) excess *= 0.75f + 0.25f * ease[i];
+    const auto fixed = [](float value) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
+    };
+    if constexpr (!Selection::everyone) {
+      if (select.moves(i) == 0) volume = 2 / fixed_point;
+    }
+    atomic_add(&sum.volume, fixed(volume));
+    atomic_add(&sum.excess, fixed(volume * excess));
+  }
+};
+
+/// A cell whose particles miss more than this share of the rest density on average holds a surface: q = 0
+/// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
+constexpr float surface_deficit = 0.05f;
+
+/// Turns sums into the equation: the source is the mean C of a cell's particles times the cell's volume.
+struct Classify {
+  PressureFrame frame;
+  GridView grid;
+  Walls walls;
+  const CellSum* sums;
+
+  SIM_FN void operator()(int i) const {
+    const CellSum sum = sums[i];
+    grid.source[i] = 0;
+    if (sum.volume > 0) {
+      const auto excess =
+          static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
+      if (excess > -surface_deficit) {
+        grid.kind[i] = CellKind::Fluid;
+        grid.source[i] = frame.floor_area() * excess;
+        return;
+      }
+    }
+    const CellBlock& block = grid.block;
+    const auto centre = [](int cell) { return static_cast<float>(cell) + 0.5f; };
+    const Vec3 at{centre(i % block.nx), centre(i / block.nx % block.ny), centre(i / (block.nx * block.ny))};
+    grid.kind[i] = walls.holds(frame.in_metres(at)) ? CellKind::Air : CellKind::Solid;
+  }
+};
+
+/// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be.
+template <class Selection>
+struct Shift {
+  Selection select;
+  Vec4* predicted;
+  Vec4* next;
+  PressureFrame frame;
+  GridView grid;
+  Walls walls;
+  Guards* guards;
+  float wall_gap;
+
+  SIM_FN void operator()(int slot) const {
+    int i = select(slot);
+    bool rests = false;
+    if constexpr (!Selection::everyone) {
+      rests = i < 0;
+      if (rests && !select.others_pressed) return;
+      if (rests) i = ~i;
+    }
+    const Vec4 p = predicted[i];
+    const Vec3 at = frame.in_cells(xyz(p));
+    Vec3 x = xyz(p);
+    x += Vec3{along<1, 0, 0>(at) / frame.edge.x, along<0, 1, 0>(at) / frame.edge.y,
+              along<0, 0, 1>(at) / frame.edge.z};
+    if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    predicted[i] = with_w(x, p.w);
+    // No projection moves it: both buffers hold its place.
+    if (rests) next[i] = predicted[i];
+  }
+
+  /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
+  template <int X, int Y, int Z>
+  SIM_FN float along(Vec3 at) const {
+    // Face (x, y, z) lies between cell (x, y, z) - (X, Y, Z) and cell (x, y, z).
+    const Vec3 local = at - Vec3{X ? 0 : 0.5f, Y ? 0 : 0.5f, Z ? 0 : 0.5f};
+    const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
+    const Vec3 part = local - base;
+    float weights = 0;
+    float sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = static_cast<int>(base.x) + (corner & 1);
+      const int y = static_cast<int>(base.y) + (corner >> 1 & 1);
+      const int z = static_cast<int>(base.z) + (corner >> 2);
+      const float weight = (corner & 1 ? part.x : 1 - part.x) * (corner & 2 ? part.y : 1 - part.y) *
+                           (corner & 4 ? part.z : 1 - part.z);
+      const CellKind here = grid.kind_at(x, y, z);
+      const CellKind before = grid.kind_at(x - X, y - Y, z - Z);
+      if (here != CellKind::Fluid && before != CellKind::Fluid) continue;
+      weights += weight;
+      if (here == CellKind::Solid || before == CellKind::Solid) continue;
+      sum += weight * (grid.q_at(x - X, y - Y, z - Z) - grid.q_at(x, y, z));
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
+};
+
+/// Edge of the cells, for the particles that are there: those of a method that could hold finer ones would
+/// hold too few of them to tell a mean. It goes by the mean mass in half levels, so that it changes rarely,
+/// and leaves at least three cells across the tank where the lightest particles do.
+float cell_edge(const FluidState& state) {
+  const int n = state.particles.size();
+  const float finest = state.parameters.coarse_edge * state.lightest_support;
+  if (state.mass_units == 0 || n == 0) return finest;
+  const float mean = static_cast<float>(state.mass_units) / static_cast<float>(n);
+  const float half_levels = roundf(2 * log2f(fmaxf(mean, 1.0f)));
+  const float wish = state.parameters.coarse_edge * state.finest_support * exp2f(half_levels / 6);
+  const Vec3 size = state.domain.high - state.domain.low;
+  const float across = fminf(size.x, fminf(size.y, size.z)) / 3;
+  return fmaxf(finest, fminf(wish, across));
+}
+
+using Columns = ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),
+                           columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
+                           columns(Column::Ease)>;
+
+template <class Selection>
+void launch(FluidState& state, Columns p, Selection select) {
+  auto& coarse = state.coarse;
+  // While the water settles at one level, nobody has written the shares.
+  const float* ease = state.one_level ? nullptr : p.ease();
+  constrain_density(state, p);
+  coarse.fit(state.domain, cell_edge(state));
+  const GridView grid = coarse.multigrid.finest();
+  coarse.sums.zero();
+  for_each("gather cells", p.size(),
+           Gather<Selection>{.select = select,
+                             .predicted = p.predicted(),
+                             .density = p.density(),
+                             .ease = ease,
+                             .frame = coarse.frame,
+                             .block = grid.block,
+                             .sums = coarse.sums.data(),
+                             .unit_volume = mass_of(state.lightest_support, 1)});
+  for_each("classify cells", grid.block.size(),
+           Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
+  coarse.multigrid.solve(state.parameters.coarse_cycles);
+  for_each("shift", p.size(),
+           Shift<Selection>{.select = select,
+                            .predicted = p.predicted(),
+                            .next = p.predicted_next(),
+                            .frame = coarse.frame,
+                            .grid = grid,
+                            .walls = state.walls,
+                            .guards = state.guard(),
+                            .wall_gap = state.parameters.wall_gap});
+}
+
+void run(FluidState& state, Columns p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+
+}  // namespace
+
+Stage coarse_pressure_stage() {
+  return stage_of<run>({.name = "coarse pressure",
+                        .source = "multigrid on the fluid's cells",
+                        .phase = Phase::Substep,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0" : "";
+                        }});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,137 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
+/// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
+/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
+/// A particle that is not solved has lambda = 0; unless the others yield, it has no share in the sum over j,
+/// as if its mass were infinite.
+template <bool OneLevel, bool OthersYield, class Selection>
+struct Density {
+  Selection select;
+  const Vec4* predicted;
+  Neighbours neighbours;
+  Walls walls;
+  float* lambda;
+  float* density;
+  Guards* guards;
+  float rest_density, relaxation;
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
+    const Vec4 self = predicted[i];
+    const PairKernel<OneLevel> pair(self.w);
+    float rho = 0;
+    float gx = 0;
+    float gy = 0;
+    float gz = 0;
+    float squares = 0;
+    int zero = 0;
+    const int count = neighbours.size(slot);
+    SIM_LANES(rho, gx, gy, gz, squares, zero)
+    for (int k = team.rank(); k < count; k += Team::size) {
+      const int j = neighbours(slot, k);
+      const Vec4 other = predicted[j];
+      const Kernel kernel = pair.with(other.w);
+      const float ratio = pair.mass_ratio(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      const float least = coincident * kernel.h;
+      zero += r2 < least * least;
+      const float r = sqrtf(fmaxf(r2, least * least));
+      const float slope = kernel.slope(r);
+      const float along = ratio * slope / r;
+      rho += ratio * kernel.density(r2);
+      gx -= along * dx;
+      gy -= along * dy;
+      gz -= along * dz;
+      if constexpr (OthersYield) {
+        squares += ratio * slope * slope;
+      } else {
+        squares += select.moves(j) * ratio * slope * slope;
+      }
+    }
+    rho = team.sum(rho) + Kernel(self.w).density(0);
+    gx = team.sum(gx);
+    gy = team.sum(gy);
+    gz = team.sum(gz);
+    squares = team.sum(squares);
+    zero = team.sum(zero);
+    if (team.rank() > 0) return;
+    // A pair is met twice, once from either side.
+    if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
+    const float mass = mass_of(self.w, rest_density);
+    const float volume = mass / rest_density;
+    Vec3 wall_gradient;
+    const float filled = volume * rho + walls.missing(xyz(self), self.w, wall_gradient);
+    const Vec3 gradient = Vec3{volume * gx, volume * gy, volume * gz} + wall_gradient;
+    const float spacing = 0.5f * self.w;
+    const float softness = relaxation / (spacing * spacing);
+    const float stiffness = dot(gradient, gradient) + volume * volume * squares + softness;
+    lambda[i] = fminf(-mass * (filled - 1) / stiffness, 0.0f);
+    density[i] = filled;
+  }
+};
+
+template <bool OneLevel, bool OthersYield, class Selection>
+void launch(FluidState& state, DensityView p, Selection select) {
+  for_each_team("density", p.size(),
+                Density<OneLevel, OthersYield, Selection>{.select = select,
+                                                          .predicted = p.predicted(),
+                                                          .neighbours = state.neighbours.view(),
+                                                          .walls = state.walls,
+                                                          .lambda = p.lambda(),
+                                                          .density = p.density(),
+                                                          .guards = state.guard(),
+                                                          .rest_density = state.parameters.rest_density,
+                                                          .relaxation = state.parameters.relaxation});
+}
+
+template <bool OthersYield, class Selection>
+void launch(FluidState& state, DensityView p, Selection select) {
+  state.one_level ? launch<true, OthersYield>(state, p, select)
+                  : launch<false, OthersYield>(state, p, select);
+}
+
+void run(FluidState& state, DensityView p) { constrain_density(state, p); }
+
+}  // namespace
+
+void constrain_density(FluidState& state, DensityView p) {
+  if (state.all_active) {
+    launch<true>(state, p, AllParticles{});
+  } else if (state.activation.rules.others_yield) {
+    launch<true>(state, p, state.active());
+  } else {
+    launch<false>(state, p, state.active());
+  }
+}
+
+void constrain_density(FluidState& state, DensityView p, EverySlot everyone) {
+  launch<true>(state, p, everyone);
+}
+
+void constrain_density(FluidState& state, DensityView p, BesideFresh<AllParticles> fresh) {
+  launch<true>(state, p, fresh);
+}
+void constrain_density(FluidState& state, DensityView p, BesideFresh<ActiveParticles> fresh) {
+  launch<true>(state, p, fresh);
+}
+
+Stage density_stage() {
+  return stage_of<run>({.name = "density constraint",
+                        .source = "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",
+                        .phase = Phase::Iteration,
+                        .called_for = keeps_density});
+}
+
+}  // namespace sim::SIM_BACKEND

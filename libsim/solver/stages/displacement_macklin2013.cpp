@@ -1,0 +1,152 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
+/// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls.
+template <bool OneLevel, bool Tensile, class Selection>
+struct Displace {
+  Selection select;
+  const Vec4* predicted;
+  const float* lambda;
+  const int* id;
+  Neighbours neighbours;
+  Walls walls;
+  Vec4* next;
+  Guards* guards;
+  float rest_density, tensile, wall_gap, momentum;
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
+    const Vec4 self = predicted[i];
+    const PairKernel<OneLevel> pair(self.w);
+    const float own = lambda[i];
+    float px = 0;
+    float py = 0;
+    float pz = 0;
+    int zero = 0;
+    const int count = neighbours.size(slot);
+    SIM_LANES(px, py, pz, zero)
+    for (int k = team.rank(); k < count; k += Team::size) {
+      const int j = neighbours(slot, k);
+      const Vec4 other = predicted[j];
+      const Kernel kernel = pair.with(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      const float least = coincident * kernel.h;
+      zero += r2 < least * least;
+      const float r = sqrtf(fmaxf(r2, least * least));
+      float push = pair.mass_ratio(other.w) * own + lambda[j];
+      if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
+      const float along = push * kernel.slope(r) / r;
+      px -= along * dx;
+      py -= along * dy;
+      pz -= along * dz;
+    }
+    px = team.sum(px);
+    py = team.sum(py);
+    pz = team.sum(pz);
+    zero = team.sum(zero);
+    if (team.rank() > 0) return;
+    Vec3 wall_gradient;
+    walls.missing(xyz(self), self.w, wall_gradient);
+    const float mass = mass_of(self.w, rest_density);
+    Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
+    if (zero) x += parted(slot, self, own);
+    // `next` still holds the positions before the last projection.
+    if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
+    if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    next[i] = with_w(x, self.w);
+  }
+
+  /// w_i s_ij with s_ij = -tensile m_i m_j dbar^2 (W_ij / W(0.2 hbar))^4: the artificial pressure of Macklin
+  /// and Mueller 2013, Eq. 13, with the units of m_j lambda_i.
+  SIM_FN float tensile_term(const Kernel& kernel, float r2, float h_other) const {
+    const float reference = kernel.density(0.04f * kernel.h2);
+    const float q = kernel.density(r2) / reference;
+    const float spacing = 0.5f * kernel.h;
+    return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
+  }
+
+  /// The loop gives coincident pairs no direction; here they get one from their ids, and a small step even
+  /// where the density alone would let them stay together. Steps are weighted so that the pair's centre of
+  /// mass rests.
+  SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
+    const PairKernel<OneLevel> pair(self.w);
+    Vec3 step{0, 0, 0};
+    for (int k = 0; k < neighbours.size(slot); ++k) {
+      const int j = neighbours(slot, k);
+      const Vec4 other = predicted[j];
+      const Kernel kernel = pair.with(other.w);
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float least = coincident * kernel.h;
+      if (dot(offset, offset) >= least * least) continue;
+      const float ratio = pair.mass_ratio(other.w);
+      const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
+      const float apart = 0.05f * kernel.h * 2 * ratio / (1 + ratio);
+      step += (pressed + apart) * parting_direction(id[select(slot)], id[j]);
+    }
+    return step;
+  }
+};
+
+template <bool OneLevel, bool Tensile, class Selection>
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  const auto& k = state.parameters;
+  for_each_team("displacement", p.size(),
+                Displace<OneLevel, Tensile, Selection>{.select = select,
+                                                       .predicted = p.predicted(),
+                                                       .lambda = p.lambda(),
+                                                       .id = p.id(),
+                                                       .neighbours = state.neighbours.view(),
+                                                       .walls = state.walls,
+                                                       .next = p.predicted_next(),
+                                                       .guards = state.guard(),
+                                                       .rest_density = k.rest_density,
+                                                       .tensile = k.tensile,
+                                                       .wall_gap = k.wall_gap,
+                                                       .momentum = state.iteration > 0 ? k.momentum : 0.0f});
+  p.swap<Column::Predicted, Column::PredictedNext>();
+}
+
+template <bool OneLevel, class Selection>
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, p, select)
+                               : launch<OneLevel, false>(state, p, select);
+}
+
+template <class Selection>
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
+}
+
+void run(FluidState& state, DisplacementView p) { displace(state, p); }
+
+}  // namespace
+
+void displace(FluidState& state, DisplacementView p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+void displace(FluidState& state, DisplacementView p, BesideFresh<AllParticles> fresh) {
+  launch<false>(state, p, fresh);
+}
+void displace(FluidState& state, DisplacementView p, BesideFresh<ActiveParticles> fresh) {
+  launch<false>(state, p, fresh);
+}
+
+Stage displacement_stage() {
+  return stage_of<run>({.name = "displacement",
+                        .source = "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
+                        .phase = Phase::Iteration,
+                        .called_for = keeps_density});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,81 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Lists belong to slots; who is not solved has nothing to ease.
+template <class Selection>
+struct Ease {
+  Selection select;
+  const Vec4* predicted;
+  const std::uint8_t* age;
+  Neighbours neighbours;
+  float* ease;
+  LevelRules rules;
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        ease[~i] = 1;
+        return;
+      }
+    }
+    int youngest = age[i];
+    const Vec4 self = predicted[i];
+    for (int k = 0; k < neighbours.size(slot); ++k) {
+      const int j = neighbours(slot, k);
+      if (age[j] >= LevelRules::ease_frames || age[j] >= youngest) continue;
+      const Vec4 other = predicted[j];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float h = 0.5f * (self.w + other.w);
+      if (dot(offset, offset) < h * h) youngest = age[j];
+    }
+    ease[i] = youngest < LevelRules::ease_frames ? rules.ease[youngest] : 1;
+  }
+};
+
+struct Apply {
+  float* lambda;
+  const float* ease;
+  SIM_FN void operator()(int i) const { lambda[i] *= ease[i]; }
+};
+
+using Columns =
+    ColumnView<columns(Column::Predicted, Column::Age, Column::Neighbours), columns(Column::Ease)>;
+
+template <class Selection>
+void launch(FluidState& state, Columns p, Selection select) {
+  for_each("ease", p.size(),
+           Ease<Selection>{.select = select,
+                           .predicted = p.predicted(),
+                           .age = p.age(),
+                           .neighbours = state.neighbours.view(),
+                           .ease = p.ease(),
+                           .rules = state.levels.rules});
+}
+
+void run(FluidState& state, Columns p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+
+using ConstraintView = ColumnView<columns(Column::Lambda, Column::Ease), columns(Column::Lambda)>;
+
+void ease_constraint(FluidState&, ConstraintView p) {
+  for_each("ease constraint", p.size(), Apply{p.lambda(), p.ease()});
+}
+
+constexpr const char* source = "blending of the constraint, after Orthmann and Kolb 2012";
+
+}  // namespace
+
+Stage ease_stage() {
+  return stage_of<run>({.name = "ease", .source = source, .phase = Phase::Substep, .called_for = if_levels});
+}
+
+Stage eased_constraint_stage() {
+  return stage_of<ease_constraint>(
+      {.name = "eased constraint", .source = source, .phase = Phase::Iteration, .called_for = if_levels});
+}
+
+}  // namespace sim::SIM_BACKEND

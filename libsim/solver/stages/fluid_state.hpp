@@ -1,0 +1,95 @@
+#pragma once
+/// Everything a stage may touch.
+
+#include "libsim/activation/activation.hpp"
+#include "libsim/flow/jets.hpp"
+#include "libsim/levels/level_state.hpp"
+#include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/particles/kernels.hpp"
+#include "libsim/particles/walls.hpp"
+#include "libsim/pressure/coarse_grid.hpp"
+#include "libsim/saliency/saliency.hpp"
+#include "libsim/solver/stages/part_clock.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Numbers of the solver. Defaults are measured ones; docs/solver_notes.md says how.
+struct SolverParameters {
+  float rest_density = 1000;  ///< rho_0, kg/m3
+  float gravity = 9.81f;      ///< along -y, m/s2
+  float dt = 1.0f / 180;      ///< substep, s
+  int substeps = 3;           ///< a frame
+  int iterations = 4;         ///< constraint projections a substep
+  /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
+  float relaxation = 0.01f;
+  /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.
+  float tensile = 0;
+  /// Share of the last projection's step that is taken again (momentum); 0 in a substep's first projection.
+  float momentum = 0.4f;
+  /// V-cycles of the coarse pressure before the projections; 0 leaves the pass out.
+  int coarse_cycles = 2;
+  /// Edge of its cells as a share of the finest h, before it is fitted between the walls.
+  float coarse_edge = 2;
+  /// XSPH c; 0 leaves the pass out.
+  float viscosity = 0.1f;
+  /// Longest way of a particle in a substep, as a share of h.
+  float longest_step = 2.0f;
+  /// Nearest distance to a wall, as a share of d.
+  float wall_gap = 0.1f;
+};
+
+/// The fluid between two passes. Arrays of particles are in the grid's order of the last substep.
+struct FluidState {
+  SolverParameters parameters;
+  Walls walls{};
+  Domain domain{};
+  float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
+  float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
+  std::int64_t mass_units =
+      0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
+  LevelSupports supports{};
+  Vec3 refuge{};          ///< where a particle goes whose place is lost
+  bool one_level = true;  ///< all particles have one level, for good
+  int substep = 0;
+  int iteration = 0;  ///< projection within the substep
+  Particles particles;
+  Grid grid;
+  NeighbourList neighbours;
+  /// The lists of the last substep hold everyone's neighbours in today's order: what looks at the fluid
+  /// before it moves need not look for them again. Between h and the list's margin they tell the truth of a
+  /// moment before.
+  bool lists_hold = false;
+  bool lists_by_slot = false;  ///< they belong to the slots of that substep
+  CoarseGrid coarse;
+  Jets jets;
+  SaliencyState saliency;
+  LevelState levels;
+  /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong
+  /// to slots. True between frames.
+  bool all_active = true;
+  Activation activation;
+  Array<Guards> guards;
+  PartClock clock;
+
+  /// Who was solved in the last frame; nullptr when everyone was.
+  const std::uint8_t* last_active() const {
+    return activation.columns_set && !activation.all_marked ? particles.all().active.data() : nullptr;
+  }
+  ParticleNeighbours particle_neighbours() const {
+    return {neighbours.view(), lists_by_slot ? activation.slot_of.data() : nullptr};
+  }
+  ActiveParticles active() {
+    return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
+  }
+  Guards* guard() { return guards.data(); }
+};
+
+/// v, or as much of it as moves a particle by longest_step h in a substep; counted when that is less.
+SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
+  const float speed = length(v);
+  if (!(speed > limit)) return v;
+  atomic_add(&guards->speed_limited, std::uint64_t{1});
+  return (limit / speed) * v;
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,97 @@
+#pragma once
+/// The stages of the solver, one source file each, and what they lend to each other.
+
+#include <vector>
+
+#include "libsim/solver/stages/stage.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Moves the lowest water of the corner columns into the jets.
+Stage nozzle_stage();
+/// Saliency and target levels from the eyes, the last picture and the fluid.
+Stage saliency_stage();
+/// What saliency is made of, for an output.
+Stage saliency_parts_stage();
+/// Target levels from the gaze alone.
+Stage gaze_targets_stage();
+/// Neighbour list at the frame's start, for what looks at the fluid before it moves.
+Stage frame_neighbours_stage();
+/// Targets of tests (LevelState::forced).
+Stage forced_targets_stage();
+/// Targets of neighbours differ by one level at most.
+Stage graded_targets_stage();
+/// Algorithms 1 and 2; changes the number of particles and makes the neighbour list stale.
+Stage split_and_merge_stage();
+/// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
+Stage predict_stage();
+/// Grid and combined neighbour list at the predicted positions.
+Stage neighbours_stage();
+/// Shares of the constraint round fresh particles.
+Stage ease_stage();
+/// The slow part of the pressure, solved on cells and applied first.
+Stage coarse_pressure_stage();
+/// Parts what overlaps after a split or a merge, without giving it speed.
+Stage parting_stage();
+/// Density, unilateral constraint and its multiplier lambda.
+Stage density_stage();
+/// The constraint's multipliers times these shares.
+Stage eased_constraint_stage();
+/// Position correction, momentum-exact, and wall projection.
+Stage displacement_stage();
+/// Velocity from the positions.
+Stage velocity_stage();
+/// XSPH viscosity.
+Stage xsph_stage();
+/// The same for methods that split and merge: fresh particles come to rest among their neighbours.
+Stage xsph_of_levels_stage();
+/// Velocity x 0.9 a frame while the water settles.
+Stage settling_stage();
+
+/// Which particles the frame solves.
+Stage activation_stage();
+/// Velocity and energy grids; what was not solved inherits from them.
+Stage velocity_grid_stage();
+
+// Passes that others borrow. Each says which columns it touches; a caller that does not declare them does not
+// compile.
+
+using NeighboursView =
+    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id, Column::Level),
+               columns(Column::Neighbours)>;
+/// Sorts the particles by the grid's cells at their predicted positions, and lists everyone's neighbours
+/// there.
+void find_neighbours(FluidState& state, NeighboursView particles);
+
+using DensityView =
+    ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
+/// Densities and multipliers at the predicted positions of those whom the frame solves.
+void constrain_density(FluidState& state, DensityView particles);
+/// The same of everyone outside the schedule, over lists that belong to slots.
+void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
+
+using DisplacementView =
+    ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
+               columns(Column::PredictedNext, Column::Predicted)>;
+/// Moves those whom the frame solves by their multipliers.
+void displace(FluidState& state, DisplacementView particles);
+
+/// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
+/// place in both buffers.
+void constrain_density(FluidState& state, DensityView particles, BesideFresh<AllParticles> fresh);
+void constrain_density(FluidState& state, DensityView particles, BesideFresh<ActiveParticles> fresh);
+void displace(FluidState& state, DisplacementView particles, BesideFresh<AllParticles> fresh);
+void displace(FluidState& state, DisplacementView particles, BesideFresh<ActiveParticles> fresh);
+
+/// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
+/// columns and fills the given ones in the new order.
+void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                      Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
+/// The same from the gaze alone, in the present order.
+void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                  Array<std::uint8_t>& target);
+
+/// All stages in the fixed order in which a schedule may call them.
+std::vector<Stage> all_stages();
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,142 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// What is done to pairs besides the viscosity: nothing, or, round fresh particles, a filter of the kick that
+/// the substep gave them. After a split or a merge neighbours overlap; the projections part them, and how
+/// fast they part is no motion of the fluid. Kicks are evened out among neighbours, so that the momentum
+/// stays and what all of them feel, gravity and pressure, passes.
+struct NoFilter {
+  static constexpr bool filters = false;
+};
+struct KickFilter {
+  static constexpr bool filters = true;
+  const Vec4* kick;
+  const float* ease;
+  float strength;
+  SIM_FN float share(int i, int j) const { return strength * (1 - fminf(ease[i], ease[j])); }
+};
+
+/// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
+/// Particles that are not solved keep their velocity and count as at the rest density.
+template <bool OneLevel, class Filter, class Selection>
+struct Xsph {
+  Selection select;
+  const Vec4* position;
+  const Vec4* velocity;
+  const float* density;
+  Neighbours neighbours;
+  Vec4* next;
+  float viscosity;
+  Filter filter;
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        next[~i] = velocity[~i];
+        return;
+      }
+    }
+    const Vec4 self = position[i];
+    const PairKernel<OneLevel> pair(self.w);
+    const Vec4 own = velocity[i];
+    const float own_density = density[i];
+    [[maybe_unused]] Vec4 own_kick{};
+    if constexpr (Filter::filters) own_kick = filter.kick[i];
+    float vx = 0;
+    float vy = 0;
+    float vz = 0;
+    const int count = neighbours.size(slot);
+    SIM_LANES(vx, vy, vz)
+    for (int k = team.rank(); k < count; k += Team::size) {
+      const int j = neighbours(slot, k);
+      const Vec4 other = position[j];
+      const Kernel kernel = pair.with(other.w);
+      const float dx = self.x - other.x;
+      const float dy = self.y - other.y;
+      const float dz = self.z - other.z;
+      const float weight =
+          pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      if constexpr (Filter::filters) {
+        const float share = filter.share(i, j) * weight;
+        const Vec4 kick = filter.kick[j];
+        vx += share * (kick.x - own_kick.x);
+        vy += share * (kick.y - own_kick.y);
+        vz += share * (kick.z - own_kick.z);
+      }
+      const float flow = viscosity * weight;
+      const Vec4 v = velocity[j];
+      vx += flow * (v.x - own.x);
+      vy += flow * (v.y - own.y);
+      vz += flow * (v.z - own.z);
+    }
+    vx = team.sum(vx);
+    vy = team.sum(vy);
+    vz = team.sum(vz);
+    if (team.rank() > 0) return;
+    // Volume m_i / rho_0; densities are relative to rho_0.
+    const float scale = 2 * mass_of(self.w, 1);
+    next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
+  }
+};
+
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
+                           columns(Column::VelocityNext, Column::Velocity)>;
+
+template <bool OneLevel, class Filter, class Selection>
+void launch(FluidState& state, Columns p, Filter filter, Selection select) {
+  for_each_team("xsph", p.size(),
+                Xsph<OneLevel, Filter, Selection>{.select = select,
+                                                  .position = p.position(),
+                                                  .velocity = p.velocity(),
+                                                  .density = p.density(),
+                                                  .neighbours = state.neighbours.view(),
+                                                  .next = p.velocity_next(),
+                                                  .viscosity = state.parameters.viscosity,
+                                                  .filter = filter});
+  p.swap<Column::Velocity, Column::VelocityNext>();
+}
+
+template <bool OneLevel, class Filter>
+void launch(FluidState& state, Columns p, Filter filter) {
+  state.all_active ? launch<OneLevel>(state, p, filter, AllParticles{})
+                   : launch<OneLevel>(state, p, filter, state.active());
+}
+
+void run(FluidState& state, Columns p) {
+  state.one_level ? launch<true>(state, p, NoFilter{}) : launch<false>(state, p, NoFilter{});
+}
+
+using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours,
+                                      Column::Ease, Column::PredictedNext),
+                              columns(Column::VelocityNext, Column::Velocity)>;
+
+void run_levels(FluidState& state, LevelsView p) {
+  launch<false>(
+      state, p,
+      KickFilter{.kick = p.predicted_next(), .ease = p.ease(), .strength = state.levels.rules.kick_filter});
+}
+
+}  // namespace
+
+Stage xsph_stage() {
+  return stage_of<run>({.name = "xsph",
+                        .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
+                        .phase = Phase::SubstepEnd,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
+                        }});
+}
+
+Stage xsph_of_levels_stage() {
+  return stage_of<run_levels>({.name = "xsph of levels",
+                               .source = "Monaghan 1989, with a filter of kicks round fresh particles",
+                               .phase = Phase::SubstepEnd,
+                               .called_for = if_levels});
+}
+
+}  // namespace sim::SIM_BACKEND

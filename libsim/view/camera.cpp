@@ -1,0 +1,106 @@
+#include "libsim/view/camera.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "stats/base/error.hpp"
+
+namespace sim {
+
+namespace {
+
+Vec3d subtract(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Vec3d normalized(const Vec3d& a) {
+  const double length = std::sqrt(dot(a, a));
+  return {a[0] / length, a[1] / length, a[2] / length};
+}
+
+}  // namespace
+
+Mat4 identity() { return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }
+
+Mat4 multiply(const Mat4& a, const Mat4& b) {
+  Mat4 product{};
+  for (std::size_t column = 0; column < 4; ++column) {
+    for (std::size_t row = 0; row < 4; ++row) {
+      float sum = 0;
+      for (std::size_t k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];
+      product[4 * column + row] = sum;
+    }
+  }
+  return product;
+}
+
+Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m) {
+  const Vec3d forward = subtract(target_m, eye_m);
+  const Vec3d right = cross(forward, {0, 1, 0});
+  if (!(dot(right, right) > 1e-12 * dot(forward, forward))) {
+    throw base::Error("camera", "eye and target coincide, or the view is straight up or down",
+                      "move the eye or the target of the camera");
+  }
+  const Vec3d z = normalized({-forward[0], -forward[1], -forward[2]});
+  const Vec3d x = normalized(right);
+  const Vec3d y = cross(z, x);
+  Mat4 m = identity();
+  const Vec3d axes[3] = {x, y, z};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column)
+      m[4 * column + row] = static_cast<float>(axes[row][column]);
+    m[12 + row] = static_cast<float>(-dot(axes[row], eye_m));
+  }
+  return m;
+}
+
+Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double far_m) {
+  if (!(vertical_fov_deg > 0 && vertical_fov_deg < 180 && aspect > 0 && near_m > 0 && far_m > near_m)) {
+    throw base::Error("camera", "no perspective: field of view, aspect or depth range is out of range",
+                      "use 0 < field of view < 180 degrees and 0 < near < far");
+  }
+  const double scale = 1 / std::tan(vertical_fov_deg * std::numbers::pi / 360);
+  Mat4 m{};
+  m[0] = static_cast<float>(scale / aspect);
+  m[5] = static_cast<float>(scale);
+  m[10] = static_cast<float>((far_m + near_m) / (near_m - far_m));
+  m[11] = -1;
+  m[14] = static_cast<float>(2 * far_m * near_m / (near_m - far_m));
+  return m;
+}
+
+Mat4 rigid_inverse(const Mat4& m) {
+  Mat4 inverse = identity();
+  for (std::size_t row = 0; row < 3; ++row) {
+    float shift = 0;
+    for (std::size_t column = 0; column < 3; ++column) {
+      inverse[4 * column + row] = m[4 * row + column];
+      shift -= m[4 * row + column] * m[12 + column];
+    }
+    inverse[12 + row] = shift;
+  }
+  return inverse;
+}
+
+View make_view(const Camera& camera, int width, int height) {
+  if (width < 1 || height < 1)
+    throw base::Error("view", "a picture needs at least 1 x 1 px", "use a larger --size");
+  View view;
+  view.view = look_at(camera.eye_m, camera.target_m);
+  view.projection =
+      perspective(camera.vertical_fov_deg, static_cast<double>(width) / height, camera.near_m, camera.far_m);
+  view.viewport = {0, 0, width, height};
+  view.near_m = camera.near_m;
+  view.far_m = camera.far_m;
+  return view;
+}
+
+PixelRays pixel_rays(const View& view) {
+  const Mat4& p = view.projection;
+  // ndc = p0 * slope - p8 with ndc = 2 x / width - 1.
+  return {2 / (static_cast<float>(view.viewport.width) * p[0]), (p[8] - 1) / p[0],
+          2 / (static_cast<float>(view.viewport.height) * p[5]), (p[9] - 1) / p[5]};
+}
+
+}  // namespace sim

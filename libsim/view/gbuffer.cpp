@@ -1,0 +1,104 @@
+#include "libsim/view/gbuffer.hpp"
+
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr std::string_view magic = "VIPGBUF1";
+constexpr std::size_t max_file_bytes = std::size_t{2} << 30;
+constexpr std::int32_t max_side_px = 16384;
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+struct Header {
+  std::int32_t width, height;
+  std::int32_t viewport[4];
+  float radius_scale;
+  std::int32_t reserved;
+  double near_m, far_m;
+  Mat4 view, projection;
+};
+
+/// Takes the arrays out of the file one after the other.
+struct Reader {
+  std::string_view rest;
+  template <class T>
+  void take(T* out, std::size_t count) {
+    std::memcpy(out, rest.data(), count * sizeof(T));
+    rest.remove_prefix(count * sizeof(T));
+  }
+};
+
+constexpr std::size_t bytes_per_pixel = 4 * 8;
+
+}  // namespace
+
+void write_gbuffer(const std::filesystem::path& path, const GBuffer& g) {
+  const auto pixels = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
+  for (const std::size_t size : {g.depth.size(), g.filtered_depth.size(), g.normal.size() / 3,
+                                 g.thickness.size(), g.front.size(), g.radius.size()}) {
+    if (size != pixels || pixels == 0)
+      throw base::Error(path.string(), "the G-buffer's arrays are not whole", "");
+  }
+  const Viewport& v = g.view.viewport;
+  const Header header{g.width,        g.height,    {v.x, v.y, v.width, v.height},
+                      g.radius_scale, 0,           g.view.near_m,
+                      g.view.far_m,   g.view.view, g.view.projection};
+  std::string bytes(magic);
+  append(bytes, &header, 1);
+  for (const auto* values : {&g.depth, &g.filtered_depth, &g.normal, &g.thickness, &g.radius}) {
+    append(bytes, values->data(), values->size());
+  }
+  append(bytes, g.front.data(), g.front.size());
+  base::write_file_atomically(path, bytes);
+}
+
+GBuffer read_gbuffer(const std::filesystem::path& path) {
+  const std::string bytes = base::read_file(path, max_file_bytes);
+  const std::string mend = "write it again with this version of the program";
+  if (!std::string_view(bytes).starts_with(magic))
+    throw base::Error(path.string(), "not a G-buffer of version 1", mend);
+  Reader reader{std::string_view(bytes).substr(magic.size())};
+  if (reader.rest.size() < sizeof(Header)) throw base::Error(path.string(), "truncated in its header", mend);
+  Header header;
+  reader.take(&header, 1);
+  if (header.width < 1 || header.height < 1 || header.width > max_side_px || header.height > max_side_px) {
+    throw base::Error(path.string(), "its size in px is out of range", mend);
+  }
+  const auto pixels = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
+  if (reader.rest.size() != pixels * bytes_per_pixel) {
+    throw base::Error(path.string(),
+                      "holds " + std::to_string(reader.rest.size()) + " bytes of pixels, not " +
+                          std::to_string(pixels * bytes_per_pixel),
+                      mend);
+  }
+  GBuffer g;
+  g.width = header.width;
+  g.height = header.height;
+  g.radius_scale = header.radius_scale;
+  g.view = {header.view,
+            header.projection,
+            {header.viewport[0], header.viewport[1], header.viewport[2], header.viewport[3]},
+            header.near_m,
+            header.far_m};
+  g.normal.resize(3 * pixels);
+  for (auto* values : {&g.depth, &g.filtered_depth, &g.thickness, &g.radius}) values->resize(pixels);
+  for (auto* values : {&g.depth, &g.filtered_depth, &g.normal, &g.thickness, &g.radius}) {
+    reader.take(values->data(), values->size());
+  }
+  g.front.resize(pixels);
+  reader.take(g.front.data(), pixels);
+  return g;
+}
+
+}  // namespace sim
