@@ -74,14 +74,14 @@ MeasuredReport measure_here(const CheckOptions& options, const CheckReport& repo
 CheckReport make_report(const CheckOptions& options, const study::Protocol& protocol) {
   const Viewing viewing =
       screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle);
-  CheckReport report{protocol,
-                     outline_session(protocol),
-                     check_balance(protocol),
-                     checked_settings(protocol),
-                     {},
-                     {},
-                     {},
-                     frame_scenes(protocol, viewing, options.size)};
+  CheckReport report{.protocol = protocol,
+                     .outline = outline_session(protocol),
+                     .balance = check_balance(protocol),
+                     .settings = checked_settings(protocol),
+                     .refresh = {},
+                     .common = {},
+                     .measured = {},
+                     .scenes = frame_scenes(protocol, viewing, options.size)};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
   std::int64_t frames = 0;
   for (const auto& one : report.settings) frames += study::frame_count(one.setting);

@@ -62,7 +62,9 @@ std::vector<PlannedStimulus> plan_bakes(const study::Protocol& protocol) {
       return one.what == cell.stimulus && (!by_rate || same_rate(*one.rate, cell.setting));
     });
     if (known == out.end()) {
-      known = out.insert(out.end(), {cell.stimulus, {}, {}, traits.adaptive(), 0, {}, {}});
+      known = out.emplace(out.end());
+      known->what = cell.stimulus;
+      known->adaptive = traits.adaptive();
       if (by_rate) known->rate = cell.setting;
     }
     known->cells.push_back(static_cast<int>(i));
