@@ -172,7 +172,7 @@ void run(RunCommand& command) {
 }  // namespace
 
 void add_play_options(CLI::App& command, PlayOptions& options) {
-  add_database(command, options.database);
+  command.add_option("--db", options.database, "Database of the study")->required();
   command.add_option("--max-pages", options.max_pages, "Let the database grow to this many pages of 4 KiB")
       ->check(CLI::PositiveNumber);
   command.add_flag("--console", options.console,
