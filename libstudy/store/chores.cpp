@@ -44,7 +44,7 @@ std::vector<Chore> pending(Connection& database) {
 void strike_out(Connection& database, const Chore& chore) {
   Transaction transaction(database);
   for (const std::int64_t row : chore.rows)
-    Statement(database, "DELETE FROM chore WHERE chore_id = ?").bind(0, row).run();
+    Statement(database, "DELETE FROM chore WHERE chore_id = ?").bind_all(row).run();
   ChorePlan(database).rewrite();
   transaction.commit();
 }
@@ -148,12 +148,8 @@ void ChorePlan::add(const char* kind, const std::string& person, const std::stri
                     const std::string& renamed) {
   Statement insert(database_,
                    "INSERT INTO chore (kind, batch, person, participant, renamed) VALUES (?,?,?,?,?)");
-  insert.bind(0, kind).bind(1, batch_).bind(2, person).bind(3, participant);
-  if (renamed.empty())
-    insert.bind_null(4);
-  else
-    insert.bind(4, renamed);
-  insert.run();
+  const auto other_name = renamed.empty() ? std::nullopt : std::optional(renamed);
+  insert.bind_all(kind, batch_, person, participant, other_name).run();
 }
 
 CleanUp clean_up(Connection& database) {

@@ -69,7 +69,7 @@ std::vector<Leftover> leftovers(Connection& database) {
 }
 
 void mark_tackled(Connection& database, const Leftover& one) {
-  Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind(0, one.id).run();
+  Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind_all(one.id).run();
 }
 
 /// Why it is not deleted; empty: it is gone.
@@ -96,7 +96,7 @@ void remove_empty_folders(Connection& database) {
   std::vector<std::pair<std::int64_t, std::string>> folders;
   Statement row(database,
                 "SELECT export_id, path FROM export WHERE kind = ? AND host = ? ORDER BY path DESC");
-  for (row.bind(0, export_rows::folder_kind).bind(1, this_host()); row.step();)
+  for (row.bind_all(export_rows::folder_kind, this_host()); row.step();)
     folders.emplace_back(row.integer(0), row.text(1));
   for (const auto& [id, path] : folders)
     if (::rmdir(path.c_str()) == 0 || errno == ENOENT) strike_out(database, id);

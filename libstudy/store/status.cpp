@@ -84,7 +84,7 @@ std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, 
                                              FpsMean mean) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   Statement row(*database, certificate_sql(mean));
-  row.bind(0, run_id);
+  row.bind_all(run_id);
   std::vector<CertificateRow> rows;
   while (row.step()) {
     CertificateRow line;

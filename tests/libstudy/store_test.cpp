@@ -89,7 +89,7 @@ TEST(Store, TakesEveryProtocolThatShips) {
     for (const Block& block : protocol.blocks) {
       if (has_trials(block.kind)) continue;
       sqlite::Statement asked(look, "SELECT count(*) FROM ask WHERE block = ?");
-      ASSERT_TRUE(asked.bind(0, block.id).step());
+      ASSERT_TRUE(asked.bind_all(block.id).step());
       EXPECT_EQ(asked.integer(0), static_cast<std::int64_t>(block.questions.size())) << block.id;
     }
     ++protocols;
