@@ -7,8 +7,8 @@ packages=(
   g++ cmake ninja-build pkg-config
   # libraries fixed by the project
   libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev libgtest-dev libgmock-dev
-  # TOML, JSON, PNG, compression, checksums, SHA-256
-  libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
+  # texts, TOML, JSON, PNG, compression, checksums, SHA-256
+  libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
   # software OpenGL for machines without a GPU
   libegl1 libgl1 libgl1-mesa-dri
   # type of the participant's window

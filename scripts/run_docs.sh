@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# Runs every command line that a page quotes in its "sh" blocks, as it stands, in a fresh copy of the project. A command that ends
+# with an error, or an output file that it names and does not write, fails the page. What cannot run as it stands is in the table
+# below with the reason; what is skipped names the test that runs it instead, which must exist.
+# usage: scripts/run_docs.sh [PAGE ...]      default: every page; copies, logs and durations go to out/docs
+# Takes the programs from $VIP_BUILD (default: build/dev). README.md alone starts from nothing: it builds its own.
+# VIP_DOCS_QUICK=1 leaves out what the table calls slow.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$PWD
+build=$(realpath "${VIP_BUILD:-build/dev}")
+out=$(realpath -m "${VIP_DOCS_OUT:-out/docs}")
+[ $# -gt 0 ] || set -- README.md docs/*.md
+
+# PAGE | HOW A COMMAND BEGINS | WHAT RUNS INSTEAD | WHY | TEST
+# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", or "slow"
+# (the command, but not in a quick run).
+table="
+README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
+README.md|vip-study run|person||
+docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/512/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
+docs/methods.md|vip-bench table1|s/32k/512/|a GPU works on it for minutes|
+docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
+docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|WindowProtocol.task1
+docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
+"
+outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview)'
+
+# The command lines of a page's sh blocks, each with its continuations on one line and without its comment.
+commands_of() {
+  awk '/^```/ { shell = !inside && $0 == "```sh"; inside = !inside; next }
+       shell { line = line $0; if (sub(/\\$/, "", line)) next; print line; line = "" }' "$1" |
+    sed 's/  *#.*//; s/   */ /g; /^$/d'
+}
+
+failed=0
+fail() { printf 'FAILED  %s: %s\n' "$page" "$1" >&2; failed=1; }
+
+# A block that names no language would not be run, whatever it holds; so would one that is indented.
+check_blocks() {
+  awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|json|toml|mermaid)$/) print NR; inside = !inside; next }
+       !inside && /^    (\.\/)?(vip-|scripts|ctest|cmake|build)/ { print NR }' "$1" |
+    while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, json, toml or mermaid"; done
+}
+
+check_test() {  # check_test NAME: a file of the project or a test of the build
+  [ -e "$root/$1" ] || [ "$(ctest --test-dir "$build" -N -R "^${1//./\\.}\$" | sed -n 's/^Total Tests: //p')" = 1 ] ||
+    fail "the table names a test that does not exist: $1"
+}
+
+row_for() {  # row_for COMMAND: the row of the table that is about it
+  local of begins how why test
+  while IFS='|' read -r of begins how why test; do
+    if [ "$of" = "$page" ] && [[ $1 == "$begins"* ]]; then printf '%s|%s|%s|%s\n' "$begins" "$how" "$why" "$test"; fi
+  done <<<"$table"
+}
+
+# Whatever page is on, keys come about once a second; 1 says yes to a consent, each digit is a rating.
+press_keys() {
+  local n=0
+  while true; do
+    key $((n++ % 7 + 1)) || true
+    sleep 0.4
+    key Return || true
+    sleep 0.5
+  done
+}
+answer_by_keys() {  # answer_by_keys COMMAND
+  size=1280x720
+  (
+    out=$folder/screen
+    . "$root/scripts/window_lib.sh"
+    screen_of "$out/number" "$size"
+    DISPLAY=:$(cat "$out/number")
+    export DISPLAY
+    press_keys &
+    screens+=($!)
+    eval "$1" </dev/null
+  )
+}
+
+run_command() {  # run_command COMMAND: in the page's folder
+  local command=$1 row begins how='' why='' test='' status=0 start=$SECONDS
+  row=$(row_for "$command")
+  if [ -n "$row" ]; then
+    IFS='|' read -r begins how why test <<<"$row"
+    used+="$begins"$'\n'
+    [ -z "$test" ] || check_test "$test"
+  fi
+  case $how in
+    slow) [ -n "${VIP_DOCS_QUICK:-}" ] && how=skip || how='' ;;
+  esac
+  case $how in
+    skip) printf '%6s  %s\n        (%s; %s)\n' - "$command" "$why" "$test"; return ;;
+    person) answer_by_keys "$command" >>"$log" 2>&1 || status=$? ;;
+    *)
+      [ -z "$how" ] || command=$(sed "$how" <<<"$command")
+      eval "$command" </dev/null >>"$log" 2>&1 || status=$? ;;
+  esac
+  printf '%4d s  %s\n' $((SECONDS - start)) "$command"
+  if [ $status -ne 0 ]; then fail "exit status $status: $command"; tail -n 15 "$log" >&2; return; fi
+  for made in $(grep -oE -- "$outputs [^ ]+" <<<"$command" | cut -d ' ' -f 2); do
+    [ -e "$made" ] || fail "$made is not there after: $command"
+  done
+}
+
+run_page() {  # in a subshell: the page's exports are its own
+  page=$1 folder=$out/${1//\//_} used=''
+  log=$folder.log
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  : >"$log"
+  [ -z "$(commands_of "$root/$page")" ] || tar -C "$root" --exclude=./build --exclude=./out --exclude=./.git -c . | tar -C "$folder" -x
+  cd "$folder"
+  local wrong command begins of rest
+  wrong=$(check_blocks "$root/$page")
+  [ -z "$wrong" ] || fail "$wrong"
+  if [ "$page" != README.md ]; then
+    mkdir build
+    ln -s "$build" build/dev
+    ln -s "$build" build/release
+    PATH=$folder/build/release/bin:$PATH
+  fi
+  while IFS= read -r command; do run_command "$command"; done < <(commands_of "$root/$page")
+  while IFS='|' read -r of begins rest; do
+    if [ "$of" = "$page" ] && ! grep -qxF -- "$begins" <<<"$used"; then fail "the table's row matches no command: $begins"; fi
+  done <<<"$table"
+  cd "$root"
+  [ $failed -ne 0 ] || rm -rf "$folder"
+  return $failed
+}
+
+status=0
+for each; do
+  echo "== $each"
+  (run_page "$each") || status=1
+done
+exit $status
