@@ -33,7 +33,13 @@ std::vector<Chore> pending(Connection& database) {
     const std::string kind = row.text(1), batch = row.text(2);
     const bool same =
         kind == "rename" && !chores.empty() && chores.back().kind == kind && chores.back().batch == batch;
-    if (!same) chores.push_back({{}, kind, batch, row.text(3), row.text(4), {}});
+    if (!same)
+      chores.push_back({.rows = {},
+                        .kind = kind,
+                        .batch = batch,
+                        .person = row.text(3),
+                        .participant = row.text(4),
+                        .codes = {}});
     chores.back().rows.push_back(row.integer(0));
     if (kind == "rename") chores.back().codes[row.text(4)] = row.text(5);
   }

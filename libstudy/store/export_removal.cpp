@@ -64,7 +64,12 @@ std::vector<Leftover> leftovers(Connection& database) {
                 "ORDER BY host, path");
   std::vector<Leftover> all;
   while (row.step())
-    all.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5) != 0});
+    all.push_back({.id = row.integer(0),
+                   .kind = row.text(1),
+                   .host = row.text(2),
+                   .sha256 = row.text(3),
+                   .path = row.text(4),
+                   .tackled = row.integer(5) != 0});
   return all;
 }
 

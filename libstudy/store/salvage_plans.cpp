@@ -25,9 +25,15 @@ std::vector<Planned> sessions_of(Connection& database) {
       "SELECT s.session_id, s.seed, s.participant, s.code, p.text, p.sha256, p.trial_seconds, s.slot "
       "FROM session s JOIN protocol p USING (protocol_id)");
   while (row.step()) {
-    Planned one{row.integer(0), row.integer(1), row.text(2), row.text(3), row.text(4), row.text(5), {}, 0};
+    Planned one{.session = row.integer(0),
+                .seed = row.integer(1),
+                .participant = row.text(2),
+                .code = row.text(3),
+                .text = row.text(4),
+                .sha256 = row.text(5),
+                .trial_seconds = {},
+                .slot = static_cast<int>(row.integer(7))};
     if (!row.is_null(6)) one.trial_seconds = row.real(6);
-    one.slot = static_cast<int>(row.integer(7));
     all.push_back(std::move(one));
   }
   return all;

@@ -73,23 +73,20 @@ class Reader {
     std::vector<TaskSession> out;
     session_.bind_all(protocol_id_, std::string(mirror_event), std::string(revealed_event));
     while (session_.step()) {
-      TaskSession session{session_.text(1),
-                          static_cast<int>(session_.integer(2)),
-                          session_.text(3),
-                          session_.integer(4) != 0 || protocol_.test_data,
-                          session_.text(5),
-                          session_.text(6),
-                          session_.text(7),
-                          session_.text(8),
-                          {},
-                          {},
-                          session_.is_null(9) ? "" : session_.text(9),
-                          session_.is_null(10) ? "" : session_.text(10),
-                          session_.is_null(11) ? "" : session_.text(11),
-                          session_.is_null(12) ? "" : session_.text(12)};
-      session.trials = trials(session_.integer(0));
-      session.catches = catches(session_.integer(0));
-      out.push_back(std::move(session));
+      out.push_back({.participant = session_.text(1),
+                     .visit = static_cast<int>(session_.integer(2)),
+                     .observer = session_.text(3),
+                     .test_data = session_.integer(4) != 0 || protocol_.test_data,
+                     .state = session_.text(5),
+                     .gaze_source = session_.text(6),
+                     .station = session_.text(7),
+                     .display = session_.text(8),
+                     .trials = trials(session_.integer(0)),
+                     .catches = catches(session_.integer(0)),
+                     .first_answer_utc = session_.text(9),
+                     .angles = session_.text(10),
+                     .unblinded = session_.text(11),
+                     .mixed_pictures = session_.text(12)});
     }
     return out;
   }
