@@ -11,36 +11,17 @@
 #include <string_view>
 #include <vector>
 
+#include "libsim/exec/backend.hpp"
 #include "libsim/exec/launch_time.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
+#include "libsim/particles/particle_state.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/saliency/looks.hpp"
 #include "libsim/scene/scene.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
-
-enum class Backend { Cpu, Cuda };
-
-/// "cpu", "cuda" or "auto" (CUDA when a device answers, otherwise the CPU). "cuda" without a device is a
-/// base::Error.
-Backend choose_backend(std::string_view name);
-std::string backend_name(Backend backend);
-
-/// One particle as the renderer and the bake take it.
-struct RenderParticle {
-  float x_m = 0, y_m = 0, z_m = 0;
-  float radius_m = 0;
-};
-
-/// One particle in full, for tests, checkpoints and comparisons.
-struct ParticleState {
-  int id = 0;
-  int level = 0;
-  float x_m = 0, y_m = 0, z_m = 0;
-  float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
-};
 
 /// Targets for tests, in place of the method's own: one level inside a sphere, another outside.
 struct TargetRegion {
@@ -88,7 +69,8 @@ struct SimulationOptions {
   bool time_parts = false;  ///< see Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
-  // Numbers of the solver; a negative value keeps the measured default (libsim/stages/fluid_state.hpp).
+  // Numbers of the solver; a negative value keeps the measured default
+  // (libsim/solver/stages/fluid_state.hpp).
   double relaxation = -1;
   double tensile = -1;
   double viscosity = -1;
@@ -181,13 +163,6 @@ struct FrameReport {
   TemporalReport temporal;
   SeenReport seen;  ///< the picture that saliency was given last
   RelaxedStart start;
-};
-
-/// A value of each particle, for pictures.
-enum class ParticleField {
-  Speed,         ///< m/s
-  DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included
-  Active         ///< 1 = solved in the last frame, 0 = moved by the velocity grid
 };
 
 /// What may change while the fluid runs.

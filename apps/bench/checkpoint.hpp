@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libsim/render/gbuffer.hpp"
+#include "libsim/view/gbuffer.hpp"
 #include "libsim/simulation.hpp"
 
 namespace apps {

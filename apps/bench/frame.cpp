@@ -17,7 +17,7 @@
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

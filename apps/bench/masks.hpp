@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "libsim/render/gbuffer.hpp"
+#include "libsim/view/gbuffer.hpp"
 #include "libsim/saliency/looks.hpp"
 
 namespace apps {

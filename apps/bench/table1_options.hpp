@@ -5,7 +5,7 @@
 
 #include "apps/bench/cells.hpp"
 #include "apps/bench/render_timer.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 
 namespace apps {
 

@@ -18,7 +18,7 @@
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/fps_window.hpp"

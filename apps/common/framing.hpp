@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/render/camera.hpp"
+#include "libsim/view/camera.hpp"
 
 namespace apps {
 

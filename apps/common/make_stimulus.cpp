@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "apps/common/fluid_stimulus.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {

@@ -10,7 +10,7 @@
 #include "apps/study/check/measuring.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/render/gl_context.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"

@@ -12,7 +12,7 @@
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/render/png.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps {

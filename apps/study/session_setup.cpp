@@ -3,7 +3,7 @@
 #include "apps/common/headless_display.hpp"
 #include "apps/study/cell_features.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "libstudy/display/null.hpp"
 #include "stats/base/error.hpp"
 

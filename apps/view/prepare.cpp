@@ -6,7 +6,7 @@
 #include "apps/view/overlay.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/fill.hpp"
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 

@@ -34,7 +34,7 @@ struct PlaceInSlots {
 
 }  // namespace
 
-void Activation::list_active(Particles& p) {
+void Activation::list_active(ActiveListView p) {
   const int n = p.size();
   const auto size = static_cast<std::size_t>(n);
   flags.resize(size);
@@ -42,11 +42,18 @@ void Activation::list_active(Particles& p) {
   slots.resize(size);
   slot_of.resize(size);
   if (n == 0) return;
-  for_each("active flags", n, CopyFlags{p.active.data(), flags.data()});
+  for_each("active flags", n, CopyFlags{p.active(), flags.data()});
   scanner.inclusive_sum(flags, ranks);
   for_each("active slots", n,
-           PlaceInSlots{flags.data(), ranks.data(), slots.data(), slot_of.data(), p.predicted.data(),
-                        p.predicted_next.data(), p.lambda.data(), p.density.data(), n});
+           PlaceInSlots{.flags = flags.data(),
+                        .ranks = ranks.data(),
+                        .slots = slots.data(),
+                        .slot_of = slot_of.data(),
+                        .predicted = p.predicted(),
+                        .predicted_next = p.predicted_next(),
+                        .lambda = p.lambda(),
+                        .density = p.density(),
+                        .n = n});
 }
 
 std::size_t Activation::bytes() const {

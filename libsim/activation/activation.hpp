@@ -4,41 +4,42 @@
 
 #include "libsim/activation/percentile_range.hpp"
 #include "libsim/activation/velocity_grid.hpp"
-#include "libsim/stages/selection.hpp"
+#include "libsim/methods/preset.hpp"
+#include "libsim/particles/random.hpp"
+#include "libsim/particles/selection.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Readings of Algorithm 3 where the paper leaves a choice; the defaults are the recommended ones.
+/// The readings of Algorithm 3 as kernels take them; sim::Readings explains each.
 struct ActivationRules {
-  /// Eq. 14: dV/dl over |V| + epsilon, without unit; false leaves m/s, as printed.
-  bool relative_level_change = true;
+  explicit ActivationRules(const Readings& readings = {})
+      : relative_level_change(readings.dimensionless_levels),
+        robust_range(readings.normalisation == Normalisation::Percentile),
+        inherit_change(readings.inherit_change),
+        pressed(readings.inactive_pressed && readings.inherit_change),
+        near_spacings(static_cast<float>(readings.inherit_cell_spacings)),
+        damping(static_cast<float>(readings.inactive_damping)),
+        others_yield(readings.inactive_yield),
+        keep_fragile_active(readings.keep_fragile_active),
+        longest_rest(readings.longest_rest_frames),
+        least_work(readings.least_work_frames),
+        speed_floor(static_cast<float>(readings.speed_floor)) {}
+
+  bool relative_level_change;
   /// F_pim from its 1st to its 99th percentile, followed at 0.1 a frame; false: from the least to the
   /// largest.
-  bool robust_range = true;
-  /// Particles that are not solved keep their own velocity and add the mean change that the solved particles
-  /// of their cell met; false: they take the cell's mean velocity, as printed.
-  bool inherit_change = true;
-  /// Gravity and the coarse pressure move the others in each substep, and they inherit what the projections
-  /// changed beyond that; false: the inherited change holds everything. Needs inherit_change.
-  bool pressed = true;
-  /// Edge of the cells that they inherit from, in d_*. On the cells of V, 10 d_*, the mean change of a dam's
-  /// front and of the water behind it is one number.
-  float near_spacings = 5;
-  /// Of what they keep, this share times (1 - beta)^2 gives way to the cell's mean velocity each frame:
-  /// nothing slows them down when they run into others, which would feed the fluid energy.
-  float damping = 0.25f;
-  /// In the denominator of lambda the others count as if they could move; false: as if they had infinite
-  /// mass.
-  bool others_yield = true;
+  bool robust_range;
+  bool inherit_change;
+  bool pressed;  ///< only with inherit_change
+  float near_spacings;
+  float damping;
+  bool others_yield;
   /// Never left out: particles just made by a split or a merge, spray (less than a fifth of the neighbours at
   /// rest), those within h of a wall and those faster than half an h a substep.
-  bool keep_fragile_active = true;
-  /// Frames in a row that a particle may be left out; 0 = no limit.
-  int longest_rest = 1;
-  /// Frames in a row that it is then solved at least, where there is such a limit.
-  int least_work = 2;
-  /// epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2.
-  float speed_floor = 0.1f;
+  bool keep_fragile_active;
+  int longest_rest;
+  int least_work;
+  float speed_floor;  ///< epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2
 };
 
 /// Fields of Column::Rest.
@@ -50,19 +51,8 @@ constexpr std::uint8_t rest_sparse = 0x80;      ///< had few neighbours when las
 /// others'.
 constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
-/// Uniform in [0, 1) from a particle, a frame and a seed alone: three rounds of a 32-bit mixer (lowbias32
-/// constants, C. Wellons).
-SIM_FN float activation_draw(std::uint32_t id, std::uint32_t frame, std::uint32_t seed) {
-  const std::uint32_t words[3] = {seed, frame, id};
-  std::uint32_t x = 0;
-  for (int k = 0; k < 3; ++k) {
-    x = (x ^ words[k]) + 0x9e3779b9u;
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    x ^= x >> 16;
-  }
-  return static_cast<float>(x >> 8) * (1.0f / 16777216.0f);
-}
+using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
+                                  columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
 /// State of temporal acceleration. V, E, the range and the frame counter last; the rest is rebuilt each
 /// frame.
@@ -93,7 +83,7 @@ struct Activation {
 
   /// Lists the active particles for the passes of a substep and puts what the passes read of the others in
   /// place: lambda 0, the rest density, the predicted position in both buffers. slot_of is slots' inverse.
-  void list_active(Particles& particles);
+  void list_active(ActiveListView particles);
   std::size_t bytes() const;
 };
 

@@ -155,7 +155,7 @@ struct Importance {
 
 }  // namespace
 
-void measure_importance(Activation& activation, Particles& p, const float* saliency, float speed_floor) {
+void measure_importance(Activation& activation, ImportanceView p, const float* saliency, float speed_floor) {
   auto& a = activation;
   const GridFrame grid = a.grid.frame();
   const auto cells = static_cast<std::size_t>(grid.cells());
@@ -171,10 +171,22 @@ void measure_importance(Activation& activation, Particles& p, const float* salie
            CellSums{a.grid.velocity().data(), a.grid.energy().data(), grid.block, a.total.data(),
                     a.energy_slope.data()});
   for_each("importance", p.size(),
-           Importance{p.position.data(), p.level.data(), saliency, p.rest.data(), a.importance.data(), grid,
-                      a.grid.velocity().data(), a.grid.energy().data(), a.slope_x.data(), a.slope_y.data(),
-                      a.slope_z.data(), a.across_levels.data(), a.total.data(), a.energy_slope.data(),
-                      speed_floor, a.rules.relative_level_change});
+           Importance{.position = p.position(),
+                      .level = p.level(),
+                      .saliency = saliency,
+                      .rest = p.rest(),
+                      .importance = a.importance.data(),
+                      .grid = grid,
+                      .velocity = a.grid.velocity().data(),
+                      .energy = a.grid.energy().data(),
+                      .slope_x = a.slope_x.data(),
+                      .slope_y = a.slope_y.data(),
+                      .slope_z = a.slope_z.data(),
+                      .across_levels = a.across_levels.data(),
+                      .total = a.total.data(),
+                      .energy_slope = a.energy_slope.data(),
+                      .speed_floor = speed_floor,
+                      .relative_level_change = a.rules.relative_level_change});
 }
 
 }  // namespace sim::SIM_BACKEND

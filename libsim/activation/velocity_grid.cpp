@@ -126,14 +126,21 @@ struct FinishEnergy {
 
 }  // namespace
 
-void add_momentum(const Particles& particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
+void add_momentum(MovingView particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
                   Array<MomentumSum>& sums, std::uint8_t which) {
   sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
   sums.zero();
   const int n = particles.size();
   for_each("add momentum", runs_of(n),
-           AddMomentum{particles.position.data(), particles.velocity.data(), particles.level.data(), active,
-                       cell_of, grid, sums.data(), n, which});
+           AddMomentum{.position = particles.position(),
+                       .velocity = particles.velocity(),
+                       .level = particles.level(),
+                       .active = active,
+                       .cell_of = cell_of,
+                       .grid = grid,
+                       .sums = sums.data(),
+                       .n = n,
+                       .which = which});
 }
 
 void VelocityGrid::fit(const Domain& domain, float edge) {
@@ -160,16 +167,16 @@ void VelocityGrid::fit(const Domain& domain, float edge) {
   energy_sums_.resize(cells);
 }
 
-void VelocityGrid::update_velocity(const Particles& particles, const std::uint8_t* active) {
+void VelocityGrid::update_velocity(MovingView particles, const std::uint8_t* active) {
   add_momentum(particles, active, nullptr, frame(), sums_);
   for_each("mean velocity", grid_levels * cells(), FinishVelocity{sums_.data(), velocity_.data(), cells()});
 }
 
-void VelocityGrid::update_energy(const Particles& particles) {
+void VelocityGrid::update_energy(MovingView particles) {
   energy_sums_.zero();
   const int n = particles.size();
   for_each("add energy", runs_of(n),
-           AddEnergy{particles.position.data(), particles.velocity.data(), particles.level.data(), frame(),
+           AddEnergy{particles.position(), particles.velocity(), particles.level(), frame(),
                      energy_sums_.data(), n});
   for_each("energy", cells(), FinishEnergy{energy_sums_.data(), energy_.data()});
 }

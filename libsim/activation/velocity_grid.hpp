@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "libsim/particles/cells.hpp"
 #include "libsim/particles/particles.hpp"
-#include "libsim/pressure/coarse_grid.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -80,6 +80,9 @@ SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
   return with_w((1 / weights) * sum, value_measured);
 }
 
+/// The particles that the grids are sums over.
+using MovingView = Reads<Column::Position, Column::Velocity, Column::Level>;
+
 class VelocityGrid {
  public:
   /// Lays cells of `edge` over the domain: ceil(extent / edge), at least one each way. Forgets all values
@@ -90,9 +93,9 @@ class VelocityGrid {
 
   /// V: mass-weighted mean velocity of a cell and level, m/s, from the particles with active != 0. What is
   /// empty keeps the measured value of the frame before, once, or takes the mean of the other levels.
-  void update_velocity(const Particles& particles, const std::uint8_t* active);
+  void update_velocity(MovingView particles, const std::uint8_t* active);
   /// E: kinetic energy of a cell, all particles, in m_* m2/s2 (J per kg of m_*).
-  void update_energy(const Particles& particles);
+  void update_energy(MovingView particles);
 
   const Array<Vec4>& velocity() const { return velocity_; }
   const Array<float>& energy() const { return energy_; }
@@ -109,7 +112,7 @@ class VelocityGrid {
 
 /// Adds mass and momentum of the particles with active == which (all when null) to sums[level x cells +
 /// cell], the cell given by cell_of (by position when null).
-void add_momentum(const Particles& particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
+void add_momentum(MovingView particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
                   Array<MomentumSum>& sums, std::uint8_t which = 1);
 
 /// momentum / mass of a sum that is not empty.

@@ -1,19 +1,11 @@
-#include <algorithm>
+#include "libsim/exec/backend.hpp"
 
-#include "libsim/scene/extent.hpp"
-#include "libsim/scene/settled_state.hpp"
-#include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {
 
-// Each back end is a namespace of its own, compiled from one text (libsim/exec/space.hpp).
-namespace cpu {
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
-}
 #ifdef SIM_HAS_CUDA
 namespace cuda {
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 /// Empty when a device answers, otherwise why none does.
 std::string device_problem();
 }  // namespace cuda
@@ -44,30 +36,6 @@ Backend choose_backend(std::string_view name) {
   if (problem.empty()) return Backend::Cuda;
   if (name == "auto") return Backend::Cpu;
   throw base::Error("--backend cuda", problem, cuda_mend);
-}
-
-namespace {
-std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const SimulationOptions& options) {
-#ifdef SIM_HAS_CUDA
-  if (options.backend == Backend::Cuda) return cuda::make_simulation(scene, options);
-#endif
-  if (options.backend == Backend::Cuda) choose_backend("cuda");
-  check_memory(options.method, options.n_star, available_memory_bytes());
-  return cpu::make_simulation(scene, options);
-}
-}  // namespace
-
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
-  if (options.start || scene.settle_frames == 0) return make_on_backend(scene, options);
-  const std::string key = options.cache.empty() ? "" : settled_key(scene, options);
-  SimulationOptions rested = options;
-  if (!key.empty()) rested.start = read_settled(options.cache, key);
-  if (!rested.start) {
-    rested.start = make_on_backend(scene, options)->read_state();
-    if (!key.empty()) write_settled(options.cache, key, *rested.start);
-  }
-  // Kept or settled just now, a run begins with its particles in one order, so that its files are the same.
-  return make_on_backend(scene, rested);
 }
 
 }  // namespace sim

@@ -91,6 +91,14 @@ class Array {
   std::size_t capacity_ = 0;
 };
 
+/// The last value, read back from the back end; 0 when there is none.
+template <class T>
+T last_of(const Array<T>& values) {
+  T out = 0;
+  if (values.size()) copy_to_host(&out, values.data() + (values.size() - 1), sizeof out);
+  return out;
+}
+
 /// Sorts the pairs (keys[i], order[i]) by key, stably; `order` is any payload, often 0..n-1.
 class Sorter {
  public:

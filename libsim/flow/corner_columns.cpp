@@ -37,19 +37,18 @@ struct List {
 
 }  // namespace
 
-int CornerColumns::find(const Particles& particles, const Corners& corners) {
+int CornerColumns::find(Reads<Column::Position, Column::Id> particles, const Corners& corners) {
   const int n = particles.size();
   if (n == 0) return 0;
   inside_.resize(static_cast<std::size_t>(n));
-  for_each("mark corners", n, Mark{particles.position.data(), corners, inside_.data()});
+  for_each("mark corners", n, Mark{particles.position(), corners, inside_.data()});
   scanner_.inclusive_sum(inside_, rank_);
-  int found = 0;
-  copy_to_host(&found, rank_.data() + (n - 1), sizeof found);
+  const int found = last_of(rank_);
   keys_.resize(static_cast<std::size_t>(found));
   order_.resize(static_cast<std::size_t>(found));
-  for_each("list corners", n,
-           List{particles.position.data(), particles.id.data(), inside_.data(), rank_.data(), keys_.data(),
-                order_.data()});
+  for_each(
+      "list corners", n,
+      List{particles.position(), particles.id(), inside_.data(), rank_.data(), keys_.data(), order_.data()});
   sorter_.sort(keys_, order_);
   return found;
 }

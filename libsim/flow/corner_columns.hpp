@@ -21,7 +21,7 @@ class CornerColumns {
  public:
   /// Orders the particles in the corners, lowest y first, ties by id: the choice does not depend on the
   /// particles' order in memory. Returns their number, which is read back from the device.
-  int find(const Particles& particles, const Corners& corners);
+  int find(Reads<Column::Position, Column::Id> particles, const Corners& corners);
   /// Indices of the particles that `find` found.
   const int* lowest_first() const { return order_.data(); }
   std::size_t bytes() const;

@@ -52,25 +52,11 @@ struct Stay {
   }
 };
 
-/// Ids of the living and of those just taken are not free. Ids beyond the capacity have no place in the list.
-struct MarkUsed {
-  const int* id;
-  int* free;
-  int capacity;
-  SIM_FN void operator()(int i) const {
-    if (id[i] >= 0 && id[i] < capacity) free[id[i]] = 0;
-  }
-};
-
+/// The others get the lowest ids that are free.
 struct TakeFree {
-  const int* free;
-  const int* free_sum;
+  const int* free_ids;
   int* ids;
-  int taken, made;
-  SIM_FN void operator()(int id) const {
-    const int place = taken + free_sum[id] - 1;
-    if (free[id] && place < made) ids[place] = id;
-  }
+  SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
 /// The new ones, as settled members of their level.
@@ -98,17 +84,12 @@ struct Make {
   }
 };
 
-int last_of(const Array<int>& values) {
-  int out = 0;
-  if (values.size()) copy_to_host(&out, values.data() + (values.size() - 1), sizeof out);
-  return out;
-}
-
 }  // namespace
 
 std::size_t Exchange::bytes() const {
   std::size_t sum = cut_.bytes();
-  for (const auto* column : {&mass_, &mass_sum_, &kept_, &kept_sum_, &order_, &id_, &free_, &free_sum_})
+  for (const auto* column :
+       {&mass_, &mass_sum_, &kept_, &kept_sum_, &order_, &id_, &free_, &free_sum_, &free_ids_})
     sum += column->bytes();
   return sum;
 }
@@ -120,22 +101,12 @@ Exchange::Cut Exchange::cut_at(std::int64_t need) {
   return cut_.to_host()[0];
 }
 
-void Exchange::list_free_ids(const Particles& particles, int taken) {
-  const int capacity = particles.capacity();
-  const int made = static_cast<int>(id_.size());
-  free_.resize(static_cast<std::size_t>(capacity));
-  for_each("free ids", capacity, SetAll{free_.data(), 1});
-  for_each("used ids", particles.size(), MarkUsed{particles.id.data(), free_.data(), capacity});
-  scanner_.inclusive_sum(free_, free_sum_);
-  for_each("take ids", capacity, TakeFree{free_.data(), free_sum_.data(), id_.data(), taken, made});
-}
-
 int Exchange::run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found,
                   int sites, int layers, int level, std::int64_t& reservoir) {
-  auto& p = particles;
+  const ExchangeView p(particles);
   const int n = p.size();
   mass_.resize(static_cast<std::size_t>(found));
-  for_each("weigh", found, Weigh{lowest_first, p.level.data(), mass_.data()});
+  for_each("weigh", found, Weigh{lowest_first, p.level(), mass_.data()});
   scanner_.inclusive_sum(mass_, mass_sum_);
   const std::int64_t layer_mass = static_cast<std::int64_t>(sites) << level;
   layers = static_cast<int>(std::min<std::int64_t>(layers, (reservoir + last_of(mass_sum_)) / layer_mass));
@@ -152,22 +123,30 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
-  for_each("leave", cut.taken, Leave{lowest_first, p.id.data(), kept_.data(), id_.data(), made});
-  if (made > cut.taken) list_free_ids(p, cut.taken);
+  for_each("leave", cut.taken, Leave{lowest_first, p.id(), kept_.data(), id_.data(), made});
+  if (made > cut.taken) {
+    // Those just taken still count: the ids that they leave are in use again.
+    list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
+    for_each("take ids", made - cut.taken, TakeFree{free_ids_.data(), id_.data() + cut.taken});
+  }
   scanner_.inclusive_sum(kept_, kept_sum_);
   const int staying = n - cut.taken;
   order_.resize(static_cast<std::size_t>(staying + made));
   for_each("room", made, SetAll{order_.data() + staying, 0});
   for_each("stay", n, Stay{kept_.data(), kept_sum_.data(), order_.data()});
-  p.reorder(order_);
-  const auto if_there = [&](Column column, Array<std::uint8_t>& values) {
-    return p.has(column) ? values.data() : nullptr;
-  };
+  particles.reorder(order_);
   for_each("make", made,
-           Make{id_.data(), p.position.data(), p.id.data(), p.level.data(),
-                if_there(Column::Target, p.target), if_there(Column::History, p.history),
-                if_there(Column::Age, p.age), if_there(Column::Waiting, p.waiting), staying,
-                supports.h[level], static_cast<std::uint8_t>(level)});
+           Make{.ids = id_.data(),
+                .position = p.position(),
+                .id = p.id(),
+                .level = p.level(),
+                .target = p.target(),
+                .history = p.history(),
+                .age = p.age(),
+                .waiting = p.waiting(),
+                .first = staying,
+                .support = supports.h[level],
+                .new_level = static_cast<std::uint8_t>(level)});
   reservoir += cut.mass - layers * layer_mass;
   return layers;
 }

@@ -1,9 +1,13 @@
 #pragma once
 /// Particles of any levels for particles of one level, at equal mass in units of m_*.
 
-#include "libsim/particles/particles.hpp"
+#include "libsim/particles/free_ids.hpp"
 
 namespace sim::SIM_BACKEND {
+
+using ExchangeView = ColumnView<columns(Column::Position, Column::Id, Column::Level),
+                                columns(Column::Position, Column::Id, Column::Level), ColumnSet{},
+                                columns(Column::Target, Column::History, Column::Age, Column::Waiting)>;
 
 class Exchange {
  public:
@@ -25,11 +29,8 @@ class Exchange {
 
  private:
   Cut cut_at(std::int64_t need);
-  /// Gives ids to the new particles beyond the first `taken`.
-  void list_free_ids(const Particles& particles, int taken);
-
   Scanner scanner_;
-  Array<int> mass_, mass_sum_, kept_, kept_sum_, order_, id_, free_, free_sum_;
+  Array<int> mass_, mass_sum_, kept_, kept_sum_, order_, id_, free_, free_sum_, free_ids_;
   Array<Cut> cut_;
 };
 

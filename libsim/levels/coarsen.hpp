@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libsim/simulation.hpp"
+#include "libsim/particles/particle_state.hpp"
 
 namespace sim {
 

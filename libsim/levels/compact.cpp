@@ -1,5 +1,4 @@
 #include "libsim/levels/split_merge.hpp"
-#include "libsim/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -26,27 +25,6 @@ struct ListSources {
       order[first + c] = i;
       child[first + c] = c;
     }
-  }
-};
-
-struct MarkFree {
-  int* free;
-  SIM_FN void operator()(int id) const { free[id] = 1; }
-};
-struct MarkTaken {
-  const std::uint8_t* gone;
-  const int* id;
-  int* free;
-  SIM_FN void operator()(int i) const {
-    if (!gone[i]) free[id[i]] = 0;
-  }
-};
-struct ListFree {
-  const int* free;
-  const int* sums;
-  int* free_ids;
-  SIM_FN void operator()(int id) const {
-    if (free[id]) free_ids[sums[id] - 1] = id;
   }
 };
 
@@ -97,86 +75,68 @@ struct PlaceChildren {
   }
 };
 
-/// Lists the ids below the capacity that no living particle has, in ascending order.
-void list_free_ids(FluidState& state) {
-  auto& p = state.particles;
-  auto& l = state.levels;
-  const int capacity = p.capacity();
-  const auto size = static_cast<std::size_t>(capacity);
-  l.flags.resize(size);
-  l.free_ids.resize(size);
-  for_each("mark free ids", capacity, MarkFree{l.flags.data()});
-  for_each("mark taken ids", p.size(), MarkTaken{l.gone.data(), p.id.data(), l.flags.data()});
-  l.scanner.inclusive_sum(l.flags, l.sums);
-  for_each("list free ids", capacity, ListFree{l.flags.data(), l.sums.data(), l.free_ids.data()});
-}
-
 /// Room for this frame's scratch; nothing moves once it is there.
-void fit_scratch(LevelState& l, const Particles& p) {
+void fit_scratch(LevelState& l, LevelView p) {
   const auto room = static_cast<std::size_t>(p.capacity());
   const auto size = static_cast<std::size_t>(p.size());
   for (auto* bytes : {&l.status, &l.status_next, &l.split_code, &l.wish, &l.gone}) {
     bytes->reserve(room);
     bytes->resize(size);
   }
-  for (auto* ints : {&l.partner, &l.births, &l.places, &l.order, &l.child, &l.flags, &l.sums, &l.free_ids}) {
+  for (auto* ints : {&l.partner, &l.births, &l.places, &l.order, &l.child, &l.flags, &l.sums}) {
     ints->reserve(room);
     ints->resize(size);
   }
   l.keys.reserve(room);
 }
 
-void split_and_merge(FluidState& state) {
-  state.levels.changed = false;
-  if (state.particles.size() == 0) return;
-  fit_scratch(state.levels, state.particles);
-  const bool any_split = choose_splits(state);
-  merge_pairs(state);
-  if (state.levels.rules.relays) relay_stranded(state);
-  compact(state, any_split);
-  ++state.levels.frame;
-}
-
 }  // namespace
 
-void compact(FluidState& state, bool any_split) {
-  auto& p = state.particles;
-  auto& l = state.levels;
+void split_and_merge(LevelState& l, const LevelFluid& fluid, Particles& particles) {
+  l.changed = false;
+  if (particles.size() == 0) return;
+  fit_scratch(l, fluid.particles);
+  const bool any_split = choose_splits(l, fluid);
+  merge_pairs(l, fluid);
+  if (l.rules.relays) relay_stranded(l, fluid);
+  compact(l, fluid, particles, any_split);
+  ++l.frame;
+}
+
+void compact(LevelState& l, const LevelFluid& fluid, Particles& particles, bool any_split) {
+  const LevelView& p = fluid.particles;
   const int n = p.size();
   for_each("count births", n, CountBirths{l.split_code.data(), l.gone.data(), l.births.data()});
   l.scanner.inclusive_sum(l.births, l.places);
   const int after = last_of(l.places);
   l.changed = any_split || after != n;
   if (!l.changed) return;
-  if (any_split) list_free_ids(state);
+  if (any_split) list_free_ids(p, l.gone.data(), l.scanner, l.flags, l.sums, l.free_ids);
   const auto size = static_cast<std::size_t>(after);
   l.order.resize(size);
   l.child.resize(size);
   for_each("list sources", n, ListSources{l.births.data(), l.places.data(), l.order.data(), l.child.data()});
-  p.reorder(l.order);
-  state.lists_hold = false;
+  particles.reorder(l.order);
   if (!any_split) return;
   l.flags.resize(size);
   for_each("mark new", after, MarkNew{l.child.data(), l.flags.data()});
   l.scanner.inclusive_sum(l.flags, l.sums);
   for_each("place children", after,
-           PlaceChildren{l.order.data(), l.child.data(), l.split_code.data(), l.sums.data(),
-                         l.free_ids.data(), p.position.data(), p.id.data(), p.level.data(), p.history.data(),
-                         p.age.data(), p.waiting.data(), l.rules, state.supports, l.counts.data(), l.frame});
-}
-
-Stage split_and_merge_stage() {
-  return {
-      "split and merge",
-      "Algorithms 1 and 2",
-      Phase::FrameStart,
-      columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Target, Column::History,
-              Column::Age, Column::Waiting, Column::Neighbours),
-      columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::History, Column::Age,
-              Column::Waiting),
-      [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      split_and_merge,
-      Part::Levels};
+           PlaceChildren{.order = l.order.data(),
+                         .child = l.child.data(),
+                         .split_code = l.split_code.data(),
+                         .fresh_sums = l.sums.data(),
+                         .free_ids = l.free_ids.data(),
+                         .position = p.position(),
+                         .id = p.id(),
+                         .level = p.level(),
+                         .history = p.history(),
+                         .age = p.age(),
+                         .waiting = p.waiting(),
+                         .rules = l.rules,
+                         .supports = fluid.supports,
+                         .counts = l.counts.data(),
+                         .frame = l.frame});
 }
 
 }  // namespace sim::SIM_BACKEND

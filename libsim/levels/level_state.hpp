@@ -4,29 +4,48 @@
 #include <cstdint>
 
 #include "libsim/exec/vec.hpp"
+#include "libsim/methods/method.hpp"
+#include "libsim/methods/preset.hpp"
+#include "libsim/particles/free_ids.hpp"
 #include "libsim/particles/particles.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Rules of Algorithms 1 and 2; sim::Readings explains each.
+/// Rules of Algorithms 1 and 2 as kernels take them; sim::Readings explains those that it gives.
 struct LevelRules {
-  int coarsest = 3;  ///< N - 1
-  bool graded = true;
-  float split_offset[3] = {0.794f, 1.09f, 0.866f};
-  float split_share = 0.05f;
-  bool merge_same_target = false;
-  float merge_reach = 1;
-  float merge_overlap = 0.8f;
-  bool merge_keeps_steps = true;
+  explicit LevelRules(const Readings& readings = {}, int levels = most_levels)
+      : coarsest(levels - 1),
+        graded(readings.graded_targets),
+        split_offset{static_cast<float>(readings.split_offset[0]),
+                     static_cast<float>(readings.split_offset[1]),
+                     static_cast<float>(readings.split_offset[2])},
+        split_share(static_cast<float>(readings.split_share)),
+        merge_same_target(readings.merge_same_target),
+        merge_reach(static_cast<float>(readings.merge_reach)),
+        merge_overlap(static_cast<float>(readings.merge_overlap)),
+        merge_keeps_steps(readings.merge_keeps_steps),
+        dead_band(static_cast<float>(readings.merge_dead_band)),
+        kick_filter(static_cast<float>(readings.kick_filter)) {}
+
+  int coarsest;  ///< N - 1
+  bool graded;
+  float split_offset[3];
+  float split_share;
+  bool merge_same_target;
+  float merge_reach;
+  float merge_overlap;
+  bool merge_keeps_steps;
+  /// A particle wants to be coarser only when Eq. 9, without its floor, lies this far beyond its level.
+  float dead_band;
+  float kick_filter;
+
+  // What no reading of the paper decides.
   /// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
   /// hold their neighbours back: when most have merged, a few are left without a partner in reach.
   int looks_farther = 6, lags = 32;
   /// Neighbours in the list, beside a wall fewer, from which a particle counts as inside the fluid. Water has
   /// 40, its surface 29, a sheet of two layers 26: sheets and drops never merge from afar.
   float inside_count = 30;
-  /// A particle wants to be coarser only when Eq. 9, without its floor, lies this far beyond its level: what
-  /// hovers about a border neither splits nor merges. 0 = none.
-  float dead_band = 0.25f;
   bool relays = true;  ///< the stranded may merge through a coarser particle between them
   /// What two stranded particles become keeps this share of the sum of radii from coarser ones: they have
   /// been refused for long, and what is left of a level among much coarser water is worth an overlap.
@@ -35,7 +54,6 @@ struct LevelRules {
   /// is 0, 1, ... frames old; what overlaps after a split or a merge parts slowly, not at once.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
-  float kick_filter = 0.9f;
   /// Projections of positions alone round what has just split or merged.
   int partings = 3;
 };
@@ -60,6 +78,9 @@ struct TargetSphere {
   int inside = 0, outside = 0;
 };
 
+using NewLevelsView = ColumnView<columns(Column::Level),
+                                 columns(Column::Target, Column::History, Column::Age, Column::Waiting)>;
+
 struct LevelState {
   LevelRules rules;
   TargetSphere forced;
@@ -67,14 +88,26 @@ struct LevelState {
   bool changed = false;     ///< something split or merged this frame
   Array<LevelCounts> counts;
   /// Target, History, Age and Waiting of fresh particles; called once when a run begins.
-  void begin(Particles& particles);
+  void begin(NewLevelsView particles);
 
   // Scratch of one frame; lives on to keep its memory.
   Scanner scanner;
   Sorter sorter;
-  Array<std::uint8_t> status, status_next, split_code, wish, graded, gone;
-  Array<int> partner, births, places, order, child, flags, sums, free_ids;
-  Array<std::uint64_t> keys;
+  Array<std::uint8_t> status, status_next;  ///< of splits, while they are chosen
+  Array<std::uint8_t> split_code;           ///< SplitCode, packed; 0 = stays
+  Array<std::uint8_t> wish;                 ///< 1 = wants to merge
+  Array<std::uint8_t> gone;                 ///< 1 = merged into another
+  Array<std::uint8_t> graded;               ///< targets of the next sweep
+  Array<int> partner;                       ///< of a merge, as proposed; then the relay whose bid is accepted
+  Array<int> births;                        ///< particles that one becomes
+  Array<int> places;          ///< of these after the frame, as inclusive sums; before that partners that hold
+  Array<int> order, child;    ///< a new particle's source, and which of its children it is
+  Array<int> flags, sums;     ///< who splits, and how many up to there
+  Array<std::uint64_t> keys;  ///< of splits by priority
+  Array<int> free_ids;        ///< ascending
+  // The two whom a relay bids for stand where counts of births come later in the frame.
+  Array<int>& first_bid() { return births; }
+  Array<int>& second_bid() { return places; }
 };
 
 /// Two bits a frame, the newest lowest: a particle that has wanted `level` for four frames.
@@ -88,17 +121,6 @@ SIM_FN int least_of_history(std::uint8_t history) {
     least = level < least ? level : least;
   }
   return least;
-}
-
-/// 32 random bits that depend on nothing but their arguments (lowbias32 rounds, C. Wellons).
-SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  std::uint32_t x = a * 0x9e3779b9u + b;
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  x = (x ^ (x >> 16)) + c * 0x85ebca6bu;
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
 }
 
 }  // namespace sim::SIM_BACKEND

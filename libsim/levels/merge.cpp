@@ -1,4 +1,4 @@
-#include "libsim/levels/split_merge.hpp"
+#include "libsim/levels/joining.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -120,18 +120,9 @@ struct Propose {
 
   SIM_FN bool inside(int i) const { return inside_fluid(walls, position, neighbours, i, rules.inside_count); }
 
-  /// Would the new particle overlap another of its size or larger? (Fig. 5 d2)
   SIM_FN bool overlaps(int i, int j) const {
-    const Vec3 centre = middle(position[i], position[j]);
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int other = neighbours(i, k);
-      if (level[other] <= level[i]) continue;
-      const Vec4 at = position[other];
-      const Vec3 offset = xyz(at) - centre;
-      const float least = rules.merge_overlap * (at.w + supports.h[level[i] + 1]) / 4;
-      if (dot(offset, offset) < least * least) return true;
-    }
-    return false;
+    return overlaps_coarser(position, level, neighbours, i, level[i], middle(position[i], position[j]),
+                            supports.h[level[i] + 1], rules.merge_overlap);
   }
 };
 
@@ -160,74 +151,75 @@ struct KeepApart {
       const int a = neighbours(member, k);
       if (a == i || a == j || !mutual(a)) continue;
       const int b = partner[a];
-      const Vec3 offset = middle(position[a], position[b]) - centre;
-      const float least = rules.merge_overlap * (supports.h[level[a] + 1] + supports.h[level[i] + 1]) / 4;
-      if (dot(offset, offset) >= least * least) continue;
+      const Vec4 merged = with_w(middle(position[a], position[b]), supports.h[level[a] + 1]);
+      if (clear_of(merged, centre, supports.h[level[i] + 1], rules.merge_overlap)) continue;
       if (pair_key(position[a], position[b], id[a], id[b]).before(own)) return false;
     }
     return true;
   }
 };
 
-/// Mass, momentum and centre of mass stay; kinetic energy can only fall.
 struct Merge {
-  Vec4* position;
-  Vec4* velocity;
-  std::uint8_t* level;
-  std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Joining joining;
   const int* partner;
-  std::uint8_t* gone;
-  LevelCounts* counts;
-  LevelSupports supports;
-  float rest_density;
 
   SIM_FN void operator()(int i) const {
-    const int j = partner[i];
-    if (j < 0) return;
-    const Vec3 difference = xyz(velocity[i]) - xyz(velocity[j]);
-    const float lost = 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
-    const int coarser = level[i] + 1;
-    position[i] = with_w(middle(position[i], position[j]), supports.h[coarser]);
-    velocity[i] = with_w(0.5f * (xyz(velocity[i]) + xyz(velocity[j])), 0);
-    level[i] = static_cast<std::uint8_t>(coarser);
-    history[i] = steady_history(coarser);
-    age[i] = 0;
-    waiting[i] = 0;
-    gone[j] = 1;
-    atomic_add(&counts->merges, std::uint64_t{1});
-    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
+    if (partner[i] >= 0) joining.join(i, partner[i]);
   }
 };
 
 }  // namespace
 
-void merge_pairs(FluidState& state) {
-  auto& p = state.particles;
-  auto& l = state.levels;
+void merge_pairs(LevelState& l, const LevelFluid& fluid) {
+  const LevelView& p = fluid.particles;
   const int n = p.size();
-  const ParticleNeighbours neighbours = state.particle_neighbours();
   for_each("remember levels", n,
-           Remember{p.level.data(), p.target.data(), l.split_code.data(), state.last_active(),
-                    p.history.data(), p.age.data(), p.waiting.data(), l.wish.data(), l.gone.data()});
+           Remember{.level = p.level(),
+                    .target = p.target(),
+                    .split_code = l.split_code.data(),
+                    .active = fluid.last_active,
+                    .history = p.history(),
+                    .age = p.age(),
+                    .waiting = p.waiting(),
+                    .wish = l.wish.data(),
+                    .gone = l.gone.data()});
   if (l.rules.merge_keeps_steps) {
     for_each("keep steps", n,
-             KeepSteps{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-                       neighbours, l.status.data(), l.counts.data(), l.rules.lags, state.supports});
+             KeepSteps{.position = p.position(),
+                       .level = p.level(),
+                       .target = p.target(),
+                       .waiting = p.waiting(),
+                       .wish = l.wish.data(),
+                       .neighbours = fluid.neighbours,
+                       .out = l.status.data(),
+                       .counts = l.counts.data(),
+                       .lags = l.rules.lags,
+                       .supports = fluid.supports});
     l.wish.swap(l.status);
   }
   for_each("propose merges", n,
-           Propose{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-                   p.id.data(), neighbours, l.partner.data(), l.counts.data(), state.walls, l.rules,
-                   state.supports});
+           Propose{.position = p.position(),
+                   .level = p.level(),
+                   .target = p.target(),
+                   .waiting = p.waiting(),
+                   .wish = l.wish.data(),
+                   .id = p.id(),
+                   .neighbours = fluid.neighbours,
+                   .partner = l.partner.data(),
+                   .counts = l.counts.data(),
+                   .walls = fluid.walls,
+                   .rules = l.rules,
+                   .supports = fluid.supports});
   for_each("keep merges apart", n,
-           KeepApart{p.position.data(), p.level.data(), p.id.data(), l.partner.data(), neighbours,
-                     l.places.data(), l.rules, state.supports});
-  for_each("merge", n,
-           Merge{p.position.data(), p.velocity.data(), p.level.data(), p.history.data(), p.age.data(),
-                 p.waiting.data(), l.places.data(), l.gone.data(), l.counts.data(), state.supports,
-                 state.parameters.rest_density});
+           KeepApart{.position = p.position(),
+                     .level = p.level(),
+                     .id = p.id(),
+                     .partner = l.partner.data(),
+                     .neighbours = fluid.neighbours,
+                     .out = l.places.data(),
+                     .rules = l.rules,
+                     .supports = fluid.supports});
+  for_each("merge", n, Merge{joining(l, fluid), l.places.data()});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,4 +1,4 @@
-#include "libsim/levels/split_merge.hpp"
+#include "libsim/levels/joining.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -60,17 +60,8 @@ struct Bid {
   SIM_FN bool free_between(int j, int a, int b) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
     const float h = supports.h[level[a] + 1];
-    if (!clear_of(j, centre, h)) return false;
-    for (int k = 0; k < neighbours.size(j); ++k) {
-      const int other = neighbours(j, k);
-      if (level[other] > level[a] && !clear_of(other, centre, h)) return false;
-    }
-    return true;
-  }
-  SIM_FN bool clear_of(int other, Vec3 centre, float h) const {
-    const Vec3 offset = xyz(position[other]) - centre;
-    const float least = rules.stranded_overlap * (position[other].w + h) / 4;
-    return dot(offset, offset) >= least * least;
+    return clear_of(position[j], centre, h, rules.stranded_overlap) &&
+           !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap);
   }
   SIM_FN float dot_to(int j, int i) const {
     const Vec3 offset = xyz(position[j]) - xyz(position[i]);
@@ -109,20 +100,11 @@ struct AcceptBid {
 };
 
 struct JoinHalves {
-  Vec4* position;
-  Vec4* velocity;
-  std::uint8_t* level;
-  std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Joining joining;
   const int* id;
   const int* first;
   const int* second;
   const int* accepted;
-  std::uint8_t* gone;
-  LevelCounts* counts;
-  LevelSupports supports;
-  float rest_density;
 
   SIM_FN void operator()(int j) const {
     const int a = first[j];
@@ -132,64 +114,53 @@ struct JoinHalves {
     if (accepted[j] >= 0) return;
     const int kept = id[a] < id[b] ? a : b;
     const int left = kept == a ? b : a;
+    const std::uint8_t* level = joining.level;
     if (level[a] + 1 < level[j]) {
-      carry(kept, left);
-      return;
+      joining.join(kept, left);  // the relay only made them known to each other
+    } else {
+      share(j, kept, left);
     }
-    const float lost = loss(j, kept) + loss(j, left);
-    const Vec3 x_kept = 0.5f * (xyz(position[j]) + xyz(position[kept]));
-    const Vec3 v_kept = 0.5f * (xyz(velocity[j]) + xyz(velocity[kept]));
-    const Vec3 x = 0.5f * (xyz(position[j]) + xyz(position[left]));
-    const Vec3 v = 0.5f * (xyz(velocity[j]) + xyz(velocity[left]));
-    become(kept, x_kept, v_kept, position[j].w, level[j]);
-    become(j, x, v, position[j].w, level[j]);
-    gone[left] = 1;
-    atomic_add(&counts->merges, std::uint64_t{1});
-    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
   }
-  /// The two meet in the middle; the relay only made them known to each other.
-  SIM_FN void carry(int kept, int left) const {
-    const float lost = loss(left, kept);
-    const int now = level[kept] + 1;
-    become(kept, 0.5f * (xyz(position[kept]) + xyz(position[left])),
-           0.5f * (xyz(velocity[kept]) + xyz(velocity[left])), supports.h[now], now);
-    gone[left] = 1;
-    atomic_add(&counts->merges, std::uint64_t{1});
-    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
-  }
-  SIM_FN float loss(int j, int i) const {
-    const Vec3 difference = xyz(velocity[j]) - xyz(velocity[i]);
-    return 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
-  }
-  SIM_FN void become(int i, Vec3 x, Vec3 v, float h, int now) const {
-    position[i] = with_w(x, h);
-    velocity[i] = with_w(v, 0);
-    level[i] = static_cast<std::uint8_t>(now);
-    history[i] = steady_history(now);
-    age[i] = 0;
-    waiting[i] = 0;
+  /// Each takes a half of the relay, which goes on as one of the two.
+  SIM_FN void share(int j, int kept, int left) const {
+    const Vec4* x = joining.position;
+    const Vec4* v = joining.velocity;
+    const float lost = joining.loss(j, kept) + joining.loss(j, left);
+    const float h = x[j].w;
+    const int level = joining.level[j];
+    const Vec3 x_left = joining.mean(x, j, left);
+    const Vec3 v_left = joining.mean(v, j, left);
+    joining.become(kept, joining.mean(x, j, kept), joining.mean(v, j, kept), h, level);
+    joining.become(j, x_left, v_left, h, level);
+    joining.leave(left, lost);
   }
 };
 
 }  // namespace
 
-void relay_stranded(FluidState& state) {
-  auto& p = state.particles;
-  auto& l = state.levels;
+void relay_stranded(LevelState& l, const LevelFluid& fluid) {
+  const LevelView& p = fluid.particles;
   const int n = p.size();
-  int* first = l.births.data();
-  int* second = l.places.data();
+  int* first = l.first_bid().data();
+  int* second = l.second_bid().data();
   int* accepted = l.partner.data();
   for_each("bid for stranded", n,
-           Bid{p.position.data(), p.level.data(), p.target.data(), p.waiting.data(), l.wish.data(),
-               l.split_code.data(), l.gone.data(), p.age.data(), state.particle_neighbours(), first, second,
-               state.walls, l.rules, state.supports});
-  for_each("accept bids", n,
-           AcceptBid{p.id.data(), first, second, state.particle_neighbours(), accepted, l.frame});
-  for_each("join halves", n,
-           JoinHalves{p.position.data(), p.velocity.data(), p.level.data(), p.history.data(), p.age.data(),
-                      p.waiting.data(), p.id.data(), first, second, accepted, l.gone.data(), l.counts.data(),
-                      state.supports, state.parameters.rest_density});
+           Bid{.position = p.position(),
+               .level = p.level(),
+               .target = p.target(),
+               .waiting = p.waiting(),
+               .wish = l.wish.data(),
+               .split_code = l.split_code.data(),
+               .gone = l.gone.data(),
+               .age = p.age(),
+               .neighbours = fluid.neighbours,
+               .first = first,
+               .second = second,
+               .walls = fluid.walls,
+               .rules = l.rules,
+               .supports = fluid.supports});
+  for_each("accept bids", n, AcceptBid{p.id(), first, second, fluid.neighbours, accepted, l.frame});
+  for_each("join halves", n, JoinHalves{joining(l, fluid), p.id(), first, second, accepted});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -148,48 +148,72 @@ struct Refuse {
 };
 
 /// Keeps the first `most` by priority, as far as there is room.
-void limit(FluidState& state, int chosen, int most, int room) {
-  auto& p = state.particles;
-  auto& l = state.levels;
+void limit(LevelState& l, LevelView p, int chosen, int most, int room) {
   l.keys.resize(static_cast<std::size_t>(chosen));
   l.order.resize(static_cast<std::size_t>(chosen));
   for_each("list splits", p.size(),
-           ListSplits{l.flags.data(), l.sums.data(), p.level.data(), p.target.data(), p.id.data(),
-                      l.keys.data(), l.order.data(), l.frame});
+           ListSplits{.flags = l.flags.data(),
+                      .sums = l.sums.data(),
+                      .level = p.level(),
+                      .target = p.target(),
+                      .id = p.id(),
+                      .keys = l.keys.data(),
+                      .order = l.order.data(),
+                      .frame = l.frame});
   l.sorter.sort(l.keys, l.order);
   l.flags.resize(static_cast<std::size_t>(chosen));
   for_each("count children", chosen, CountChildren{l.order.data(), l.split_code.data(), l.flags.data()});
   l.scanner.inclusive_sum(l.flags, l.sums);
   for_each("refuse splits", chosen,
-           Refuse{l.order.data(), l.sums.data(), l.split_code.data(), l.counts.data(), most, room});
+           Refuse{.order = l.order.data(),
+                  .extra_sums = l.sums.data(),
+                  .code = l.split_code.data(),
+                  .counts = l.counts.data(),
+                  .most = most,
+                  .room = room});
 }
 
 }  // namespace
 
-bool choose_splits(FluidState& state) {
-  auto& p = state.particles;
-  auto& l = state.levels;
+bool choose_splits(LevelState& l, const LevelFluid& fluid) {
+  const LevelView& p = fluid.particles;
   const int n = p.size();
   const bool throttled = l.rules.split_share < 1;
   for_each("mark splits", n,
-           MarkSplits{p.level.data(), p.target.data(), state.last_active(), l.status.data(), throttled});
+           MarkSplits{p.level(), p.target(), fluid.last_active, l.status.data(), throttled});
   for (int round = 0; round < rounds && throttled; ++round) {
     for_each("choose splits", n,
-             ChooseApart{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),
-                         state.particle_neighbours(), l.status_next.data(), l.frame});
+             ChooseApart{.position = p.position(),
+                         .level = p.level(),
+                         .target = p.target(),
+                         .id = p.id(),
+                         .status = l.status.data(),
+                         .neighbours = fluid.neighbours,
+                         .out = l.status_next.data(),
+                         .frame = l.frame});
     l.status.swap(l.status_next);
   }
   for_each("fit children", n,
-           FitChildren{p.position.data(), p.level.data(), p.target.data(), p.id.data(), l.status.data(),
-                       l.split_code.data(), l.flags.data(), state.walls, l.rules, state.supports,
-                       l.counts.data(), l.frame, state.parameters.wall_gap});
+           FitChildren{.position = p.position(),
+                       .level = p.level(),
+                       .target = p.target(),
+                       .id = p.id(),
+                       .status = l.status.data(),
+                       .code = l.split_code.data(),
+                       .flags = l.flags.data(),
+                       .walls = fluid.walls,
+                       .rules = l.rules,
+                       .supports = fluid.supports,
+                       .counts = l.counts.data(),
+                       .frame = l.frame,
+                       .wall_gap = fluid.wall_gap});
   l.scanner.inclusive_sum(l.flags, l.sums);
   const int chosen = last_of(l.sums);
   if (chosen == 0) return false;
   const int most = throttled ? std::max(1, static_cast<int>(l.rules.split_share * static_cast<float>(n))) : n;
   const int room = p.capacity() - n;
   constexpr int most_extra = 7;
-  if (chosen > most || chosen > room / most_extra) limit(state, chosen, most, room);
+  if (chosen > most || chosen > room / most_extra) limit(l, p, chosen, most, room);
   return true;
 }
 

@@ -2,9 +2,27 @@
 /// The parts of the pass that splits and merges.
 
 #include "libsim/levels/split_pattern.hpp"
-#include "libsim/stages/fluid_state.hpp"
+#include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/particles/walls.hpp"
 
 namespace sim::SIM_BACKEND {
+
+using LevelView =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Target,
+                       Column::History, Column::Age, Column::Waiting, Column::Neighbours),
+               columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::History,
+                       Column::Age, Column::Waiting)>;
+
+/// The fluid as splitting and merging see it.
+struct LevelFluid {
+  LevelView particles;
+  ParticleNeighbours neighbours;
+  const std::uint8_t* last_active;  ///< who was solved in the last frame; nullptr when everyone was
+  Walls walls;
+  LevelSupports supports;
+  float rest_density;  ///< kg/m3
+  float wall_gap;      ///< nearest distance to a wall, as a share of d
+};
 
 /// Is the particle surrounded by water, or by water and walls? Counts its neighbours as if all were of its
 /// level: one that is seen from farther away because it is coarser fills more room and counts for less mass.
@@ -22,19 +40,15 @@ SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const Particl
 }
 
 /// Fills split_code (0 = stays). False when nobody splits.
-bool choose_splits(FluidState& state);
+bool choose_splits(LevelState& levels, const LevelFluid& fluid);
 /// Merges pairs in place: the particle with the lower id becomes the pair, the other is marked in `gone`.
-void merge_pairs(FluidState& state);
+void merge_pairs(LevelState& levels, const LevelFluid& fluid);
 /// Merges what has waited without a partner through a coarser particle between two such.
-void relay_stranded(FluidState& state);
-/// Makes the children and closes the gaps: the number of particles changes.
-void compact(FluidState& state, bool any_split);
+void relay_stranded(LevelState& levels, const LevelFluid& fluid);
+/// Makes the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
+void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 
-/// The last value, read back from the device; 0 when there is none.
-inline int last_of(const Array<int>& values) {
-  int out = 0;
-  if (values.size()) copy_to_host(&out, values.data() + values.size() - 1, sizeof out);
-  return out;
-}
+/// A whole frame's splits and merges; levels.changed says whether there were any.
+void split_and_merge(LevelState& levels, const LevelFluid& fluid, Particles& particles);
 
 }  // namespace sim::SIM_BACKEND

@@ -2,7 +2,8 @@
 /// Where the children of a split lie (Algorithm 1): on 2^(k-1) diagonals of a randomly turned cube.
 
 #include "libsim/levels/level_state.hpp"
-#include "libsim/stages/kernels.hpp"
+#include "libsim/particles/kernels.hpp"
+#include "libsim/particles/random.hpp"
 
 namespace sim::SIM_BACKEND {
 

@@ -141,6 +141,7 @@ void Grid::find_cells(int n) {
 }
 
 void Grid::sort(Particles& particles, float margin) {
+  const Reads<Column::Predicted, Column::Level, Column::Id> p(particles);
   const int n = particles.size();
   const auto size = static_cast<std::size_t>(n);
   // Once for all sizes to come.
@@ -150,12 +151,11 @@ void Grid::sort(Particles& particles, float margin) {
   cell_begin_.reserve(room + 1);
   keys_.resize(size);
   order_.resize(size);
-  for_each("cell keys", n,
-           MakeKeys{particles.predicted.data(), particles.level.data(), keys_.data(), order_.data(), margin});
+  for_each("cell keys", n, MakeKeys{p.predicted(), p.level(), keys_.data(), order_.data(), margin});
   sorter_.sort(keys_, order_);
   find_cells(n);
   for_each("order within cells", n,
-           OrderWithinCells{cell_begin_.data(), cell_count_.data(), particles.id.data(), order_.data()});
+           OrderWithinCells{cell_begin_.data(), cell_count_.data(), p.id(), order_.data()});
   particles.reorder(order_);
 }
 

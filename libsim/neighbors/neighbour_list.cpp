@@ -104,7 +104,7 @@ struct ListNeighbours {
 }  // namespace
 
 template <class Rows, class Selection>
-void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows, Selection select,
+void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, Selection select,
                          std::uint64_t* dropped) {
   const auto n = static_cast<std::size_t>(particles.size());
   const auto room = static_cast<std::size_t>(particles.capacity());
@@ -120,33 +120,33 @@ void NeighbourList::list(const Particles& particles, const Grid& grid, Rows rows
     longest_.resize(1);
     longest_.zero();
   }
-  for_each_team("list neighbours", particles.size(),
-                ListNeighbours<Rows, Selection>{select, particles.predicted.data(), grid.cell_of_particle(),
-                                                rows, view(), entry_.data(), count_.data(), longest_.data(),
-                                                dropped, margin});
+  for_each_team(
+      "list neighbours", particles.size(),
+      ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows, view(),
+                                      entry_.data(), count_.data(), longest_.data(), dropped, margin});
 }
 
-void NeighbourList::build(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+void NeighbourList::build(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
   list(particles, grid, OneLevelRows{grid.rows()}, AllParticles{}, dropped);
 }
 
-void NeighbourList::build(const Particles& particles, const Grid& grid, ActiveParticles active,
+void NeighbourList::build(PredictedView particles, const Grid& grid, ActiveParticles active,
                           std::uint64_t* dropped) {
   list(particles, grid, OneLevelRows{grid.rows()}, active, dropped);
 }
 
-void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped) {
+void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
   capacity_ = std::max(capacity_, mixed_capacity);
   list(particles, grid, MixedRows{grid.level_rows()}, AllParticles{}, dropped);
 }
 
-void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, ActiveParticles active,
+void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active,
                                 std::uint64_t* dropped) {
   capacity_ = std::max(capacity_, mixed_capacity);
   list(particles, grid, MixedRows{grid.level_rows()}, active, dropped);
 }
 
-void NeighbourList::build_mixed(const Particles& particles, const Grid& grid, EverySlot everyone,
+void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone,
                                 std::uint64_t* dropped) {
   capacity_ = std::max(capacity_, mixed_capacity);
   list(particles, grid, MixedRows{grid.level_rows()}, everyone, dropped);

@@ -3,7 +3,7 @@
 /// walk the grid.
 
 #include "libsim/neighbors/grid.hpp"
-#include "libsim/stages/selection.hpp"
+#include "libsim/particles/selection.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -14,7 +14,7 @@ constexpr int list_interleave = 32;
 constexpr int list_interleave = 1;
 #endif
 
-/// The list as kernels see it. i is a slot of the pass that reads it (stages/selection.hpp): the particle
+/// The list as kernels see it. i is a slot of the pass that reads it (particles/selection.hpp): the particle
 /// itself while everyone is solved.
 struct Neighbours {
   const int* count;
@@ -42,6 +42,8 @@ struct ParticleNeighbours {
   SIM_FN int operator()(int i, int k) const { return list(slot(i), k); }
 };
 
+using PredictedView = Reads<Column::Predicted>;
+
 class NeighbourList {
  public:
   /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
@@ -49,15 +51,14 @@ class NeighbourList {
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond
   /// the capacity are left out and counted in `dropped`.
-  void build(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
+  void build(PredictedView particles, const Grid& grid, std::uint64_t* dropped);
   /// For the active particles only, a list for each of their slots.
-  void build(const Particles& particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
+  void build(PredictedView particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
   /// The same for mixed levels.
-  void build_mixed(const Particles& particles, const Grid& grid, std::uint64_t* dropped);
-  void build_mixed(const Particles& particles, const Grid& grid, ActiveParticles active,
-                   std::uint64_t* dropped);
+  void build_mixed(PredictedView particles, const Grid& grid, std::uint64_t* dropped);
+  void build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
   /// The same with lists for the others' slots too.
-  void build_mixed(const Particles& particles, const Grid& grid, EverySlot everyone, std::uint64_t* dropped);
+  void build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone, std::uint64_t* dropped);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
@@ -77,8 +78,7 @@ class NeighbourList {
   static constexpr int mixed_capacity = 192;
 
   template <class Rows, class Selection>
-  void list(const Particles& particles, const Grid& grid, Rows rows, Selection select,
-            std::uint64_t* dropped);
+  void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, std::uint64_t* dropped);
 
   int capacity_ = 80;
   Array<int> count_, entry_, longest_;

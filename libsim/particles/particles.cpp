@@ -1,6 +1,8 @@
 #include "libsim/particles/particles.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <type_traits>
 
 namespace sim::SIM_BACKEND {
@@ -46,10 +48,12 @@ struct GatherExtras {
 }  // namespace
 
 const char* column_name(Column column) {
-  constexpr std::array<const char*, static_cast<std::size_t>(Column::count)> names{
-      "position",       "velocity", "id",         "level",  "predicted", "predicted_next", "velocity_next",
-      "lambda",         "density",  "neighbours", "target", "history",   "saliency",       "unrest",
-      "saliency_parts", "waiting",  "ease",       "age",    "active",    "rest",           "start_cell"};
+  constexpr std::array names{
+#define SIM_NAME(Name, member, ...) #member,
+      SIM_COLUMNS(SIM_NAME, SIM_NAME)
+#undef SIM_NAME
+  };
+  static_assert(names.size() == static_cast<std::size_t>(Column::count));
   return names[static_cast<std::size_t>(column)];
 }
 
@@ -63,55 +67,40 @@ LevelSupports level_supports(double finest_support) {
 
 template <class Self, class Visit>
 void Particles::for_each_column(Self& self, Visit visit) {
-  visit(self.position, self.has(Column::Position));
-  visit(self.velocity, self.has(Column::Velocity));
-  visit(self.id, self.has(Column::Id));
-  visit(self.level, self.has(Column::Level));
-  visit(self.predicted, self.has(Column::Predicted));
-  visit(self.predicted_next, self.has(Column::PredictedNext));
-  visit(self.velocity_next, self.has(Column::VelocityNext));
-  visit(self.lambda, self.has(Column::Lambda));
-  visit(self.density, self.has(Column::Density));
-  visit(self.target, self.has(Column::Target));
-  visit(self.history, self.has(Column::History));
-  visit(self.saliency, self.has(Column::Saliency));
-  visit(self.unrest, self.has(Column::Unrest));
-  visit(self.saliency_parts, self.has(Column::SaliencyParts));
-  visit(self.waiting, self.has(Column::Waiting));
-  visit(self.ease, self.has(Column::Ease));
-  visit(self.age, self.has(Column::Age));
-  visit(self.active, self.has(Column::Active));
-  visit(self.rest, self.has(Column::Rest));
-  visit(self.start_cell, self.has(Column::StartCell));
+#define SIM_VISIT(Name, member, Type, life) visit(self.columns_.member, self.has(Column::Name), Life::life);
+#define SIM_NOTHING(...)
+  SIM_COLUMNS(SIM_VISIT, SIM_NOTHING)
+#undef SIM_VISIT
+#undef SIM_NOTHING
 }
 
 template <class T>
-void Particles::reorder_extras(const Array<int>& order,
-                               std::initializer_list<std::pair<Column, Array<T>*>> extras,
-                               std::vector<Array<T>>& spares) {
+void Particles::reorder_extras(const Array<int>& order, std::vector<Array<T>>& spares) {
   GatherExtras<T> gather{order.data(), {}, {}, 0};
-  spares.resize(extras.size());
-  for (const auto& [column, values] : extras) {
-    if (!has(column)) continue;
-    Array<T>& spare = spares[static_cast<std::size_t>(gather.count)];
+  std::vector<Array<T>*> moved;
+  for_each_column(*this, [&](auto& column, bool declared, Life life) {
+    if constexpr (std::is_same_v<decltype(column), Array<T>&>) {
+      if (declared && life == Life::Kept) moved.push_back(&column);
+    }
+  });
+  spares.resize(std::max(spares.size(), moved.size()));
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    Array<T>& spare = spares[k];
     spare.reserve(static_cast<std::size_t>(capacity_));
     spare.resize(order.size());
-    gather.in[gather.count] = values->data();
-    gather.out[gather.count] = spare.data();
-    ++gather.count;
+    gather.in[k] = moved[k]->data();
+    gather.out[k] = spare.data();
   }
+  gather.count = static_cast<int>(moved.size());
   if (gather.count == 0) return;
   for_each("reorder", static_cast<int>(order.size()), gather);
-  auto spare = spares.begin();
-  for (const auto& [column, values] : extras) {
-    if (has(column)) values->swap(*spare++);
-  }
+  for (std::size_t k = 0; k < moved.size(); ++k) moved[k]->swap(spares[k]);
 }
 
 void Particles::allocate(ColumnSet set, int n, int capacity) {
   set_ = set;
   capacity_ = std::max(n, capacity);
-  for_each_column(*this, [&](auto& column, bool wanted) {
+  for_each_column(*this, [&](auto& column, bool wanted, Life) {
     if (wanted) {
       column.reserve(static_cast<std::size_t>(capacity_));
     } else {
@@ -123,7 +112,7 @@ void Particles::allocate(ColumnSet set, int n, int capacity) {
 
 void Particles::resize(int n) {
   n_ = n;
-  for_each_column(*this, [&](auto& column, bool wanted) {
+  for_each_column(*this, [&](auto& column, bool wanted, Life) {
     if (wanted) column.resize(static_cast<std::size_t>(n));
   });
 }
@@ -138,7 +127,7 @@ std::size_t Particles::bytes() const {
   add(spare_floats_);
   add(spare_ints_);
   add(spare_parts_);
-  for_each_column(*this, [&](const auto& column, bool) { sum += column.bytes(); });
+  for_each_column(*this, [&](const auto& column, bool, Life) { sum += column.bytes(); });
   return sum;
 }
 
@@ -149,25 +138,28 @@ void Particles::reorder(const Array<int>& order) {
     spare.resize(order.size());
     return spare.data();
   };
+  auto& c = columns_;
   for_each("reorder", n,
-           Gather{order.data(), position.data(), predicted.data(), velocity.data(), id.data(), level.data(),
-                  room(spare_a_), room(spare_b_), room(spare_c_), room(spare_id_), room(spare_level_)});
-  position.swap(spare_a_);
-  predicted.swap(spare_b_);
-  velocity.swap(spare_c_);
-  id.swap(spare_id_);
-  level.swap(spare_level_);
-  reorder_extras<std::uint8_t>(order,
-                               {{Column::Target, &target},
-                                {Column::History, &history},
-                                {Column::Waiting, &waiting},
-                                {Column::Age, &age},
-                                {Column::Active, &active},
-                                {Column::Rest, &rest}},
-                               spare_bytes_);
-  reorder_extras<float>(order, {{Column::Saliency, &saliency}, {Column::Unrest, &unrest}}, spare_floats_);
-  reorder_extras<int>(order, {{Column::StartCell, &start_cell}}, spare_ints_);
-  reorder_extras<SaliencyParts>(order, {{Column::SaliencyParts, &saliency_parts}}, spare_parts_);
+           Gather{.order = order.data(),
+                  .position_in = c.position.data(),
+                  .predicted_in = c.predicted.data(),
+                  .velocity_in = c.velocity.data(),
+                  .id_in = c.id.data(),
+                  .level_in = c.level.data(),
+                  .position = room(spare_a_),
+                  .predicted = room(spare_b_),
+                  .velocity = room(spare_c_),
+                  .id = room(spare_id_),
+                  .level = room(spare_level_)});
+  c.position.swap(spare_a_);
+  c.predicted.swap(spare_b_);
+  c.velocity.swap(spare_c_);
+  c.id.swap(spare_id_);
+  c.level.swap(spare_level_);
+  reorder_extras(order, spare_bytes_);
+  reorder_extras(order, spare_floats_);
+  reorder_extras(order, spare_ints_);
+  reorder_extras(order, spare_parts_);
   if (n != n_) resize(n);
 }
 

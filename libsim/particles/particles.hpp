@@ -1,58 +1,15 @@
 #pragma once
-/// Particles as a structure of arrays. A column has memory only while a stage declares it.
+/// Particles as a structure of arrays. A column has memory only while a stage declares it, and a stage
+/// reaches the columns that it declares and no others.
 
-#include <array>
-#include <bitset>
 #include <cstdint>
-#include <initializer_list>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "libsim/exec/vec.hpp"
-#include "libsim/simulation.hpp"
+#include "libsim/particles/columns.hpp"
 
 namespace sim::SIM_BACKEND {
-
-/// All columns that a stage may read or write.
-enum class Column : unsigned {
-  Position,       ///< Vec4: x, y, z in m and the support radius h in m (h = 2 d = 4 r; mass = rho_0 d^3)
-  Velocity,       ///< Vec4: m/s, w unused
-  Id,             ///< int: unique, kept for life
-  Level,          ///< uint8: mass level; mass = 2^level m_*
-  Predicted,      ///< Vec4: position at the end of the substep as far as it is solved, and h
-  PredictedNext,  ///< Vec4: where a projection writes, then swapped with Predicted
-  VelocityNext,   ///< Vec4: where a velocity filter writes, then swapped with Velocity
-  Lambda,         ///< float: change of the density constraint's multiplier in this projection, kg m2
-  Density,        ///< float: rho / rho_0, walls included
-  Neighbours,     ///< the combined neighbour list (neighbors/neighbour_list.hpp)
-  Target,         ///< uint8: level that the particle should have
-  History,        ///< uint8: targets of the last four frames, two bits each, the newest lowest
-  Saliency,       ///< float: s in [0, 1], ViP-Fluid 3.2.3
-  Unrest,         ///< float: f_T gamma_t of ViP-Fluid Eq. 6, followed over frames
-  SaliencyParts,  ///< f_a, f_m, f_T and F behind it
-  Waiting,        ///< uint8: frames in a row that it has been ready to merge
-  Ease,           ///< float: share of its constraint that a particle near a fresh one enforces, (0, 1]
-  Age,            ///< uint8: frames since it was made by a split or a merge, 255 and more are one
-  Active,     ///< uint8: 1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-  Rest,       ///< uint8: why and how long it was not solved (activation/activation.hpp)
-  StartCell,  ///< int: where in the velocity grid the particle was when the frame began
-  count
-};
-using ColumnSet = std::bitset<static_cast<std::size_t>(Column::count)>;
-
-template <class... Columns>
-ColumnSet columns(Columns... which) {
-  ColumnSet out;
-  (out.set(static_cast<std::size_t>(which)), ...);
-  return out;
-}
-
-const char* column_name(Column column);
-
-/// f_a, f_m, f_T and F (ViP-Fluid Eq. 1-6) of the eye with the larger F.
-struct SaliencyParts {
-  float acuity, manifold, temporal, combined;
-};
 
 /// What the guards met; each field counts one rule (sim::GuardCounts gives them to programs).
 struct Guards {
@@ -71,6 +28,14 @@ struct LevelSupports {
 };
 LevelSupports level_supports(double finest_support);
 
+/// The memory of every column, n values where it is there and none where it is not.
+struct ColumnArrays {
+#define SIM_MEMBER(Name, member, Type, life) Array<Type> member;
+#define SIM_NOTHING(...)
+  SIM_COLUMNS(SIM_MEMBER, SIM_NOTHING)
+#undef SIM_MEMBER
+};
+
 /// n particles in the grid's order.
 class Particles {
  public:
@@ -79,35 +44,32 @@ class Particles {
   void allocate(ColumnSet set, int n, int capacity = 0);
   int size() const { return n_; }
   int capacity() const { return capacity_; }
-  bool has(Column column) const { return set_.test(static_cast<std::size_t>(column)); }
+  bool has(Column column) const { return set_.has(column); }
   /// Sets how many are in use, at most the capacity. Those that stay keep their values.
   void resize(int n);
   /// Bytes held by all columns.
   std::size_t bytes() const;
 
-  Array<Vec4> position, velocity, predicted, predicted_next, velocity_next;
-  Array<int> id;
-  Array<std::uint8_t> level, target, history, waiting, age, active, rest;
-  Array<int> start_cell;
-  Array<float> lambda, density, ease, saliency, unrest;
-  Array<SaliencyParts> saliency_parts;
-
   /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes
   /// the number of particles. A source may be named more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
+  /// Every column, for starts, read-outs and tests. Passes go through a ColumnView.
+  ColumnArrays& all() { return columns_; }
+  const ColumnArrays& all() const { return columns_; }
+
  private:
-  /// Gives each column to visit(column, declared), in one fixed order.
+  /// Gives each column to visit(column, declared, life), in the table's order.
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit visit);
-  /// Permutes those of the columns that are declared.
+  /// Permutes the kept columns of one type that are declared, in one launch.
   template <class T>
-  void reorder_extras(const Array<int>& order, std::initializer_list<std::pair<Column, Array<T>*>> extras,
-                      std::vector<Array<T>>& spares);
+  void reorder_extras(const Array<int>& order, std::vector<Array<T>>& spares);
 
   int n_ = 0;
   int capacity_ = 0;
   ColumnSet set_;
+  ColumnArrays columns_;
   // Targets of the permutation, swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
@@ -118,7 +80,79 @@ class Particles {
   std::vector<Array<SaliencyParts>> spare_parts_;
 };
 
-/// sim::ParticleField on the host, in the particles' order; 0 where its column is not there, 1 for Active.
-std::vector<float> field_of(const Particles& particles, ParticleField field);
+/// The columns that a pass declares, and no others: each is a function that gives its values, const unless
+/// they are declared as written. Asking for a column that is not declared, or writing one that is only read,
+/// does not compile. IfThere names columns that the pass reads, and WritesIfThere such that it writes, in
+/// runs where another pass calls for them; elsewhere they are nullptr. A view converts to one that declares
+/// less.
+template <ColumnSet Reads, ColumnSet Writes, ColumnSet IfThere = ColumnSet{},
+          ColumnSet WritesIfThere = ColumnSet{}>
+class ColumnView {
+ public:
+  static constexpr ColumnSet reads = Reads;
+  static constexpr ColumnSet writes = Writes;
+  static constexpr ColumnSet may_read = Reads | Writes | IfThere | WritesIfThere;
+  static constexpr ColumnSet may_write = Writes | WritesIfThere;
+
+  explicit ColumnView(Particles& particles) : particles_(&particles) {}
+  /// Of particles that nobody may change.
+  explicit ColumnView(const Particles& particles) requires(may_write.empty())
+      : particles_(const_cast<Particles*>(&particles)) {}
+  /// Of a view that declares at least as much.
+  template <ColumnSet R, ColumnSet W, ColumnSet I, ColumnSet WI>
+  requires((R | W).holds(Reads) && W.holds(Writes) && (R | W | I | WI).holds(may_read) &&
+           (W | WI).holds(may_write)) ColumnView(const ColumnView<R, W, I, WI>& wider)
+      : particles_(wider.particles_) {}
+
+  int size() const { return particles_->size(); }
+  int capacity() const { return particles_->capacity(); }
+  bool has(Column column) const { return particles_->has(column); }
+
+#define SIM_ACCESS(Name, member, Type, life)                                   \
+  std::conditional_t<may_write.has(Column::Name), Type*, const Type*> member() \
+      const requires(may_read.has(Column::Name)) {                             \
+    return particles_->all().member.data();                                    \
+  }
+  SIM_COLUMNS(SIM_ACCESS, SIM_NOTHING)
+#undef SIM_ACCESS
+
+  /// The first column gets the second one's values.
+  template <Column To, Column From>
+  void copy() const requires(may_write.has(To) && may_read.has(From)) {
+    const auto& from = array<From>();
+    copy_within(array<To>().data(), from.data(), from.size() * sizeof(*from.data()));
+  }
+  template <Column A, Column B>
+  void swap() const requires(may_write.has(A) && may_write.has(B)) {
+    array<A>().swap(array<B>());
+  }
+  template <Column C, class T>
+  void swap(Array<T>& values) const requires(may_write.has(C)) {
+    array<C>().swap(values);
+  }
+  template <Column C>
+  void zero() const requires(may_write.has(C)) {
+    array<C>().zero();
+  }
+
+ private:
+  template <ColumnSet R, ColumnSet W, ColumnSet I, ColumnSet WI>
+  friend class ColumnView;
+
+  template <Column C>
+  auto& array() const {
+#define SIM_CHOOSE(Name, member, Type, life) \
+  if constexpr (C == Column::Name) return particles_->all().member;
+    SIM_COLUMNS(SIM_CHOOSE, SIM_NOTHING)
+#undef SIM_CHOOSE
+  }
+
+  Particles* particles_;
+};
+#undef SIM_NOTHING
+
+/// A view for what only looks.
+template <Column... C>
+using Reads = ColumnView<columns(C...), ColumnSet{}>;
 
 }  // namespace sim::SIM_BACKEND

@@ -5,17 +5,6 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Cells of one edge from a low corner.
-struct CellFrame {
-  Vec3 low{};
-  float edge = 1;
-};
-
-/// A box that holds the whole tank.
-struct Domain {
-  Vec3 low{}, high{};
-};
-
 /// What particles bring to a cell, in fixed point, so that the sum does not depend on the order of adding.
 struct CellSum {
   std::uint64_t volume, excess;

@@ -4,23 +4,11 @@
 
 #include <vector>
 
-#include "libsim/exec/vec.hpp"
+#include "libsim/particles/cells.hpp"
 
 namespace sim::SIM_BACKEND {
 
 enum class CellKind : std::uint8_t { Air, Fluid, Solid };
-
-/// Cells of one grid, x fastest. Beside and below it are walls, above it is air.
-struct CellBlock {
-  int nx = 0, ny = 0, nz = 0;
-
-  SIM_FN int size() const { return nx * ny * nz; }
-  SIM_FN bool holds(int x, int y, int z) const {
-    return x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz;
-  }
-  SIM_FN int index(int x, int y, int z) const { return (z * ny + y) * nx + x; }
-  SIM_FN CellBlock halved() const { return {(nx + 1) / 2, (ny + 1) / 2, (nz + 1) / 2}; }
-};
 
 /// One grid as kernels see it. The equation of a fluid cell is the sum of conductance (q_i - q_j) over its
 /// six neighbours j that are not solid = source_i.

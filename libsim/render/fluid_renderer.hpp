@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/camera.hpp"
-#include "libsim/render/gbuffer.hpp"
 #include "libsim/render/particle_buffer.hpp"
 #include "libsim/scene/scene.hpp"
+#include "libsim/view/camera.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 namespace sim {
 

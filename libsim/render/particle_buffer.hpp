@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "libsim/particles/particle_state.hpp"
 #include "libsim/render/gl_buffer.hpp"
-#include "libsim/simulation.hpp"
 
 namespace sim {
 

@@ -2,11 +2,11 @@
 /// One eye as kernels see it: its camera, its gaze and the picture it saw last.
 
 #include "libsim/exec/vec.hpp"
-#include "libsim/render/camera.hpp"
+#include "libsim/view/camera.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// The G-buffer of libsim/render/gbuffer.hpp in the back end's memory, whoever owns it: SaliencyInput uploads
+/// The G-buffer of libsim/view/gbuffer.hpp in the back end's memory, whoever owns it: SaliencyInput uploads
 /// a host one; a renderer on the same device may give its own buffers.
 struct GBufferView {
   const float* depth = nullptr;   ///< not smoothed, m; +infinity where there is no fluid. nullptr: no picture

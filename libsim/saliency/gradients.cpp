@@ -1,7 +1,7 @@
 #include "libsim/saliency/gradients.hpp"
 
 #include "libsim/neighbors/cell_key.hpp"
-#include "libsim/stages/kernels.hpp"
+#include "libsim/particles/kernels.hpp"
 
 namespace sim::SIM_BACKEND {
 

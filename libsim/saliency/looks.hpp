@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "libsim/render/camera.hpp"
-#include "libsim/render/gbuffer.hpp"
+#include "libsim/view/camera.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 namespace sim {
 

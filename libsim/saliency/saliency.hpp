@@ -25,25 +25,26 @@ struct SaliencyState {
 
 /// The fluid as saliency reads it, n particles in one order, and where the results go.
 struct SaliencyFluid {
-  const Vec4* position;
-  const Vec4* velocity;
-  const float* density;  ///< rho / rho_0
-  const std::uint8_t* level;
-  ParticleNeighbours neighbours;
-  int n;
-  float finest_support;  ///< h_*, m
-  float gravity;         ///< m/s2
-  float frame_dt;        ///< s
-  float* unrest;  ///< f_T gamma_t followed over frames, NaN where not known yet; nullptr: this frame's alone
-  float* saliency;
-  std::uint8_t* target;
-  SaliencyParts* parts;  ///< may be nullptr
-  Guards* guards;
+  const Vec4* position = nullptr;
+  const Vec4* velocity = nullptr;
+  const float* density = nullptr;  ///< rho / rho_0
+  const std::uint8_t* level = nullptr;
+  ParticleNeighbours neighbours{};
+  int n = 0;
+  float finest_support = 0;  ///< h_*, m
+  float gravity = 0;         ///< m/s2
+  float frame_dt = 0;        ///< s
+  /// f_T gamma_t followed over frames, NaN where not known yet; nullptr: this frame's alone.
+  float* unrest = nullptr;
+  float* saliency = nullptr;
+  std::uint8_t* target = nullptr;
+  SaliencyParts* parts = nullptr;  ///< may be nullptr
+  Guards* guards = nullptr;
 };
 
 /// Eq. 1-9.
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid);
-/// The gaze alone (FovFluid-like): the band is one support radius of the coarsest level wide.
+/// The gaze alone (FovFluid-like), from positions: the band is one support radius of the coarsest level wide.
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid);
 
 }  // namespace sim::SIM_BACKEND

@@ -73,8 +73,12 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   const bool left_out = a.columns_set && !a.all_marked;
   tally_.resize(1);
   for_each("frame tally", LevelSupports::most,
-           Tally{state.guards.data(), state.neighbours.longest(), left_out ? a.ranks.data() : nullptr,
-                 state.particles.level.data(), state.particles.size(), tally_.data()});
+           Tally{.guards = state.guards.data(),
+                 .longest_list = state.neighbours.longest(),
+                 .active_ranks = left_out ? a.ranks.data() : nullptr,
+                 .level_of = state.particles.all().level.data(),
+                 .n = state.particles.size(),
+                 .out = tally_.data()});
   const FrameTally tally = tally_.to_host()[0];
   account_.particles_by_level.assign(tally.by_level + finest_level_, tally.by_level + coarsest_level_ + 1);
   if (went_by) went_by->active = tally.active;

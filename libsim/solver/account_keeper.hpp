@@ -2,7 +2,8 @@
 /// The account of each frame (sim::FrameAccount): what the host knows already, and the few numbers that stand
 /// in the back end's memory, brought over in one copy.
 
-#include "libsim/stages/fluid_state.hpp"
+#include "libsim/simulation.hpp"
+#include "libsim/solver/stages/fluid_state.hpp"
 
 namespace sim::SIM_BACKEND {
 

@@ -28,22 +28,6 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   return out;
 }
 
-LevelRules level_rules(const SimulationOptions& options) {
-  const Readings& from = options.readings;
-  LevelRules out;
-  out.coarsest = options.levels - 1;
-  out.graded = from.graded_targets;
-  for (int k = 0; k < 3; ++k) out.split_offset[k] = static_cast<float>(from.split_offset[k]);
-  out.split_share = static_cast<float>(from.split_share);
-  out.merge_same_target = from.merge_same_target;
-  out.merge_reach = static_cast<float>(from.merge_reach);
-  out.merge_overlap = static_cast<float>(from.merge_overlap);
-  out.merge_keeps_steps = from.merge_keeps_steps;
-  out.dead_band = static_cast<float>(from.merge_dead_band);
-  out.kick_filter = static_cast<float>(from.kick_filter);
-  return out;
-}
-
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters) {
   const MethodTraits& method = traits_of(options.method);
   Demand out;
@@ -55,22 +39,6 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
   out.saliency_parts = options.saliency_parts;
   out.activation = method.temporal || options.temporal.always;
-  return out;
-}
-
-ActivationRules activation_rules(const Readings& readings) {
-  ActivationRules out;
-  out.relative_level_change = readings.dimensionless_levels;
-  out.robust_range = readings.normalisation == Normalisation::Percentile;
-  out.inherit_change = readings.inherit_change;
-  out.pressed = readings.inactive_pressed && readings.inherit_change;
-  out.near_spacings = static_cast<float>(readings.inherit_cell_spacings);
-  out.damping = static_cast<float>(readings.inactive_damping);
-  out.others_yield = readings.inactive_yield;
-  out.keep_fragile_active = readings.keep_fragile_active;
-  out.longest_rest = readings.longest_rest_frames;
-  out.least_work = readings.least_work_frames;
-  out.speed_floor = static_cast<float>(readings.speed_floor);
   return out;
 }
 

@@ -35,9 +35,9 @@ class FluidSimulation final : public Simulation {
     state_.saliency.readings = options.readings;
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
-    state_.levels.rules = level_rules(options);
+    state_.levels.rules = LevelRules(options.readings, options.levels);
     if (options.forced_targets) force_targets(*options.forced_targets);
-    state_.activation.rules = activation_rules(options.readings);
+    state_.activation.rules = ActivationRules(options.readings);
     state_.activation.seed = options.temporal.seed;
     state_.guards.resize(1);
     state_.guards.zero();
@@ -114,7 +114,7 @@ class FluidSimulation final : public Simulation {
     out.frame = frame_;
     out.time_s = frame_ * static_cast<double>(state_.parameters.dt) * state_.parameters.substeps;
     out.particles = particle_count();
-    for (const std::uint8_t level : state_.particles.level.to_host()) {
+    for (const std::uint8_t level : state_.particles.all().level.to_host()) {
       if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
       ++out.particles_by_level[level];
       out.mass_units += std::int64_t{1} << level;
@@ -136,7 +136,13 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  PartTimes part_times() const override { return state_.clock.times(); }
+  PartTimes part_times() const override {
+    const PartClock& clock = state_.clock;
+    return {.saliency_ms = clock.milliseconds(Part::Saliency),
+            .levels_ms = clock.milliseconds(Part::Levels),
+            .activation_ms = clock.milliseconds(Part::Activation),
+            .solve_ms = clock.milliseconds(Part::Solve)};
+  }
   std::int64_t particle_count() const override { return state_.particles.size(); }
   std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }
@@ -160,9 +166,9 @@ class FluidSimulation final : public Simulation {
   }
 
   void read_saliency(std::vector<ParticleSaliency>& out) const override {
-    const auto& p = state_.particles;
     out.clear();
-    if (frame_ == 0 || !p.has(Column::Saliency)) return;
+    if (frame_ == 0 || !state_.particles.has(Column::Saliency)) return;
+    const auto& p = state_.particles.all();
     pack_saliency(p.saliency.to_host(), p.target.to_host(), p.saliency_parts.to_host(), out);
   }
 
@@ -192,7 +198,7 @@ class FluidSimulation final : public Simulation {
     pack_saliency(s.to_host(), target.to_host(), {}, out);
   }
 
-  std::vector<int> read_ids() const override { return state_.particles.id.to_host(); }
+  std::vector<int> read_ids() const override { return state_.particles.all().id.to_host(); }
 
   std::vector<ParticleState> read_state() const override { return states_of(state_.particles); }
 
@@ -264,7 +270,7 @@ class FluidSimulation final : public Simulation {
                       static_cast<float>(scene_.tank_size_m[2])}};
     keeper_.begin(start, finest_level_, coarsest_level_);
     put_in(state_, start);
-    if (adaptive()) state_.levels.begin(p);
+    if (adaptive()) state_.levels.begin(NewLevelsView(p));
     state_.walls = walls_of(scene_, false);
     begin_jets(state_, scene_, options_, resolution_, frame_);
   }

@@ -15,14 +15,10 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
-/// How the method's levels split and merge.
-LevelRules level_rules(const SimulationOptions& options);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
 /// base::Error for a level that does not exist.
 TargetSphere sphere_of(const TargetRegion& region);
-/// Readings of temporal acceleration.
-ActivationRules activation_rules(const Readings& readings);
 /// The tank's floor and sides, or those of the water block while the gate is closed. Open above.
 Walls walls_of(const Scene& scene, bool gate_closed);
 

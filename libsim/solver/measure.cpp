@@ -48,6 +48,10 @@ struct MeasureOne {
   }
 };
 
+using MeasuringView =
+    ColumnView<ColumnSet{}, columns(Column::Position, Column::Velocity, Column::Id, Column::Level,
+                                    Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
+
 /// The same fluid with particles, lists and guards of its own.
 FluidState copy_of(const FluidState& live) {
   FluidState out;
@@ -60,19 +64,17 @@ FluidState copy_of(const FluidState& live) {
   out.one_level = live.one_level;
   out.guards.resize(1);
   out.guards.zero();
-  auto& p = out.particles;
-  const auto& from = live.particles;
-  p.allocate(columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Predicted,
-                     Column::Lambda, Column::Density),
-             from.size());
-  const auto copy = [](auto& to, const auto& source) {
-    copy_within(to.data(), source.data(), source.size() * sizeof(*source.data()));
+  out.particles.allocate(MeasuringView::may_write, live.particles.size());
+  auto& to = out.particles.all();
+  const auto& from = live.particles.all();
+  const auto copy = [](auto& column, const auto& source) {
+    copy_within(column.data(), source.data(), source.size() * sizeof(*source.data()));
   };
-  copy(p.position, from.position);
-  copy(p.predicted, from.position);
-  copy(p.velocity, from.velocity);
-  copy(p.id, from.id);
-  copy(p.level, from.level);
+  copy(to.position, from.position);
+  copy(to.predicted, from.position);
+  copy(to.velocity, from.velocity);
+  copy(to.id, from.id);
+  copy(to.level, from.level);
   return out;
 }
 
@@ -83,27 +85,31 @@ Measured measure(const FluidState& live) {
   const int n = live.particles.size();
   if (n == 0) return out;
   FluidState state = copy_of(live);
-  auto& p = state.particles;
+  const MeasuringView p(state.particles);
   do {
-    neighbours_stage().run(state);
+    find_neighbours(state, p);
   } while (state.neighbours.grow());
-  density_stage().run(state);
+  constrain_density(state, p);
   const auto size = static_cast<std::size_t>(n);
   Array<float> excess(size);
   Array<float> near(size);
   Array<float> speed(size);
   for_each("measure", n,
-           MeasureOne{p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
-                      excess.data(), near.data(), speed.data()});
+           MeasureOne{.position = p.position(),
+                      .velocity = p.velocity(),
+                      .density = p.density(),
+                      .neighbours = state.neighbours.view(),
+                      .excess = excess.data(),
+                      .near = near.data(),
+                      .speed = speed.data()});
   out.density_error_mean = fixed_order_sum(excess, n) / n;
   const double pairs = fixed_order_sum(near, n);
   out.neighbours_mean = pairs / n;
   if (!state.one_level && pairs > 0) {
-    for_each("measure jumps", n,
-             MeasureJumps{p.position.data(), p.level.data(), state.neighbours.view(), near.data()});
+    for_each("measure jumps", n, MeasureJumps{p.position(), p.level(), state.neighbours.view(), near.data()});
     out.jump_share = fixed_order_sum(near, n) / pairs;
   }
-  out.density_max = static_cast<double>(maximum(p.density, n));
+  out.density_max = static_cast<double>(maximum(state.particles.all().density, n));
   out.speed_max_m_s = static_cast<double>(maximum(speed, n));
   return out;
 }

@@ -16,6 +16,22 @@ struct PackForDrawing {
 
 }  // namespace
 
+std::vector<float> field_of(const Particles& particles, ParticleField field) {
+  const auto n = static_cast<std::size_t>(particles.size());
+  std::vector<float> out(n, field == ParticleField::Active ? 1.0f : 0.0f);
+  if (field == ParticleField::Speed) {
+    const auto velocity = particles.all().velocity.to_host();
+    for (std::size_t i = 0; i < n; ++i) out[i] = length(xyz(velocity[i]));
+  } else if (field == ParticleField::DensityError && particles.has(Column::Density)) {
+    const auto density = particles.all().density.to_host();
+    for (std::size_t i = 0; i < n; ++i) out[i] = density[i] - 1;
+  } else if (field == ParticleField::Active && particles.has(Column::Active)) {
+    const auto active = particles.all().active.to_host();
+    for (std::size_t i = 0; i < n; ++i) out[i] = active[i];
+  }
+  return out;
+}
+
 void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
                    const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out) {
   out.resize(s.size());
@@ -32,10 +48,10 @@ LevelEvents events_of(const LevelCounts& counts) {
 }
 
 std::vector<ParticleState> states_of(const Particles& particles) {
-  const auto position = particles.position.to_host();
-  const auto velocity = particles.velocity.to_host();
-  const auto id = particles.id.to_host();
-  const auto level = particles.level.to_host();
+  const auto position = particles.all().position.to_host();
+  const auto velocity = particles.all().velocity.to_host();
+  const auto id = particles.all().id.to_host();
+  const auto level = particles.all().level.to_host();
   std::vector<ParticleState> out(position.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = {id[i],         level[i],      position[i].x, position[i].y,
@@ -48,12 +64,12 @@ std::vector<ParticleState> states_of(const Particles& particles) {
 void render_particles_of(const Particles& particles, std::vector<RenderParticle>& out) {
   out.resize(static_cast<std::size_t>(particles.size()));
   static_assert(sizeof(RenderParticle) == sizeof(Vec4));
-  copy_to_host(out.data(), particles.position.data(), out.size() * sizeof(Vec4));
+  copy_to_host(out.data(), particles.all().position.data(), out.size() * sizeof(Vec4));
   for (auto& particle : out) particle.radius_m *= radius_per_support;
 }
 
 void pack_for_drawing(const Particles& particles, Vec4* out) {
-  for_each("pack for drawing", particles.size(), PackForDrawing{particles.position.data(), out});
+  for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
 }
 
 }  // namespace sim::SIM_BACKEND

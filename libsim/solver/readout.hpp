@@ -1,15 +1,18 @@
 #pragma once
-/// What a run's particles are told as.
+/// What programs read of a run's particles, on the host.
 
 #include <cstdint>
 #include <vector>
 
 #include "libsim/simulation.hpp"
-#include "libsim/stages/fluid_state.hpp"
+#include "libsim/solver/stages/fluid_state.hpp"
 
 namespace sim::SIM_BACKEND {
 
 constexpr float radius_per_support = 0.25f;  ///< h = 4 r
+
+/// sim::ParticleField in the particles' order; 0 where its column is not there, 1 for Active.
+std::vector<float> field_of(const Particles& particles, ParticleField field);
 
 /// One entry a particle; `parts` may be empty.
 void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,

@@ -45,13 +45,12 @@ std::string padded(std::string text, std::size_t width) {
 
 void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
   for (const auto& pass : passes) {
-    const ColumnSet missing = pass.reads & ~written;
-    for (std::size_t c = 0; c < missing.size(); ++c) {
-      if (!missing.test(c)) continue;
-      throw base::Error("schedule, pass '" + std::string(pass.name) + "'",
-                        std::string("reads the column ") + column_name(static_cast<Column>(c)) +
-                            ", which nothing has written",
-                        "add the stage that writes it");
+    const ColumnSet missing = pass.reads - written;
+    if (!missing.empty()) {
+      throw base::Error(
+          "schedule, pass '" + std::string(pass.name) + "'",
+          std::string("reads the column ") + column_name(missing.first()) + ", which nothing has written",
+          "add the stage that writes it");
     }
     written |= pass.writes;
   }
@@ -87,9 +86,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
        {&out.frame_start, &out.substep, &out.iteration, &out.substep_end, &out.frame_end})
     check_reads(*passes, written);
   out.explanation += absent + "  columns:";
-  for (std::size_t c = 0; c < out.columns.size(); ++c) {
-    if (out.columns.test(c)) out.explanation += std::string(" ") + column_name(static_cast<Column>(c));
-  }
+  for (ColumnSet left = out.columns; !left.empty(); left = left - columns(left.first()))
+    out.explanation += std::string(" ") + column_name(left.first());
   out.explanation += "\n";
   return out;
 }

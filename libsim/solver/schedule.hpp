@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 

@@ -26,14 +26,16 @@ struct Excess {
   }
 };
 
-double mean_compression(FluidState& state, Array<float>& excess, Array<float>& mass) {
-  auto& p = state.particles;
-  copy_within(p.predicted.data(), p.position.data(), p.position.size() * sizeof(Vec4));
-  neighbours_stage().run(state);
-  if (state.neighbours.grow()) neighbours_stage().run(state);
-  density_stage().run(state);
-  for_each("start compression", p.size(),
-           Excess{p.density.data(), p.level.data(), excess.data(), mass.data()});
+using RelaxingView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                                columns(Column::Position, Column::Predicted, Column::PredictedNext,
+                                        Column::Neighbours, Column::Lambda, Column::Density)>;
+
+double mean_compression(FluidState& state, RelaxingView p, Array<float>& excess, Array<float>& mass) {
+  p.copy<Column::Predicted, Column::Position>();
+  find_neighbours(state, p);
+  if (state.neighbours.grow()) find_neighbours(state, p);
+  constrain_density(state, p);
+  for_each("start compression", p.size(), Excess{p.density(), p.level(), excess.data(), mass.data()});
   return fixed_order_sum(excess, p.size()) / fixed_order_sum(mass, p.size());
 }
 
@@ -92,13 +94,13 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start) {
     id.push_back(particle.id);
     level.push_back(static_cast<std::uint8_t>(particle.level));
   }
-  auto& p = state.particles;
+  auto& p = state.particles.all();
   p.position.from_host(position);
   p.velocity.from_host(velocity);
   p.id.from_host(id);
   p.level.from_host(level);
-  if (p.has(Column::Saliency)) p.saliency.zero();
-  if (p.has(Column::Unrest)) {
+  if (state.particles.has(Column::Saliency)) p.saliency.zero();
+  if (state.particles.has(Column::Unrest)) {
     p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
   }
 }
@@ -144,17 +146,17 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
 }
 
 RelaxedStart relax_start(FluidState& state, int most) {
-  auto& p = state.particles;
+  const RelaxingView p(state.particles);
   RelaxedStart out;
   if (p.size() == 0) return out;
   Array<float> excess(static_cast<std::size_t>(p.size()));
   Array<float> mass(static_cast<std::size_t>(p.size()));
   state.iteration = 0;  // no momentum
   for (;; ++out.projections) {
-    out.compression = mean_compression(state, excess, mass);
+    out.compression = mean_compression(state, p, excess, mass);
     if (out.compression < enough || out.projections == most) return out;
-    displacement_stage().run(state);
-    copy_within(p.position.data(), p.predicted.data(), p.position.size() * sizeof(Vec4));
+    displace(state, p);
+    p.copy<Column::Position, Column::Predicted>();
   }
 }
 

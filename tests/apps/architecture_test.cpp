@@ -97,13 +97,23 @@ struct Room {
 using Rooms = std::vector<Room>;
 
 /// Each folder with sources in one of these has a row in `rooms`.
-const std::vector<std::string> libraries{"apps", "libstudy", "stats"};
+const std::vector<std::string> libraries{"apps", "libsim", "libstudy", "stats"};
 
 const Rooms rooms{
     {"stats/base", 0},       {"stats", 1},
     {"stats/image", 2},      {"stats/ordinal", 2},
     {"stats/inference", 3},  {"stats/preference", 4},
     {"stats/ptpe", 4},       {"stats/analysis", 5},
+
+    {"libsim/exec", 0},      {"libsim/methods", 0},
+    {"libsim/ptpe", 0},      {"libsim/scene", 1},
+    {"libsim/particles", 1}, {"libsim/view", 2},
+    {"libsim/neighbors", 2}, {"libsim/pressure", 2},
+    {"libsim/flow", 2},      {"libsim/activation", 2},
+    {"libsim/levels", 3},    {"libsim/saliency", 3},
+    {"libsim", 4},           {"libsim/solver/stages", 4},
+    {"libsim/solver", 5},    {"libsim/render", 5},
+    {"libsim/bake", 5},
 
     {"libstudy/base", 0},    {"libstudy/display", 1},
     {"libstudy/pacing", 2},  {"libstudy/protocol", 3},

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
 

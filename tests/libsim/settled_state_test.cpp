@@ -1,4 +1,4 @@
-#include "libsim/scene/settled_state.hpp"
+#include "libsim/solver/settled_state.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -39,7 +39,7 @@ FluidState state_of(const std::vector<Drop>& drops) {
   state.finest_support = h;
   state.domain = {{0, 0, 0}, {6, 4.5f, 6}};  // 4 x 3 x 4 cells; some drops lie above
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), static_cast<int>(drops.size()));
+  p.allocate(all_columns(), static_cast<int>(drops.size()));
   std::vector<Vec4> position;
   std::vector<Vec4> velocity;
   std::vector<int> id;
@@ -50,16 +50,16 @@ FluidState state_of(const std::vector<Drop>& drops) {
     id.push_back(drop.id);
     level.push_back(static_cast<std::uint8_t>(drop.level));
   }
-  p.position.from_host(position);
-  p.predicted.from_host(position);
-  p.velocity.from_host(velocity);
-  p.id.from_host(id);
-  p.level.from_host(level);
-  p.age.from_host(std::vector<std::uint8_t>(drops.size(), 255));
-  p.active.from_host(std::vector<std::uint8_t>(drops.size(), 1));
-  p.rest.zero();
-  p.saliency.zero();
-  p.density.from_host(std::vector<float>(drops.size(), 1));
+  p.all().position.from_host(position);
+  p.all().predicted.from_host(position);
+  p.all().velocity.from_host(velocity);
+  p.all().id.from_host(id);
+  p.all().level.from_host(level);
+  p.all().age.from_host(std::vector<std::uint8_t>(drops.size(), 255));
+  p.all().active.from_host(std::vector<std::uint8_t>(drops.size(), 1));
+  p.all().rest.zero();
+  p.all().saliency.zero();
+  p.all().density.from_host(std::vector<float>(drops.size(), 1));
   return state;
 }
 
@@ -72,8 +72,8 @@ SIM_TEST(VelocityGrid, MeansEqualBruteForce) {
   ASSERT_EQ(block.nx, 4);
   ASSERT_EQ(block.ny, 3);
   ASSERT_EQ(block.nz, 4);
-  grid.update_velocity(state.particles, nullptr);
-  grid.update_energy(state.particles);
+  grid.update_velocity(MovingView(state.particles), nullptr);
+  grid.update_energy(MovingView(state.particles));
   const auto cells = static_cast<std::size_t>(grid.cells());
   std::vector<double> mass(4 * cells);
   std::vector<std::array<double, 3>> momentum(4 * cells);
@@ -136,14 +136,14 @@ SIM_TEST(VelocityGrid, FillsWhatIsEmptyFromTheFrameBeforeThenFromOtherLevels) {
   grid.fit(first.domain, 5 * h);
   const auto cells = static_cast<std::size_t>(grid.cells());
   const auto level = [&](std::size_t l) { return grid.velocity().to_host()[l * cells]; };
-  grid.update_velocity(first.particles, nullptr);
+  grid.update_velocity(MovingView(first.particles), nullptr);
   EXPECT_EQ(level(0).x, 2);
   EXPECT_EQ(level(1).x, -0.4f) << "level 1 is empty: (1 x 2 - 4 x 1) / 5";
   EXPECT_EQ(level(1).w, value_borrowed);
-  grid.update_velocity(second.particles, nullptr);
+  grid.update_velocity(MovingView(second.particles), nullptr);
   EXPECT_EQ(level(0).x, 2) << "of the frame before";
   EXPECT_EQ(level(0).w, value_borrowed);
-  grid.update_velocity(second.particles, nullptr);
+  grid.update_velocity(MovingView(second.particles), nullptr);
   EXPECT_EQ(level(0).x, -1) << "of the other level";
   EXPECT_EQ(grid.velocity().to_host()[cells - 1].w, value_unknown);
 }
@@ -153,8 +153,8 @@ FluidState ready(const std::vector<Drop>& all, float beta) {
   auto state = state_of(all);
   auto& a = state.activation;
   a.grid.fit(state.domain, 5 * h);
-  a.grid.update_velocity(state.particles, nullptr);
-  a.grid.update_energy(state.particles);
+  a.grid.update_velocity(MovingView(state.particles), nullptr);
+  a.grid.update_energy(MovingView(state.particles));
   a.beta = beta;
   a.rules.keep_fragile_active = false;
   return state;
@@ -175,7 +175,7 @@ SIM_TEST(Activation, ShareOfActiveParticlesFollowsTheProbabilities) {
     least = std::min(least, static_cast<double>(p));
     most = std::max(most, static_cast<double>(p));
   }
-  const auto active = state.particles.active.to_host();
+  const auto active = state.particles.all().active.to_host();
   const double solved = std::accumulate(active.begin(), active.end(), 0.0);
   EXPECT_LT(std::abs(solved - mean), 4 * std::sqrt(variance));
   EXPECT_NEAR(least, 0.3, 1e-6);
@@ -189,8 +189,8 @@ SIM_TEST(Activation, SameSeedChoosesTheSameParticlesWhateverTheirOrder) {
     auto state = ready(all, 0.4f);
     state.activation.seed = seed;
     activation_stage().run(state);
-    const auto id = state.particles.id.to_host();
-    const auto active = state.particles.active.to_host();
+    const auto id = state.particles.all().id.to_host();
+    const auto active = state.particles.all().active.to_host();
     std::vector<int> out(id.size());
     for (std::size_t i = 0; i < id.size(); ++i) out[static_cast<std::size_t>(id[i])] = active[i];
     return out;
@@ -205,7 +205,7 @@ SIM_TEST(Activation, WithBetaOneEveryoneIsSolved) {
   auto state = ready(drops(500, 2), 1);
   activation_stage().run(state);
   EXPECT_TRUE(state.all_active);
-  for (const auto active : state.particles.active.to_host()) EXPECT_EQ(active, 1);
+  for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
 SIM_TEST(Activation, RestsAreNoLongerAndWorkNoShorterThanTheRulesAllow) {
@@ -222,7 +222,7 @@ SIM_TEST(Activation, RestsAreNoLongerAndWorkNoShorterThanTheRulesAllow) {
       for (std::uint32_t frame = 0; frame < 24; ++frame) {
         state.activation.frame = frame;
         activation_stage().run(state);
-        const auto active = state.particles.active.to_host();
+        const auto active = state.particles.all().active.to_host();
         for (std::size_t i = 0; i < active.size(); ++i) {
           if (!active[i] && rested[i] == 0) shortest = std::min(shortest, worked[i]);
           rested[i] = active[i] ? 0 : rested[i] + 1;
@@ -246,23 +246,23 @@ SIM_TEST(Activation, KeepsTheFragileActive) {
   state.activation.rules.keep_fragile_active = true;
   state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
   auto& p = state.particles;
-  auto velocity = p.velocity.to_host();
-  auto age = p.age.to_host();
-  auto density = p.density.to_host();
+  auto velocity = p.all().velocity.to_host();
+  auto age = p.all().age.to_host();
+  auto density = p.all().density.to_host();
   for (std::size_t i = 0; i < 200; ++i) {
     velocity[i].y = 100;
     age[i + 200] = 0;
     density[i + 400] = 0.3f;
   }
-  p.age.from_host(age);
-  p.density.from_host(density);
+  p.all().age.from_host(age);
+  p.all().density.from_host(density);
   activation_stage().run(state);
   velocity_grid_stage().run(state);  // notes who is sparse
-  p.velocity.from_host(velocity);
+  p.all().velocity.from_host(velocity);
   state.activation.beta = 0.02f;
   activation_stage().run(state);
-  const auto active = p.active.to_host();
-  const auto position = p.position.to_host();
+  const auto active = p.all().active.to_host();
+  const auto position = p.all().position.to_host();
   int resting = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const bool fragile = i < 600 || position[i].x < position[i].w;
@@ -277,7 +277,7 @@ SIM_TEST(Activation, UnknownPlacesAreSolved) {
   state.activation.beta = 0.02f;
   state.activation.rules.keep_fragile_active = false;
   activation_stage().run(state);  // the grid has never seen a particle
-  for (const auto active : state.particles.active.to_host()) EXPECT_EQ(active, 1);
+  for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
 /// Everyone's velocity changes by `gain` in the solve; the resting ones must come to the same.
@@ -289,16 +289,16 @@ void inherits(bool change) {
   activation_stage().run(state);
   const Vec3 gain{0.25f, -0.5f, 0};
   auto& p = state.particles;
-  auto velocity = p.velocity.to_host();
-  const auto active = p.active.to_host();
-  const auto before = p.position.to_host();
+  auto velocity = p.all().velocity.to_host();
+  const auto active = p.all().active.to_host();
+  const auto before = p.all().position.to_host();
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     if (active[i]) velocity[i] = with_w(xyz(velocity[i]) + gain, 0);
   }
-  p.velocity.from_host(velocity);
+  p.all().velocity.from_host(velocity);
   velocity_grid_stage().run(state);
-  const auto after = p.velocity.to_host();
-  const auto position = p.position.to_host();
+  const auto after = p.all().velocity.to_host();
+  const auto position = p.all().position.to_host();
   // A frame of 3 substeps of 1/180 s whose change comes in equal parts: 2/3 of it counts for the way.
   const float way = 2.0f / 3 / 60;
   int resting = 0;
@@ -362,7 +362,7 @@ SIM_TEST(Importance, IsEquation12To14OnALinearFlow) {
     all.push_back({{at(c % 4), at(c / 4 % 3), at(c / 12)}, {2 * static_cast<float>(c % 4), 0, 0}, c, 1});
   }
   auto state = ready(all, 0.5f);
-  measure_importance(state.activation, state.particles, nullptr, 0.1f);
+  measure_importance(state.activation, ImportanceView(state.particles), nullptr, 0.1f);
   const auto f = state.activation.importance.to_host();
   for (int x = 1; x < 3; ++x) {
     const float v = 2 * static_cast<float>(x);
@@ -374,17 +374,17 @@ SIM_TEST(Importance, IsEquation12To14OnALinearFlow) {
   }
   Array<float> saliency;
   saliency.from_host(std::vector<float>(48, 1));
-  measure_importance(state.activation, state.particles, saliency.data(), 0.1f);
+  measure_importance(state.activation, ImportanceView(state.particles), saliency.data(), 0.1f);
   EXPECT_NEAR(state.activation.importance.to_host()[1], 2.71828f * f[1], 1e-3f * f[1]);
 }
 
 SIM_TEST(ActiveSlots, ListTheActiveInOrderAndTheOthersBehind) {
   auto state = state_of(drops(1000, 1));
   auto& p = state.particles;
-  auto active = p.active.to_host();
+  auto active = p.all().active.to_host();
   for (std::size_t i = 0; i < active.size(); ++i) active[i] = i % 3 != 1;
-  p.active.from_host(active);
-  state.activation.list_active(p);
+  p.all().active.from_host(active);
+  state.activation.list_active(ActiveListView(p));
   const auto slots = state.activation.slots.to_host();
   std::vector<int> met(1000, 0);
   int last = -1;

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -20,7 +20,7 @@ FluidState crowd(int n, bool resting) {
   state.supports = level_supports(static_cast<double>(h));
   state.all_active = !resting;
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), n);
+  p.allocate(all_columns(), n);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> at(0, 1.5f);
   std::vector<Vec4> position;
@@ -33,19 +33,19 @@ FluidState crowd(int n, bool resting) {
     age.push_back(i % 40 == 0 ? static_cast<std::uint8_t>(i / 40 % 5) : std::uint8_t{255});
     active.push_back(!resting || i % 3 != 0);
   }
-  p.position.from_host(position);
-  p.predicted.from_host(position);
-  p.predicted_next.from_host(position);
-  p.velocity.zero();
-  p.id.from_host(id);
-  p.level.from_host(level);
-  p.age.from_host(age);
-  p.active.from_host(active);
-  p.ease.from_host(std::vector<float>(static_cast<std::size_t>(n), -1));
-  p.lambda.zero();
-  p.density.from_host(std::vector<float>(static_cast<std::size_t>(n), 1));
-  p.rest.zero();
-  p.saliency.zero();
+  p.all().position.from_host(position);
+  p.all().predicted.from_host(position);
+  p.all().predicted_next.from_host(position);
+  p.all().velocity.zero();
+  p.all().id.from_host(id);
+  p.all().level.from_host(level);
+  p.all().age.from_host(age);
+  p.all().active.from_host(active);
+  p.all().ease.from_host(std::vector<float>(static_cast<std::size_t>(n), -1));
+  p.all().lambda.zero();
+  p.all().density.from_host(std::vector<float>(static_cast<std::size_t>(n), 1));
+  p.all().rest.zero();
+  p.all().saliency.zero();
   return state;
 }
 
@@ -58,10 +58,10 @@ void equals_brute_force(bool resting) {
   } while (state.guards.to_host()[0].neighbours_dropped > 0);
   ease_stage().run(state);
   const auto& p = state.particles;
-  const auto x = p.predicted.to_host();
-  const auto age = p.age.to_host();
-  const auto active = p.active.to_host();
-  const auto ease = p.ease.to_host();
+  const auto x = p.all().predicted.to_host();
+  const auto age = p.all().age.to_host();
+  const auto active = p.all().active.to_host();
+  const auto ease = p.all().ease.to_host();
   int eased = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     int youngest = age[i];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -18,17 +18,17 @@ std::vector<std::uint8_t> graded(const std::vector<float>& saliency, float dead_
   state.levels.rules.graded = false;
   auto& p = state.particles;
   const auto n = saliency.size();
-  p.allocate(ColumnSet().set(), static_cast<int>(n));
+  p.allocate(all_columns(), static_cast<int>(n));
   std::vector<std::uint8_t> target;
   for (const float s : saliency) {
     const int level = static_cast<int>(std::floor(4 * (1 - s)));
     target.push_back(static_cast<std::uint8_t>(std::min(level, 3)));
   }
-  p.level.from_host(std::vector<std::uint8_t>(n, 1));
-  p.saliency.from_host(saliency);
-  p.target.from_host(target);
+  p.all().level.from_host(std::vector<std::uint8_t>(n, 1));
+  p.all().saliency.from_host(saliency);
+  p.all().target.from_host(target);
   graded_targets_stage().run(state);
-  return p.target.to_host();
+  return p.all().target.to_host();
 }
 
 SIM_TEST(LevelRules, TheDeadBandHoldsBackOnlyTheWayToCoarser) {

@@ -39,13 +39,13 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed =
     std::reverse(at.begin(), at.end());
     std::reverse(id.begin(), id.end());
   }
-  particles.position.from_host(at);
-  particles.predicted.from_host(at);
-  particles.id.from_host(id);
-  particles.velocity.zero();
+  particles.all().position.from_host(at);
+  particles.all().predicted.from_host(at);
+  particles.all().id.from_host(id);
+  particles.all().velocity.zero();
   std::vector<std::uint8_t> level(points.size(), 0);
   if (mixed) std::transform(at.begin(), at.end(), level.begin(), [](Vec4 p) { return level_of(p.w); });
-  particles.level.from_host(level);
+  particles.all().level.from_host(level);
   Grid grid;
   NeighbourList neighbours;
   Array<std::uint64_t> dropped(1);
@@ -54,16 +54,16 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed =
     dropped.zero();
     if (mixed) {
       grid.build(particles, NeighbourList::margin, level_supports(static_cast<double>(finest)));
-      neighbours.build_mixed(particles, grid, dropped.data());
+      neighbours.build_mixed(PredictedView(particles), grid, dropped.data());
     } else {
       grid.build(particles, NeighbourList::margin);
-      neighbours.build(particles, grid, dropped.data());
+      neighbours.build(PredictedView(particles), grid, dropped.data());
     }
   } while (neighbours.grow());
 
   Listed out;
-  out.id = particles.id.to_host();
-  out.position = particles.predicted.to_host();
+  out.id = particles.all().id.to_host();
+  out.position = particles.all().predicted.to_host();
   out.dropped = dropped.to_host()[0];
   out.cells = grid.count_cells();
   out.sets.resize(points.size());

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -46,11 +46,11 @@ Start pool(int n) {
 FluidState state_of(const Start& start) {
   FluidState state;
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), static_cast<int>(start.position.size()));
-  p.position.from_host(start.position);
-  p.id.from_host(start.id);
-  p.velocity.zero();
-  p.level.zero();
+  p.allocate(all_columns(), static_cast<int>(start.position.size()));
+  p.all().position.from_host(start.position);
+  p.all().id.from_host(start.id);
+  p.all().velocity.zero();
+  p.all().level.zero();
   state.supports = level_supports(0.3);
   state.jets.nozzles = {nozzle()};
   state.jets.before.resize(1);
@@ -79,8 +79,8 @@ std::vector<int> lowest(const Start& start, std::size_t count) {
 
 /// Ids of the particles that the pass has set in motion.
 std::vector<int> moved(const FluidState& state) {
-  const auto velocity = state.particles.velocity.to_host();
-  const auto id = state.particles.id.to_host();
+  const auto velocity = state.particles.all().velocity.to_host();
+  const auto id = state.particles.all().id.to_host();
   std::vector<int> out;
   for (std::size_t i = 0; i < id.size(); ++i) {
     if (velocity[i].y != 0) out.push_back(id[i]);
@@ -116,8 +116,8 @@ SIM_TEST(NozzleStage, ChoiceAndPlacesDoNotDependOnTheOrderInMemory) {
   }
   FluidState second = state_of(shuffled);
   nozzle_stage().run(second);
-  const auto a = first.particles.position.to_host();
-  const auto b = second.particles.position.to_host();
+  const auto a = first.particles.all().position.to_host();
+  const auto b = second.particles.all().position.to_host();
   for (std::size_t i = 0; i < order.size(); ++i) {
     ASSERT_EQ(a[order[i]].x, b[i].x);
     ASSERT_EQ(a[order[i]].y, b[i].y);
@@ -129,8 +129,8 @@ SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {
   FluidState state = state_of(pool(20'000));
   nozzle_stage().run(state);
   const auto due = layers_due(nozzle(), 0.15, {}, 0, 1.0 / 60);
-  const auto position = state.particles.position.to_host();
-  const auto velocity = state.particles.velocity.to_host();
+  const auto position = state.particles.all().position.to_host();
+  const auto velocity = state.particles.all().velocity.to_host();
   std::vector<int> of_layer(2);
   for (std::size_t i = 0; i < position.size(); ++i) {
     if (velocity[i].y == 0) continue;
@@ -174,7 +174,7 @@ SIM_TEST(NozzleStage, NeverTakesAParticleThatIsNotFinite) {
   start.position[7] = {0.1f, std::nanf(""), 0.1f, 0.3f};
   FluidState state = state_of(start);
   nozzle_stage().run(state);
-  EXPECT_EQ(state.particles.velocity.to_host()[7].y, 0);
+  EXPECT_EQ(state.particles.all().velocity.to_host()[7].y, 0);
 }
 
 SIM_TEST(NozzleStage, RestsBetweenPulsesWithoutAnyMemory) {
@@ -190,7 +190,7 @@ FluidState mixed_pool(int n, int target, std::int64_t& mass) {
   Start start = pool(n);
   FluidState state;
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), n, 8 * n);
+  p.allocate(all_columns(), n, 8 * n);
   state.supports = level_supports(0.3);
   std::vector<std::uint8_t> level(start.id.size());
   mass = 0;
@@ -201,11 +201,11 @@ FluidState mixed_pool(int n, int target, std::int64_t& mass) {
   }
   // Water round the mouth that says what is wanted.
   start.position[0] = {5, 4.4f, 5, state.supports.h[0]};
-  p.position.from_host(start.position);
-  p.id.from_host(start.id);
-  p.level.from_host(level);
-  p.target.from_host(std::vector<std::uint8_t>(start.id.size(), static_cast<std::uint8_t>(target)));
-  p.velocity.zero();
+  p.all().position.from_host(start.position);
+  p.all().id.from_host(start.id);
+  p.all().level.from_host(level);
+  p.all().target.from_host(std::vector<std::uint8_t>(start.id.size(), static_cast<std::uint8_t>(target)));
+  p.all().velocity.zero();
   state.one_level = false;
   state.jets.nozzles = {nozzle()};
   state.jets.before.resize(1);
@@ -225,10 +225,10 @@ SIM_TEST(NozzleStage, PoursTheMedianTargetAndKeepsTheMassExactly) {
     for (int frame = 0; frame < 2; ++frame) {
       state.jets.frame = frame;
       nozzle_stage().run(state);
-      const auto level = state.particles.level.to_host();
-      const auto position = state.particles.position.to_host();
-      const auto velocity = state.particles.velocity.to_host();
-      auto id = state.particles.id.to_host();
+      const auto level = state.particles.all().level.to_host();
+      const auto position = state.particles.all().position.to_host();
+      const auto velocity = state.particles.all().velocity.to_host();
+      auto id = state.particles.all().id.to_host();
       std::int64_t domain = 0;
       std::int64_t poured = 0;
       for (std::size_t i = 0; i < level.size(); ++i) {
@@ -256,7 +256,7 @@ SIM_TEST(NozzleStage, WaitsWhenTheCapacityIsReached) {
   Start start = pool(4'000);
   FluidState state = state_of(start);
   state.one_level = false;
-  state.particles.level.from_host(std::vector<std::uint8_t>(start.id.size(), 3));
+  state.particles.all().level.from_host(std::vector<std::uint8_t>(start.id.size(), 3));
   nozzle_stage().run(state);
   EXPECT_EQ(state.jets.waited, 2u);
   EXPECT_EQ(state.jets.poured, 0);

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -139,12 +139,12 @@ FluidState column_of(int side, int layers, float spacing, float squeeze) {
     }
   }
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), static_cast<int>(points.size()));
-  p.position.from_host(points);
-  p.predicted.from_host(points);
-  p.id.from_host(id);
-  p.level.zero();
-  p.velocity.zero();
+  p.allocate(all_columns(), static_cast<int>(points.size()));
+  p.all().position.from_host(points);
+  p.all().predicted.from_host(points);
+  p.all().id.from_host(id);
+  p.all().level.zero();
+  p.all().velocity.zero();
   return state;
 }
 
@@ -155,8 +155,8 @@ struct Column {
 
 Column measure_column(FluidState& state, int side, int layers, float spacing) {
   density_stage().run(state);
-  const auto density = state.particles.density.to_host();
-  const auto points = state.particles.predicted.to_host();
+  const auto density = state.particles.all().density.to_host();
+  const auto points = state.particles.all().predicted.to_host();
   const auto inside = [&](float x, int cells) {
     return x > 2 * spacing && x < static_cast<float>(cells - 2) * spacing;
   };
@@ -195,19 +195,19 @@ SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
   for (const int side : {16, 18, 19, 22}) {
     auto state = column_of(side, layers, 0.1f, 0.95f);
     state.parameters.coarse_cycles = 20;  // the colours of a sweep are no mirror images
-    auto points = state.particles.predicted.to_host();
+    auto points = state.particles.all().predicted.to_host();
     const float middle = 0.05f * static_cast<float>(side);
     for (auto& p : points) {
       const float off = p.x - middle;
       p.x += 0.05f * off * (1 - std::abs(off) / middle);
     }
-    state.particles.predicted.from_host(points);
+    state.particles.all().predicted.from_host(points);
     neighbours_stage().run(state);
     // What they are sorted by changes the order.
-    const auto before = state.particles.predicted.to_host();
-    const auto id = state.particles.id.to_host();
+    const auto before = state.particles.all().predicted.to_host();
+    const auto id = state.particles.all().id.to_host();
     coarse_pressure_stage().run(state);
-    const auto after = state.particles.predicted.to_host();
+    const auto after = state.particles.all().predicted.to_host();
     std::vector<double> moved(after.size());
     for (std::size_t i = 0; i < after.size(); ++i)
       moved[static_cast<std::size_t>(id[i])] = static_cast<double>(after[i].x - before[i].x);
@@ -240,18 +240,18 @@ SIM_TEST(CoarsePressure, TakesNoParticlesAndParticlesOutsideTheDomain) {
   none.guards.resize(1);
   none.lightest_support = 0.2f;
   none.domain = {{0, 0, 0}, {1, 1, 1}};
-  none.particles.allocate(ColumnSet().set(), 0);
+  none.particles.allocate(all_columns(), 0);
   neighbours_stage().run(none);
   coarse_pressure_stage().run(none);
 
   auto state = column_of(4, 4, 0.1f, 1);
-  auto points = state.particles.predicted.to_host();
+  auto points = state.particles.all().predicted.to_host();
   points[0].y = 1e3f;
   points[1].x = -1e3f;
-  state.particles.predicted.from_host(points);
+  state.particles.all().predicted.from_host(points);
   neighbours_stage().run(state);
   coarse_pressure_stage().run(state);
-  for (const auto& p : state.particles.predicted.to_host()) {
+  for (const auto& p : state.particles.all().predicted.to_host()) {
     EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   }
 }

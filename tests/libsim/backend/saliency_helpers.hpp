@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "libsim/saliency/saliency.hpp"
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND::saliency_test {
@@ -148,10 +148,10 @@ struct Fluid {
 
   SaliencyFluid view() {
     auto& p = state.particles;
-    return {p.position.data(),
-            p.velocity.data(),
-            p.density.data(),
-            p.level.data(),
+    return {p.all().position.data(),
+            p.all().velocity.data(),
+            p.all().density.data(),
+            p.all().level.data(),
             state.particle_neighbours(),
             p.size(),
             state.finest_support,
@@ -167,7 +167,7 @@ struct Fluid {
     const auto values = target.to_host();
     return {values.begin(), values.end()};
   }
-  std::vector<Vec4> points() const { return state.particles.position.to_host(); }
+  std::vector<Vec4> points() const { return state.particles.all().position.to_host(); }
 };
 
 /// Sorts the particles into the grid, lists neighbours and measures densities. h = points[i].w.
@@ -182,18 +182,18 @@ inline Fluid fluid_of(const std::vector<Vec4>& points, const std::vector<Vec4>& 
   state.guards.resize(1);
   state.guards.zero();
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), static_cast<int>(points.size()));
-  p.position.from_host(points);
-  p.predicted.from_host(points);
-  p.velocity.from_host(velocity);
+  p.allocate(all_columns(), static_cast<int>(points.size()));
+  p.all().position.from_host(points);
+  p.all().predicted.from_host(points);
+  p.all().velocity.from_host(velocity);
   std::vector<int> id(points.size());
   std::vector<std::uint8_t> level(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     id[i] = static_cast<int>(i);
     level[i] = static_cast<std::uint8_t>(std::lround(3 * std::log2(points[i].w / finest_support)));
   }
-  p.id.from_host(id);
-  p.level.from_host(level);
+  p.all().id.from_host(id);
+  p.all().level.from_host(level);
   neighbours_stage().run(state);
   density_stage().run(state);
   out.s.resize(points.size());

@@ -271,11 +271,13 @@ SIM_TEST(Gradients, OfALinearFlowAreItsRate) {
   auto& p = fluid.state.particles;
   Array<float> uniform, out(points.size());
   uniform.from_host(std::vector<float>(points.size(), 1));
-  const auto place = p.position.to_host(), speed = p.velocity.to_host();
+  const auto place = p.all().position.to_host(), speed = p.all().velocity.to_host();
   for (const auto reach : {GradientReach::OneSupport, GradientReach::Smoothed, GradientReach::TwoSupports}) {
     TemporalGradients gradients;
-    gradients.run(reach, {p.position.data(), p.velocity.data(), uniform.data(), out.data(), 1e-3f, 1, false},
-                  fluid.state.particle_neighbours(), p.size(), 0.3f);
+    gradients.run(
+        reach,
+        {p.all().position.data(), p.all().velocity.data(), uniform.data(), out.data(), 1e-3f, 1, false},
+        fluid.state.particle_neighbours(), p.size(), 0.3f);
     const auto found = out.to_host();
     int inside = 0;
     for (std::size_t i = 0; i < place.size(); ++i) {

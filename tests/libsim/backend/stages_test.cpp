@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 #include <cmath>
 #include <random>
@@ -17,9 +17,9 @@ FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   state.guards.resize(1);
   state.guards.zero();
   auto& p = state.particles;
-  p.allocate(ColumnSet().set(), static_cast<int>(points.size()));
-  p.position.from_host(points);
-  p.predicted.from_host(points);
+  p.allocate(all_columns(), static_cast<int>(points.size()));
+  p.all().position.from_host(points);
+  p.all().predicted.from_host(points);
   std::vector<int> id(points.size());
   std::vector<std::vector<int>> lists(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -28,9 +28,9 @@ FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
       if (j != i) lists[i].push_back(static_cast<int>(j));
     }
   }
-  p.id.from_host(id);
-  p.level.zero();
-  p.velocity.zero();
+  p.all().id.from_host(id);
+  p.all().level.zero();
+  p.all().velocity.zero();
   state.neighbours.assign(lists);
   return state;
 }
@@ -52,10 +52,10 @@ SIM_TEST(Displacement, KeepsTheCentreOfMassForMixedMasses) {
   for (const bool tensile : {false, true}) {
     auto state = state_of(crowd(120, 11, true), false);
     state.parameters.tensile = tensile ? 0.01f : 0;
-    const auto before = state.particles.predicted.to_host();
+    const auto before = state.particles.all().predicted.to_host();
     density_stage().run(state);
     displacement_stage().run(state);
-    const auto after = state.particles.predicted.to_host();
+    const auto after = state.particles.all().predicted.to_host();
     double moment[3] = {};
     double moved = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -78,11 +78,11 @@ SIM_TEST(Xsph, KeepsMomentumForMixedMasses) {
   std::uniform_real_distribution<float> speed(-2, 2);
   std::vector<Vec4> velocity;
   for (int i = 0; i < 120; ++i) velocity.push_back({speed(random), speed(random), speed(random), 0});
-  state.particles.velocity.from_host(velocity);
+  state.particles.all().velocity.from_host(velocity);
   density_stage().run(state);
   xsph_stage().run(state);
-  const auto points = state.particles.position.to_host();
-  const auto after = state.particles.velocity.to_host();
+  const auto points = state.particles.all().position.to_host();
+  const auto after = state.particles.all().velocity.to_host();
   double momentum = 0;
   double exchanged = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
@@ -101,10 +101,10 @@ SIM_TEST(Density, OneLevelAndMixedKernelsAgreeAtOneLevel) {
     density_stage().run(*state);
     displacement_stage().run(*state);
   }
-  const auto a = one.particles.predicted.to_host();
-  const auto b = mixed.particles.predicted.to_host();
-  const auto lambda_a = one.particles.lambda.to_host();
-  const auto lambda_b = mixed.particles.lambda.to_host();
+  const auto a = one.particles.all().predicted.to_host();
+  const auto b = mixed.particles.all().predicted.to_host();
+  const auto lambda_a = one.particles.all().lambda.to_host();
+  const auto lambda_b = mixed.particles.all().lambda.to_host();
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_NEAR(lambda_a[i], lambda_b[i], 1e-4f * std::abs(lambda_a[i]));
     EXPECT_NEAR(a[i].x, b[i].x, 1e-5f);
@@ -121,15 +121,15 @@ SIM_TEST(Density, LatticeHasTheRestDensity) {
   }
   auto state = state_of(points, true);
   density_stage().run(state);
-  EXPECT_NEAR(state.particles.density.to_host()[3 + 3 * 7 + 3 * 49], 1, 1e-5);
+  EXPECT_NEAR(state.particles.all().density.to_host()[3 + 3 * 7 + 3 * 49], 1, 1e-5);
 }
 
 SIM_TEST(Density, LonelyParticleIsLeftAlone) {
   auto state = state_of({{0, 0, 0, 0.3f}}, true);
   density_stage().run(state);
   displacement_stage().run(state);
-  EXPECT_EQ(state.particles.lambda.to_host()[0], 0);
-  EXPECT_EQ(state.particles.predicted.to_host()[0].x, 0);
+  EXPECT_EQ(state.particles.all().lambda.to_host()[0], 0);
+  EXPECT_EQ(state.particles.all().predicted.to_host()[0].x, 0);
 }
 
 SIM_TEST(Walls, MakeUpHalvesQuartersAndCorners) {
@@ -186,11 +186,11 @@ SIM_TEST(Schedule, LeavesOutWhatNothingCallsFor) {
   const auto without = compile_schedule(demand);
   EXPECT_EQ(without.explanation.find("substep end  xsph"), std::string::npos);
   EXPECT_NE(without.explanation.find("-  xsph"), std::string::npos);
-  EXPECT_FALSE(without.columns.test(static_cast<std::size_t>(Column::VelocityNext)));
+  EXPECT_FALSE(without.columns.has(Column::VelocityNext));
   demand.parameters.viscosity = 0.1f;
   demand.settling = true;
   const auto with = compile_schedule(demand);
-  EXPECT_TRUE(with.columns.test(static_cast<std::size_t>(Column::VelocityNext)));
+  EXPECT_TRUE(with.columns.has(Column::VelocityNext));
   EXPECT_EQ(with.frame_end.size(), 1u);
   EXPECT_EQ(with.frame_start.size(), 0u);
   EXPECT_NE(with.explanation.find("-  nozzle"), std::string::npos);

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "libsim/render/gbuffer.hpp"
+#include "libsim/view/gbuffer.hpp"
 #include "libsim/render/png.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

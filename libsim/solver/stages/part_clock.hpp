@@ -5,7 +5,6 @@
 #include <chrono>
 
 #include "libsim/exec/space.hpp"
-#include "libsim/simulation.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -29,10 +28,8 @@ class PartClock {
   }
   void end_frame() { enter(Part::count); }
 
-  PartTimes times() const {
-    const auto ms = [&](Part part) { return 1e3 * seconds_[static_cast<std::size_t>(part)]; };
-    return {ms(Part::Saliency), ms(Part::Levels), ms(Part::Activation), ms(Part::Solve)};
-  }
+  /// Of the last frame.
+  double milliseconds(Part part) const { return 1e3 * seconds_[static_cast<std::size_t>(part)]; }
 
  private:
   bool on_ = false;

@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -99,45 +99,54 @@ struct Displace {
 };
 
 template <bool OneLevel, bool Tensile, class Selection>
-void launch(FluidState& state, Selection select) {
-  auto& p = state.particles;
+void launch(FluidState& state, DisplacementView p, Selection select) {
   const auto& k = state.parameters;
   for_each_team("displacement", p.size(),
-                Displace<OneLevel, Tensile, Selection>{
-                    select, p.predicted.data(), p.lambda.data(), p.id.data(), state.neighbours.view(),
-                    state.walls, p.predicted_next.data(), state.guard(), k.rest_density, k.tensile,
-                    k.wall_gap, state.iteration > 0 ? k.momentum : 0.0f});
-  p.predicted.swap(p.predicted_next);
+                Displace<OneLevel, Tensile, Selection>{.select = select,
+                                                       .predicted = p.predicted(),
+                                                       .lambda = p.lambda(),
+                                                       .id = p.id(),
+                                                       .neighbours = state.neighbours.view(),
+                                                       .walls = state.walls,
+                                                       .next = p.predicted_next(),
+                                                       .guards = state.guard(),
+                                                       .rest_density = k.rest_density,
+                                                       .tensile = k.tensile,
+                                                       .wall_gap = k.wall_gap,
+                                                       .momentum = state.iteration > 0 ? k.momentum : 0.0f});
+  p.swap<Column::Predicted, Column::PredictedNext>();
 }
 
 template <bool OneLevel, class Selection>
-void launch(FluidState& state, Selection select) {
-  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, select)
-                               : launch<OneLevel, false>(state, select);
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, p, select)
+                               : launch<OneLevel, false>(state, p, select);
 }
 
 template <class Selection>
-void launch(FluidState& state, Selection select) {
-  state.one_level ? launch<true>(state, select) : launch<false>(state, select);
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
 }
 
-void run(FluidState& state) {
-  state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
-}
+void run(FluidState& state, DisplacementView p) { displace(state, p); }
 
 }  // namespace
 
-void displace(FluidState& state, BesideFresh<AllParticles> fresh) { launch<false>(state, fresh); }
-void displace(FluidState& state, BesideFresh<ActiveParticles> fresh) { launch<false>(state, fresh); }
+void displace(FluidState& state, DisplacementView p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+void displace(FluidState& state, DisplacementView p, BesideFresh<AllParticles> fresh) {
+  launch<false>(state, p, fresh);
+}
+void displace(FluidState& state, DisplacementView p, BesideFresh<ActiveParticles> fresh) {
+  launch<false>(state, p, fresh);
+}
 
 Stage displacement_stage() {
-  return {"displacement",
-          "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
-          Phase::Iteration,
-          columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
-          columns(Column::PredictedNext, Column::Predicted),
-          [](const Demand&) -> std::string { return "every method keeps the density"; },
-          run};
+  return stage_of<run>({.name = "displacement",
+                        .source = "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
+                        .phase = Phase::Iteration,
+                        .called_for = keeps_density});
 }
 
 }  // namespace sim::SIM_BACKEND

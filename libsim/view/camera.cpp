@@ -1,4 +1,4 @@
-#include "libsim/render/camera.hpp"
+#include "libsim/view/camera.hpp"
 
 #include <cmath>
 #include <numbers>

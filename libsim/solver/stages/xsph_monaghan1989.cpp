@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -84,61 +84,59 @@ struct Xsph {
   }
 };
 
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
+                           columns(Column::VelocityNext, Column::Velocity)>;
+
 template <bool OneLevel, class Filter, class Selection>
-void launch(FluidState& state, Filter filter, Selection select) {
-  auto& p = state.particles;
+void launch(FluidState& state, Columns p, Filter filter, Selection select) {
   for_each_team("xsph", p.size(),
-                Xsph<OneLevel, Filter, Selection>{
-                    select, p.position.data(), p.velocity.data(), p.density.data(), state.neighbours.view(),
-                    p.velocity_next.data(), state.parameters.viscosity, filter});
-  p.velocity.swap(p.velocity_next);
+                Xsph<OneLevel, Filter, Selection>{.select = select,
+                                                  .position = p.position(),
+                                                  .velocity = p.velocity(),
+                                                  .density = p.density(),
+                                                  .neighbours = state.neighbours.view(),
+                                                  .next = p.velocity_next(),
+                                                  .viscosity = state.parameters.viscosity,
+                                                  .filter = filter});
+  p.swap<Column::Velocity, Column::VelocityNext>();
 }
 
 template <bool OneLevel, class Filter>
-void launch(FluidState& state, Filter filter) {
-  state.all_active ? launch<OneLevel>(state, filter, AllParticles{})
-                   : launch<OneLevel>(state, filter, state.active());
+void launch(FluidState& state, Columns p, Filter filter) {
+  state.all_active ? launch<OneLevel>(state, p, filter, AllParticles{})
+                   : launch<OneLevel>(state, p, filter, state.active());
+}
+
+void run(FluidState& state, Columns p) {
+  state.one_level ? launch<true>(state, p, NoFilter{}) : launch<false>(state, p, NoFilter{});
+}
+
+using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours,
+                                      Column::Ease, Column::PredictedNext),
+                              columns(Column::VelocityNext, Column::Velocity)>;
+
+void run_levels(FluidState& state, LevelsView p) {
+  launch<false>(
+      state, p,
+      KickFilter{.kick = p.predicted_next(), .ease = p.ease(), .strength = state.levels.rules.kick_filter});
 }
 
 }  // namespace
 
 Stage xsph_stage() {
-  return {"xsph",
-          "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
-          Phase::SubstepEnd,
-          columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
-          columns(Column::VelocityNext, Column::Velocity),
-          [](const Demand& demand) -> std::string {
-            return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
-          },
-          [](FluidState& state) {
-            state.one_level ? launch<true>(state, NoFilter{}) : launch<false>(state, NoFilter{});
-          }};
+  return stage_of<run>({.name = "xsph",
+                        .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
+                        .phase = Phase::SubstepEnd,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
+                        }});
 }
 
 Stage xsph_of_levels_stage() {
-  return {
-      "xsph of levels",
-      "Monaghan 1989, with a filter of kicks round fresh particles",
-      Phase::SubstepEnd,
-      columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours, Column::Ease,
-              Column::PredictedNext),
-      columns(Column::VelocityNext, Column::Velocity),
-      [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      [](FluidState& state) {
-        const auto& p = state.particles;
-        launch<false>(state,
-                      KickFilter{p.predicted_next.data(), p.ease.data(), state.levels.rules.kick_filter});
-      }};
-}
-
-std::vector<Stage> all_stages() {
-  return {nozzle_stage(),         frame_neighbours_stage(), gaze_targets_stage(),   saliency_stage(),
-          saliency_parts_stage(), forced_targets_stage(),   graded_targets_stage(), split_and_merge_stage(),
-          activation_stage(),     predict_stage(),          neighbours_stage(),     ease_stage(),
-          parting_stage(),        coarse_pressure_stage(),  density_stage(),        eased_constraint_stage(),
-          displacement_stage(),   velocity_stage(),         xsph_stage(),           xsph_of_levels_stage(),
-          velocity_grid_stage(),  settling_stage()};
+  return stage_of<run_levels>({.name = "xsph of levels",
+                               .source = "Monaghan 1989, with a filter of kicks round fresh particles",
+                               .phase = Phase::SubstepEnd,
+                               .called_for = if_levels});
 }
 
 }  // namespace sim::SIM_BACKEND

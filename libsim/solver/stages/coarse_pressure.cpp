@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -147,43 +147,55 @@ float cell_edge(const FluidState& state) {
   return fmaxf(finest, fminf(wish, across));
 }
 
+using Columns = ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),
+                           columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
+                           columns(Column::Ease)>;
+
 template <class Selection>
-void launch(FluidState& state, Selection select) {
-  auto& p = state.particles;
+void launch(FluidState& state, Columns p, Selection select) {
   auto& coarse = state.coarse;
   // While the water settles at one level, nobody has written the shares.
-  const float* ease = p.has(Column::Ease) && !state.one_level ? p.ease.data() : nullptr;
-  density_stage().run(state);
+  const float* ease = state.one_level ? nullptr : p.ease();
+  constrain_density(state, p);
   coarse.fit(state.domain, cell_edge(state));
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),
-           Gather<Selection>{select, p.predicted.data(), p.density.data(), ease, coarse.frame, grid.block,
-                             coarse.sums.data(), mass_of(state.lightest_support, 1)});
+           Gather<Selection>{.select = select,
+                             .predicted = p.predicted(),
+                             .density = p.density(),
+                             .ease = ease,
+                             .frame = coarse.frame,
+                             .block = grid.block,
+                             .sums = coarse.sums.data(),
+                             .unit_volume = mass_of(state.lightest_support, 1)});
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);
   for_each("shift", p.size(),
-           Shift<Selection>{select, p.predicted.data(), p.predicted_next.data(), coarse.frame, grid,
-                            state.walls, state.guard(), state.parameters.wall_gap});
+           Shift<Selection>{.select = select,
+                            .predicted = p.predicted(),
+                            .next = p.predicted_next(),
+                            .frame = coarse.frame,
+                            .grid = grid,
+                            .walls = state.walls,
+                            .guards = state.guard(),
+                            .wall_gap = state.parameters.wall_gap});
 }
 
-void run(FluidState& state) {
-  state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
+void run(FluidState& state, Columns p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
 
 }  // namespace
 
 Stage coarse_pressure_stage() {
-  return {"coarse pressure",
-          "multigrid on the fluid's cells",
-          Phase::Substep,
-          columns(Column::Predicted, Column::Neighbours, Column::Id),
-          columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
-          [](const Demand& demand) -> std::string {
-            return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0" : "";
-          },
-          run};
+  return stage_of<run>({.name = "coarse pressure",
+                        .source = "multigrid on the fluid's cells",
+                        .phase = Phase::Substep,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0" : "";
+                        }});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -2,11 +2,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
+
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                           columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                           columns(Column::Target)>;
 
 /// Places particles in the layers whose turn comes within the frame. A layer that passes the mouth `lead`
 /// seconds after the frame's start begins it u lead - g lead^2 / 2 above the mouth at the speed u - g lead.
@@ -38,24 +42,23 @@ struct Pour {
   }
 };
 
-void pour(FluidState& state, const Nozzle& nozzle, const LayersDue& due, std::int64_t number, int sites,
-          int layers, const int* which, int first) {
-  auto& p = state.particles;
+void pour(const FluidState& state, Columns p, const Nozzle& nozzle, const LayersDue& due, std::int64_t number,
+          int sites, int layers, const int* which, int first) {
   const auto f = [](double value) { return static_cast<float>(value); };
   const double turns = static_cast<double>(number) / (2 * std::numbers::pi);
   for_each("pour", layers * sites,
-           Pour{which,
-                first,
-                p.position.data(),
-                p.velocity.data(),
-                {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
-                f(nozzle.diameter_m / 2),
-                f(nozzle.speed_m_s),
-                state.parameters.gravity,
-                sites,
-                due.first_time_s,
-                due.interval_s,
-                turns - std::floor(turns)});
+           Pour{.which = which,
+                .first = first,
+                .position = p.position(),
+                .velocity = p.velocity(),
+                .mouth = {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
+                .radius = f(nozzle.diameter_m / 2),
+                .speed = f(nozzle.speed_m_s),
+                .gravity = state.parameters.gravity,
+                .sites = sites,
+                .first_lead = due.first_time_s,
+                .interval = due.interval_s,
+                .first_turn = turns - std::floor(turns)});
 }
 
 /// Adds up the mass that wants each level within a sphere.
@@ -75,19 +78,18 @@ struct CountTargets {
 
 /// Median target, by mass, of the water within one diameter of the mouth; where there is none, the level of
 /// before.
-int median_target(FluidState& state, const Nozzle& nozzle) {
-  auto& p = state.particles;
+int median_target(FluidState& state, Columns p, const Nozzle& nozzle) {
   const auto f = [](double value) { return static_cast<float>(value); };
   Array<int>& mass = state.jets.mass_by_target;
   mass.resize(4);
   mass.zero();
   for_each("targets at nozzle", p.size(),
-           CountTargets{p.position.data(),
-                        p.level.data(),
-                        p.target.data(),
-                        {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
-                        f(nozzle.diameter_m),
-                        mass.data()});
+           CountTargets{.position = p.position(),
+                        .level = p.level(),
+                        .target = p.target(),
+                        .centre = {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
+                        .radius = f(nozzle.diameter_m),
+                        .mass = mass.data()});
   const auto sums = mass.to_host();
   const std::int64_t all = std::int64_t{sums[0]} + sums[1] + sums[2] + sums[3];
   if (all == 0) return state.jets.level;
@@ -97,27 +99,26 @@ int median_target(FluidState& state, const Nozzle& nozzle) {
 }
 
 /// One nozzle's layers of this frame.
-void run_nozzle(FluidState& state, const Nozzle& nozzle, Poured& before) {
+void run_nozzle(FluidState& state, Columns p, const Nozzle& nozzle, Poured& before) {
   auto& jets = state.jets;
   const double frame_dt = jets.frame_dt_s;
   const auto spacing = [&] { return std::cbrt(1 << jets.level) * jets.finest_spacing_m; };
   if (layers_due(nozzle, spacing(), before, jets.frame, frame_dt).count == 0) return;
-  if (jets.by_target) jets.level = median_target(state, nozzle);
+  if (jets.by_target) jets.level = median_target(state, p, nozzle);
   const LayersDue due = layers_due(nozzle, spacing(), before, jets.frame, frame_dt);
   const JetLayer layer = jet_layer(nozzle, spacing());
-  const int found = jets.columns.find(state.particles, jets.corners);
+  const int found = jets.columns.find(p, jets.corners);
   int layers = 0;
   if (state.one_level) {
     layers = std::min(due.count, found / layer.sites);
-    pour(state, nozzle, due, before.layers, layer.sites, layers, jets.columns.lowest_first(), 0);
+    pour(state, p, nozzle, due, before.layers, layer.sites, layers, jets.columns.lowest_first(), 0);
     jets.taken += static_cast<std::int64_t>(layers) * layer.sites;
   } else {
-    const int n = state.particles.size();
+    const int n = p.size();
     layers = jets.exchange.run(state.particles, state.supports, jets.columns.lowest_first(), found,
                                layer.sites, due.count, jets.level, jets.reservoir);
-    pour(state, nozzle, due, before.layers, layer.sites, layers, nullptr,
-         state.particles.size() - layers * layer.sites);
-    jets.taken += n + layers * layer.sites - state.particles.size();
+    pour(state, p, nozzle, due, before.layers, layer.sites, layers, nullptr, p.size() - layers * layer.sites);
+    jets.taken += n + layers * layer.sites - p.size();
   }
   jets.made += static_cast<std::int64_t>(layers) * layer.sites;
   state.lists_hold = state.lists_hold && layers == 0;
@@ -128,29 +129,26 @@ void run_nozzle(FluidState& state, const Nozzle& nozzle, Poured& before) {
   before.layers += due.count;
 }
 
-void run(FluidState& state) {
+void run(FluidState& state, Columns p) {
   auto& jets = state.jets;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
     // At one level the timetable is a pure function of the frame.
     if (!jets.by_target)
       jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
                                      jets.frame, jets.frame_dt_s);
-    run_nozzle(state, jets.nozzles[k], jets.before[k]);
+    run_nozzle(state, p, jets.nozzles[k], jets.before[k]);
   }
 }
 
 }  // namespace
 
 Stage nozzle_stage() {
-  return {"nozzle",
-          "scenes: Vogel layers of the lowest corner water",
-          Phase::FrameStart,
-          columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-          columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-          [](const Demand& demand) -> std::string {
-            return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
-          },
-          run};
+  return stage_of<run>({.name = "nozzle",
+                        .source = "scenes: Vogel layers of the lowest corner water",
+                        .phase = Phase::FrameStart,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
+                        }});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -83,45 +83,55 @@ struct Density {
 };
 
 template <bool OneLevel, bool OthersYield, class Selection>
-void launch(FluidState& state, Selection select) {
-  auto& p = state.particles;
-  for_each_team(
-      "density", p.size(),
-      Density<OneLevel, OthersYield, Selection>{select, p.predicted.data(), state.neighbours.view(),
-                                                state.walls, p.lambda.data(), p.density.data(), state.guard(),
-                                                state.parameters.rest_density, state.parameters.relaxation});
+void launch(FluidState& state, DensityView p, Selection select) {
+  for_each_team("density", p.size(),
+                Density<OneLevel, OthersYield, Selection>{.select = select,
+                                                          .predicted = p.predicted(),
+                                                          .neighbours = state.neighbours.view(),
+                                                          .walls = state.walls,
+                                                          .lambda = p.lambda(),
+                                                          .density = p.density(),
+                                                          .guards = state.guard(),
+                                                          .rest_density = state.parameters.rest_density,
+                                                          .relaxation = state.parameters.relaxation});
 }
 
 template <bool OthersYield, class Selection>
-void launch(FluidState& state, Selection select) {
-  state.one_level ? launch<true, OthersYield>(state, select) : launch<false, OthersYield>(state, select);
+void launch(FluidState& state, DensityView p, Selection select) {
+  state.one_level ? launch<true, OthersYield>(state, p, select)
+                  : launch<false, OthersYield>(state, p, select);
 }
 
-void run(FluidState& state) {
-  if (state.all_active) {
-    launch<true>(state, AllParticles{});
-  } else if (state.activation.rules.others_yield) {
-    launch<true>(state, state.active());
-  } else {
-    launch<false>(state, state.active());
-  }
-}
+void run(FluidState& state, DensityView p) { constrain_density(state, p); }
 
 }  // namespace
 
-void measure_density(FluidState& state, EverySlot everyone) { launch<true>(state, everyone); }
+void constrain_density(FluidState& state, DensityView p) {
+  if (state.all_active) {
+    launch<true>(state, p, AllParticles{});
+  } else if (state.activation.rules.others_yield) {
+    launch<true>(state, p, state.active());
+  } else {
+    launch<false>(state, p, state.active());
+  }
+}
 
-void measure_density(FluidState& state, BesideFresh<AllParticles> fresh) { launch<true>(state, fresh); }
-void measure_density(FluidState& state, BesideFresh<ActiveParticles> fresh) { launch<true>(state, fresh); }
+void constrain_density(FluidState& state, DensityView p, EverySlot everyone) {
+  launch<true>(state, p, everyone);
+}
+
+void constrain_density(FluidState& state, DensityView p, BesideFresh<AllParticles> fresh) {
+  launch<true>(state, p, fresh);
+}
+void constrain_density(FluidState& state, DensityView p, BesideFresh<ActiveParticles> fresh) {
+  launch<true>(state, p, fresh);
+}
 
 Stage density_stage() {
-  return {"density constraint",
-          "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",
-          Phase::Iteration,
-          columns(Column::Predicted, Column::Neighbours),
-          columns(Column::Lambda, Column::Density),
-          [](const Demand&) -> std::string { return "every method keeps the density"; },
-          run};
+  return stage_of<run>({.name = "density constraint",
+                        .source = "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",
+                        .phase = Phase::Iteration,
+                        .called_for = keeps_density});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,4 +1,4 @@
-#include "libsim/render/gbuffer.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 #include <cstring>
 #include <string>

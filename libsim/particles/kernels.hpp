@@ -1,11 +1,12 @@
 #pragma once
-/// Smoothing kernels and walls of the solver: density by poly6, gradients by spiky (Mueller et al. 2003;
+/// Smoothing kernels of the solver: density by poly6, gradients by spiky (Mueller et al. 2003;
 /// Macklin and Mueller 2013), evaluated once a pair with hbar = (h_i + h_j) / 2 so that W_ij = W_ji and pair
 /// terms cancel exactly.
 
 #include <cstdint>
 
 #include "libsim/exec/vec.hpp"
+#include "libsim/particles/random.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -71,88 +72,15 @@ SIM_FN float mass_of(float h, float rest_density) { return rest_density * 0.125f
 /// A unit vector that two coincident particles agree on with opposite signs.
 SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   const bool swapped = id_i > id_j;
-  std::uint32_t a = static_cast<std::uint32_t>(swapped ? id_j : id_i);
-  std::uint32_t b = static_cast<std::uint32_t>(swapped ? id_i : id_j);
-  // Two rounds of a 32-bit mixer (lowbias32 constants, C. Wellons).
-  std::uint32_t x = a * 0x9e3779b9u + b;
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  x ^= x >> 16;
+  const auto a = static_cast<std::uint32_t>(swapped ? id_j : id_i);
+  const auto b = static_cast<std::uint32_t>(swapped ? id_i : id_j);
+  const std::uint32_t x = random_bits(a, b);
   const float y = static_cast<float>(x & 0xffff) / 32768.0f - 1;
   const float angle = static_cast<float>(x >> 16) * (2 * pi / 65536.0f);
   const float across = sqrtf(fmaxf(1 - y * y, 0.0f));
   const float sign = swapped ? -1.0f : 1.0f;
   return {sign * across * cosf(angle), sign * y, sign * across * sinf(angle)};
 }
-
-/// Half-space dot(normal, x) >= offset that holds the fluid.
-struct Plane {
-  Vec3 normal;
-  float offset;
-};
-
-/// Walls of a tank as signed distances.
-struct Walls {
-  static constexpr int most = 8;
-  Plane planes[most];
-  int count;
-
-  /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
-  /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
-  /// is missing. f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for
-  /// spiky; both are exact.
-  SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
-    float present = 1;
-    gradient = {0, 0, 0};
-    for (int k = 0; k < count; ++k) {
-      const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
-      if (q >= 1) continue;
-      const float inside = fmaxf(q, 0.0f);
-      const float kept = 1 - behind(inside);
-      // Product rule; the wall's share falls along its normal.
-      gradient = kept * gradient - (present * slope(inside) / h) * planes[k].normal;
-      present *= kept;
-    }
-    return 1 - present;
-  }
-  SIM_FN static float behind(float q) {
-    const float q2 = q * q;
-    const float integral = q * (1 + q2 * (-4.0f / 3 + q2 * (6.0f / 5 + q2 * (-4.0f / 7 + q2 / 9))));
-    return 0.5f - 315.0f / 256 * integral;
-  }
-  SIM_FN static float slope(float q) {
-    const float u = 1 - q;
-    const float u4 = u * u * u * u;
-    return 30 * u4 * (0.25f - 0.2f * u);
-  }
-
-  /// Signed distance to the nearest wall's plane, m.
-  SIM_FN float nearest(Vec3 x) const {
-    float least = 3e38f;
-    for (int k = 0; k < count; ++k) least = fminf(least, dot(planes[k].normal, x) - planes[k].offset);
-    return least;
-  }
-
-  /// True where x lies at least `gap` inside every wall.
-  SIM_FN bool holds(Vec3 x, float gap = 0) const {
-    for (int k = 0; k < count; ++k) {
-      if (dot(planes[k].normal, x) < planes[k].offset + gap) return false;
-    }
-    return true;
-  }
-
-  /// Moves x to at least `gap` inside every wall; true when it had to.
-  SIM_FN bool project(Vec3& x, float gap) const {
-    bool moved = false;
-    for (int k = 0; k < count; ++k) {
-      const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
-      if (depth <= 0) continue;
-      x += depth * planes[k].normal;
-      moved = true;
-    }
-    return moved;
-  }
-};
 
 /// For loops over neighbours: several lanes at once on the CPU, plain code on the GPU.
 #ifdef SIM_CUDA

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libsim/exec/gl_buffer_ref.hpp"
-#include "libsim/render/camera.hpp"
+#include "libsim/view/camera.hpp"
 
 namespace sim {
 

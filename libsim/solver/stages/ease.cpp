@@ -1,4 +1,4 @@
-#include "libsim/stages/stages.hpp"
+#include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -41,41 +41,41 @@ struct Apply {
   SIM_FN void operator()(int i) const { lambda[i] *= ease[i]; }
 };
 
+using Columns =
+    ColumnView<columns(Column::Predicted, Column::Age, Column::Neighbours), columns(Column::Ease)>;
+
 template <class Selection>
-void launch(FluidState& state, Selection select) {
-  auto& p = state.particles;
+void launch(FluidState& state, Columns p, Selection select) {
   for_each("ease", p.size(),
-           Ease<Selection>{select, p.predicted.data(), p.age.data(), state.neighbours.view(), p.ease.data(),
-                           state.levels.rules});
+           Ease<Selection>{.select = select,
+                           .predicted = p.predicted(),
+                           .age = p.age(),
+                           .neighbours = state.neighbours.view(),
+                           .ease = p.ease(),
+                           .rules = state.levels.rules});
 }
+
+void run(FluidState& state, Columns p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+
+using ConstraintView = ColumnView<columns(Column::Lambda, Column::Ease), columns(Column::Lambda)>;
+
+void ease_constraint(FluidState&, ConstraintView p) {
+  for_each("ease constraint", p.size(), Apply{p.lambda(), p.ease()});
+}
+
+constexpr const char* source = "blending of the constraint, after Orthmann and Kolb 2012";
 
 }  // namespace
 
 Stage ease_stage() {
-  return {
-      "ease",
-      "blending of the constraint, after Orthmann and Kolb 2012",
-      Phase::Substep,
-      columns(Column::Predicted, Column::Age, Column::Neighbours),
-      columns(Column::Ease),
-      [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      [](FluidState& state) {
-        state.all_active ? launch(state, AllParticles{}) : launch(state, state.active());
-      }};
+  return stage_of<run>({.name = "ease", .source = source, .phase = Phase::Substep, .called_for = if_levels});
 }
 
 Stage eased_constraint_stage() {
-  return {
-      "eased constraint",
-      "blending of the constraint, after Orthmann and Kolb 2012",
-      Phase::Iteration,
-      columns(Column::Lambda, Column::Ease),
-      columns(Column::Lambda),
-      [](const Demand& demand) -> std::string { return demand.levels ? "particles split and merge" : ""; },
-      [](FluidState& state) {
-        auto& p = state.particles;
-        for_each("ease constraint", p.size(), Apply{p.lambda.data(), p.ease.data()});
-      }};
+  return stage_of<ease_constraint>(
+      {.name = "eased constraint", .source = source, .phase = Phase::Iteration, .called_for = if_levels});
 }
 
 }  // namespace sim::SIM_BACKEND

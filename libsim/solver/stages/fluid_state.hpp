@@ -5,14 +5,15 @@
 #include "libsim/flow/jets.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/particles/kernels.hpp"
+#include "libsim/particles/walls.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/saliency/saliency.hpp"
-#include "libsim/solver/part_clock.hpp"
-#include "libsim/stages/kernels.hpp"
+#include "libsim/solver/stages/part_clock.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Numbers of the solver. Defaults are measured ones; libsim/README.md says how.
+/// Numbers of the solver. Defaults are measured ones; docs/solver_notes.md says how.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
   float gravity = 9.81f;      ///< along -y, m/s2
@@ -72,13 +73,13 @@ struct FluidState {
 
   /// Who was solved in the last frame; nullptr when everyone was.
   const std::uint8_t* last_active() const {
-    return activation.columns_set && !activation.all_marked ? particles.active.data() : nullptr;
+    return activation.columns_set && !activation.all_marked ? particles.all().active.data() : nullptr;
   }
   ParticleNeighbours particle_neighbours() const {
     return {neighbours.view(), lists_by_slot ? activation.slot_of.data() : nullptr};
   }
   ActiveParticles active() {
-    return {activation.slots.data(), particles.active.data(), activation.rules.pressed};
+    return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
   Guards* guard() { return guards.data(); }
 };

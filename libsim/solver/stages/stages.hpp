@@ -1,39 +1,11 @@
 #pragma once
-/// The stages of the solver, one source file each. A stage is data: what it is called, which columns it reads
-/// and writes, when a schedule needs it, and the function that launches it.
+/// The stages of the solver, one source file each, and what they lend to each other.
 
-#include <string>
 #include <vector>
 
-#include "libsim/stages/fluid_state.hpp"
+#include "libsim/solver/stages/stage.hpp"
 
 namespace sim::SIM_BACKEND {
-
-/// What a scene, a method and the wanted outputs call for.
-struct Demand {
-  SolverParameters parameters;
-  bool nozzles = false;         ///< the scene has one
-  bool settling = false;        ///< the gate is closed and the water comes to rest
-  bool levels = false;          ///< particles split and merge
-  bool forced_targets = false;  ///< a test gives their targets
-  bool gaze_targets = false;    ///< their targets follow the gaze alone
-  bool saliency = false;        ///< their targets follow saliency
-  bool saliency_parts = false;  ///< an output asks for what saliency is made of
-  bool activation = false;      ///< temporal acceleration chooses who is solved
-};
-
-enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
-
-struct Stage {
-  const char* name;
-  const char* source;  ///< paper and equation
-  Phase phase;
-  ColumnSet reads, writes;
-  /// Empty when nothing calls for the stage; otherwise the reason.
-  std::string (*called_for)(const Demand&);
-  void (*run)(FluidState&);
-  Part part = Part::Solve;
-};
 
 /// Moves the lowest water of the corner columns into the jets.
 Stage nozzle_stage();
@@ -81,14 +53,35 @@ Stage activation_stage();
 /// Velocity and energy grids; what was not solved inherits from them.
 Stage velocity_grid_stage();
 
-/// Densities at the predicted positions outside the schedule, over lists that belong to slots.
-void measure_density(FluidState& state, EverySlot everyone);
+// Passes that others borrow. Each says which columns it touches; a caller that does not declare them does not
+// compile.
+
+using NeighboursView =
+    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id, Column::Level),
+               columns(Column::Neighbours)>;
+/// Sorts the particles by the grid's cells at their predicted positions, and lists everyone's neighbours
+/// there.
+void find_neighbours(FluidState& state, NeighboursView particles);
+
+using DensityView =
+    ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
+/// Densities and multipliers at the predicted positions of those whom the frame solves.
+void constrain_density(FluidState& state, DensityView particles);
+/// The same of everyone outside the schedule, over lists that belong to slots.
+void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
+
+using DisplacementView =
+    ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
+               columns(Column::PredictedNext, Column::Predicted)>;
+/// Moves those whom the frame solves by their multipliers.
+void displace(FluidState& state, DisplacementView particles);
+
 /// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
 /// place in both buffers.
-void measure_density(FluidState& state, BesideFresh<AllParticles> fresh);
-void measure_density(FluidState& state, BesideFresh<ActiveParticles> fresh);
-void displace(FluidState& state, BesideFresh<AllParticles> fresh);
-void displace(FluidState& state, BesideFresh<ActiveParticles> fresh);
+void constrain_density(FluidState& state, DensityView particles, BesideFresh<AllParticles> fresh);
+void constrain_density(FluidState& state, DensityView particles, BesideFresh<ActiveParticles> fresh);
+void displace(FluidState& state, DisplacementView particles, BesideFresh<AllParticles> fresh);
+void displace(FluidState& state, DisplacementView particles, BesideFresh<ActiveParticles> fresh);
 
 /// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
 /// columns and fills the given ones in the new order.

@@ -1,0 +1,85 @@
+#pragma once
+/// What merging a pair and merging through a relay have in common.
+
+#include "libsim/levels/split_merge.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Does a particle at `other` keep `share` of the sum of radii from one of support h at `centre`?
+SIM_FN bool clear_of(Vec4 other, Vec3 centre, float h, float share) {
+  const Vec3 offset = xyz(other) - centre;
+  const float least = share * (other.w + h) / 4;
+  return dot(offset, offset) >= least * least;
+}
+
+/// Would a merged particle of support h at `centre` overlap a coarser one among the neighbours of particle i?
+/// (Fig. 5 d2) `level`: of its members.
+SIM_FN bool overlaps_coarser(const Vec4* position, const std::uint8_t* levels,
+                             const ParticleNeighbours& neighbours, int i, int level, Vec3 centre, float h,
+                             float share) {
+  for (int k = 0; k < neighbours.size(i); ++k) {
+    const int other = neighbours(i, k);
+    if (levels[other] > level && !clear_of(position[other], centre, h, share)) return true;
+  }
+  return false;
+}
+
+/// Makes particles of two: mass, momentum and centre of mass stay, kinetic energy can only fall.
+struct Joining {
+  Vec4* position;
+  Vec4* velocity;
+  std::uint8_t* level;
+  std::uint8_t* history;
+  std::uint8_t* age;
+  std::uint8_t* waiting;
+  std::uint8_t* gone;
+  LevelCounts* counts;
+  LevelSupports supports;
+  float rest_density;
+
+  SIM_FN Vec3 mean(const Vec4* values, int a, int b) const {
+    return 0.5f * (xyz(values[a]) + xyz(values[b]));
+  }
+  /// Kinetic energy that is lost when i meets an equal mass of j, J.
+  SIM_FN float loss(int j, int i) const {
+    const Vec3 difference = xyz(velocity[j]) - xyz(velocity[i]);
+    return 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
+  }
+  SIM_FN void become(int i, Vec3 x, Vec3 v, float h, int now) const {
+    position[i] = with_w(x, h);
+    velocity[i] = with_w(v, 0);
+    level[i] = static_cast<std::uint8_t>(now);
+    history[i] = steady_history(now);
+    age[i] = 0;
+    waiting[i] = 0;
+  }
+  /// One particle fewer, for so much energy.
+  SIM_FN void leave(int i, float lost) const {
+    gone[i] = 1;
+    atomic_add(&counts->merges, std::uint64_t{1});
+    atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
+  }
+  /// Two of one level meet in the middle.
+  SIM_FN void join(int kept, int left) const {
+    const float lost = loss(left, kept);
+    const int coarser = level[kept] + 1;
+    become(kept, mean(position, kept, left), mean(velocity, kept, left), supports.h[coarser], coarser);
+    leave(left, lost);
+  }
+};
+
+inline Joining joining(LevelState& levels, const LevelFluid& fluid) {
+  const LevelView& p = fluid.particles;
+  return {.position = p.position(),
+          .velocity = p.velocity(),
+          .level = p.level(),
+          .history = p.history(),
+          .age = p.age(),
+          .waiting = p.waiting(),
+          .gone = levels.gone.data(),
+          .counts = levels.counts.data(),
+          .supports = fluid.supports,
+          .rest_density = fluid.rest_density};
+}
+
+}  // namespace sim::SIM_BACKEND

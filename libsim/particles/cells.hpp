@@ -1,0 +1,31 @@
+#pragma once
+/// Regular cells over the tank, on which particles are summed.
+
+#include "libsim/exec/vec.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Cells of one edge from a low corner.
+struct CellFrame {
+  Vec3 low{};
+  float edge = 1;
+};
+
+/// A box that holds the whole tank.
+struct Domain {
+  Vec3 low{}, high{};
+};
+
+/// Cells of one grid, x fastest. Beside and below it are walls, above it is air.
+struct CellBlock {
+  int nx = 0, ny = 0, nz = 0;
+
+  SIM_FN int size() const { return nx * ny * nz; }
+  SIM_FN bool holds(int x, int y, int z) const {
+    return x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz;
+  }
+  SIM_FN int index(int x, int y, int z) const { return (z * ny + y) * nx + x; }
+  SIM_FN CellBlock halved() const { return {(nx + 1) / 2, (ny + 1) / 2, (nz + 1) / 2}; }
+};
+
+}  // namespace sim::SIM_BACKEND

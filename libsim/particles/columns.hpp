@@ -1,0 +1,102 @@
+#pragma once
+/// The columns that a particle can have: one table, and sets of them.
+
+#include <bit>
+#include <cstdint>
+
+#include "libsim/exec/vec.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// f_a, f_m, f_T and F (ViP-Fluid Eq. 1-6) of the eye with the larger F.
+struct SaliencyParts {
+  float acuity, manifold, temporal, combined;
+};
+
+/// How long a column's values live.
+enum class Life {
+  Core,    ///< with their particle, in every run
+  Kept,    ///< with their particle, where a stage declares them
+  Scratch  ///< within a substep
+};
+
+// The table, a row each: COLUMN(enumerator, member, type of a value, how long it lives), in the order in
+// which schedules list them. LIST is the neighbour list (neighbors/neighbour_list.hpp), which passes declare
+// like a column.
+//
+//   Position        x, y, z in m and the support radius h in m (h = 2 d = 4 r; mass = rho_0 d^3)
+//   Velocity        m/s, w unused
+//   Id              unique, kept for life
+//   Level           mass level; mass = 2^level m_*
+//   Predicted       position at the end of the substep as far as it is solved, and h
+//   PredictedNext   where a projection writes, then swapped with Predicted; later the substep's kicks
+//   VelocityNext    where a velocity filter writes, then swapped with Velocity
+//   Lambda          change of the density constraint's multiplier in this projection, kg m2
+//   Density         rho / rho_0, walls included
+//   Target          level that the particle should have
+//   History         targets of the last four frames, two bits each, the newest lowest
+//   Saliency        s in [0, 1], ViP-Fluid 3.2.3
+//   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, followed over frames
+//   SaliencyParts   f_a, f_m, f_T and F behind it
+//   Waiting         frames in a row that it has been ready to merge
+//   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
+//   Age             frames since it was made by a split or a merge, 255 and more are one
+//   Active          1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
+//   Rest            why and how long it was not solved (activation/activation.hpp)
+//   StartCell       where in the velocity grid the particle was when the frame began
+#define SIM_COLUMNS(COLUMN, LIST)                                   \
+  COLUMN(Position, position, Vec4, Core)                            \
+  COLUMN(Velocity, velocity, Vec4, Core)                            \
+  COLUMN(Id, id, int, Core)                                         \
+  COLUMN(Level, level, std::uint8_t, Core)                          \
+  COLUMN(Predicted, predicted, Vec4, Core)                          \
+  COLUMN(PredictedNext, predicted_next, Vec4, Scratch)              \
+  COLUMN(VelocityNext, velocity_next, Vec4, Scratch)                \
+  COLUMN(Lambda, lambda, float, Scratch)                            \
+  COLUMN(Density, density, float, Scratch)                          \
+  LIST(Neighbours, neighbours)                                      \
+  COLUMN(Target, target, std::uint8_t, Kept)                        \
+  COLUMN(History, history, std::uint8_t, Kept)                      \
+  COLUMN(Saliency, saliency, float, Kept)                           \
+  COLUMN(Unrest, unrest, float, Kept)                               \
+  COLUMN(SaliencyParts, saliency_parts, struct SaliencyParts, Kept) \
+  COLUMN(Waiting, waiting, std::uint8_t, Kept)                      \
+  COLUMN(Ease, ease, float, Scratch)                                \
+  COLUMN(Age, age, std::uint8_t, Kept)                              \
+  COLUMN(Active, active, std::uint8_t, Kept)                        \
+  COLUMN(Rest, rest, std::uint8_t, Kept)                            \
+  COLUMN(StartCell, start_cell, int, Kept)
+
+enum class Column : unsigned {
+#define SIM_ENUMERATOR(Name, ...) Name,
+  SIM_COLUMNS(SIM_ENUMERATOR, SIM_ENUMERATOR)
+#undef SIM_ENUMERATOR
+      count
+};
+
+const char* column_name(Column column);
+
+/// A set of columns that is known at compile time where a stage declares it.
+struct ColumnSet {
+  std::uint32_t bits = 0;
+
+  constexpr bool has(Column column) const { return bits >> static_cast<unsigned>(column) & 1u; }
+  constexpr bool holds(ColumnSet other) const { return (other.bits & ~bits) == 0; }
+  constexpr bool empty() const { return bits == 0; }
+  /// The first in the table's order; the set is not empty.
+  constexpr Column first() const { return static_cast<Column>(std::countr_zero(bits)); }
+
+  friend constexpr ColumnSet operator|(ColumnSet a, ColumnSet b) { return {a.bits | b.bits}; }
+  /// Those of a that b lacks.
+  friend constexpr ColumnSet operator-(ColumnSet a, ColumnSet b) { return {a.bits & ~b.bits}; }
+  constexpr ColumnSet& operator|=(ColumnSet other) { return *this = *this | other; }
+};
+static_assert(static_cast<unsigned>(Column::count) <= 32);
+
+template <class... Columns>
+constexpr ColumnSet columns(Columns... which) {
+  return {((std::uint32_t{1} << static_cast<unsigned>(which)) | ... | std::uint32_t{0})};
+}
+constexpr ColumnSet all_columns() { return {(std::uint32_t{1} << static_cast<unsigned>(Column::count)) - 1}; }
+
+}  // namespace sim::SIM_BACKEND

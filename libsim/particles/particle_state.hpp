@@ -1,0 +1,27 @@
+#pragma once
+/// Particles as programs see them, on the host.
+
+namespace sim {
+
+/// One particle as the renderer and the bake take it.
+struct RenderParticle {
+  float x_m = 0, y_m = 0, z_m = 0;
+  float radius_m = 0;
+};
+
+/// One particle in full, for tests, checkpoints and comparisons.
+struct ParticleState {
+  int id = 0;
+  int level = 0;
+  float x_m = 0, y_m = 0, z_m = 0;
+  float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
+};
+
+/// A value of each particle, for pictures.
+enum class ParticleField {
+  Speed,         ///< m/s
+  DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included
+  Active         ///< 1 = solved in the last frame, 0 = moved by the velocity grid
+};
+
+}  // namespace sim

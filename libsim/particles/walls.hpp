@@ -1,0 +1,77 @@
+#pragma once
+/// Walls of a tank as particles meet them.
+
+#include "libsim/exec/vec.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Half-space dot(normal, x) >= offset that holds the fluid.
+struct Plane {
+  Vec3 normal;
+  float offset;
+};
+
+/// Walls of a tank as signed distances.
+struct Walls {
+  static constexpr int most = 8;
+  Plane planes[most];
+  int count;
+
+  /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
+  /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
+  /// is missing. f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for
+  /// spiky; both are exact.
+  SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
+    float present = 1;
+    gradient = {0, 0, 0};
+    for (int k = 0; k < count; ++k) {
+      const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
+      if (q >= 1) continue;
+      const float inside = fmaxf(q, 0.0f);
+      const float kept = 1 - behind(inside);
+      // Product rule; the wall's share falls along its normal.
+      gradient = kept * gradient - (present * slope(inside) / h) * planes[k].normal;
+      present *= kept;
+    }
+    return 1 - present;
+  }
+  SIM_FN static float behind(float q) {
+    const float q2 = q * q;
+    const float integral = q * (1 + q2 * (-4.0f / 3 + q2 * (6.0f / 5 + q2 * (-4.0f / 7 + q2 / 9))));
+    return 0.5f - 315.0f / 256 * integral;
+  }
+  SIM_FN static float slope(float q) {
+    const float u = 1 - q;
+    const float u4 = u * u * u * u;
+    return 30 * u4 * (0.25f - 0.2f * u);
+  }
+
+  /// Signed distance to the nearest wall's plane, m.
+  SIM_FN float nearest(Vec3 x) const {
+    float least = 3e38f;
+    for (int k = 0; k < count; ++k) least = fminf(least, dot(planes[k].normal, x) - planes[k].offset);
+    return least;
+  }
+
+  /// True where x lies at least `gap` inside every wall.
+  SIM_FN bool holds(Vec3 x, float gap = 0) const {
+    for (int k = 0; k < count; ++k) {
+      if (dot(planes[k].normal, x) < planes[k].offset + gap) return false;
+    }
+    return true;
+  }
+
+  /// Moves x to at least `gap` inside every wall; true when it had to.
+  SIM_FN bool project(Vec3& x, float gap) const {
+    bool moved = false;
+    for (int k = 0; k < count; ++k) {
+      const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
+      if (depth <= 0) continue;
+      x += depth * planes[k].normal;
+      moved = true;
+    }
+    return moved;
+  }
+};
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,141 @@
+#include "libsim/activation/importance.hpp"
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+constexpr float cell_spacings = 10;  ///< edge of the velocity grid's cells in d_*
+constexpr float range_share = 0.1f;  ///< a frame, of the way to the new percentiles
+
+struct ActivateAll {
+  std::uint8_t* active;
+  std::uint8_t* rest;
+  SIM_FN void operator()(int i) const {
+    active[i] = 1;
+    rest[i] = 0;
+  }
+};
+
+/// Algorithm 3, lines 8 and 9.
+struct Choose {
+  const Vec4* position;
+  const int* id;
+  const std::uint8_t* level;
+  const float* importance;
+  const ValueRange* range;
+  const std::uint8_t* age;  ///< nullptr where nothing splits or merges
+  Vec4* velocity;
+  std::uint8_t* active;
+  std::uint8_t* rest;
+  int* start_cell;
+  float* probability;
+  GridFrame grid, near;
+  const Vec4* mean_velocity;
+  Walls walls;
+  ActivationRules rules;
+  float beta, dt;
+  std::uint32_t frame, seed;
+
+  SIM_FN void operator()(int i) const {
+    const float p = beta + (1 - beta) * range->normalised(importance[i]);
+    probability[i] = p;
+    start_cell[i] = near.cell_of(xyz(position[i]));
+    const int count = rest[i] & rest_count_mask;
+    const bool on = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p || must_be_solved(i);
+    active[i] = on;
+    rest[i] = static_cast<std::uint8_t>((rest[i] & ~rest_count_mask) | count_after(count, on));
+    if (on) return;
+    if (!rules.inherit_change) {
+      const CellCorners corners = grid.corners(xyz(position[i]));
+      velocity[i] = with_w(xyz(sample(mean_velocity, level[i] * grid.cells(), corners)), 0);
+    }
+  }
+
+  /// Counts the frames of a rest, then on from the longest one while the particle must be solved; 0: it may
+  /// rest.
+  SIM_FN int count_after(int count, bool on) const {
+    if (!on) return count < rest_count_mask ? count + 1 : count;
+    if (rules.longest_rest <= 0 || count == 0) return 0;
+    const int next = (count < rules.longest_rest ? rules.longest_rest : count) + 1;
+    return next < rules.longest_rest + rules.least_work ? next : 0;
+  }
+
+  SIM_FN bool must_be_solved(int i) const {
+    if (rest[i] & rest_nowhere) return true;
+    if (rules.longest_rest > 0 && (rest[i] & rest_count_mask) >= rules.longest_rest) return true;
+    if (!rules.keep_fragile_active) return false;
+    const Vec4 x = position[i];
+    if (age && age[i] == 0) return true;
+    const bool fast = length(xyz(velocity[i])) * dt > 0.5f * x.w;
+    return fast || (rest[i] & rest_sparse) || walls.nearest(xyz(x)) < x.w;
+  }
+};
+
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                           columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
+                           columns(Column::Saliency, Column::Age)>;
+
+/// Eq. 12-14 and the range that they are normalised by.
+void measure(FluidState& state, Columns p) {
+  auto& a = state.activation;
+  const float spacing = 0.5f * state.finest_support;
+  const float speed_floor = fmaxf(a.rules.speed_floor * sqrtf(state.parameters.gravity * spacing), 1e-6f);
+  measure_importance(a, p, p.saliency(), speed_floor);
+  if (a.rules.robust_range) {
+    a.range.follow_percentiles(a.importance, p.size(), range_share);
+  } else {
+    a.range.take_extremes(a.importance, p.size());
+  }
+}
+
+void run(FluidState& state, Columns p) {
+  auto& a = state.activation;
+  const int n = p.size();
+  a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
+  a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
+  state.all_active = a.beta >= 1 || n == 0;
+  if (!a.columns_set || (state.all_active && !a.all_marked))
+    for_each("activate all", n, ActivateAll{p.active(), p.rest()});
+  a.columns_set = true;
+  a.all_marked = state.all_active;
+  if (state.all_active) return;
+  measure(state, p);
+  a.probability.resize(static_cast<std::size_t>(n));
+  for_each("choose active", n,
+           Choose{.position = p.position(),
+                  .id = p.id(),
+                  .level = p.level(),
+                  .importance = a.importance.data(),
+                  .range = a.range.range(),
+                  .age = p.age(),
+                  .velocity = p.velocity(),
+                  .active = p.active(),
+                  .rest = p.rest(),
+                  .start_cell = p.start_cell(),
+                  .probability = a.probability.data(),
+                  .grid = a.grid.frame(),
+                  .near = a.near.frame(),
+                  .mean_velocity = a.grid.velocity().data(),
+                  .walls = state.walls,
+                  .rules = a.rules,
+                  .beta = a.beta,
+                  .dt = state.parameters.dt,
+                  .frame = a.frame,
+                  .seed = a.seed});
+  if (!a.rules.inherit_change) return;
+  add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.before);
+  if (a.rules.pressed) add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.others_before, 0);
+}
+
+}  // namespace
+
+Stage activation_stage() {
+  return stage_of<run>({.name = "activation",
+                        .source = "ViP-Fluid, Algorithm 3 lines 8-9, Eq. 12-14",
+                        .phase = Phase::FrameStart,
+                        .called_for = if_activation,
+                        .part = Part::Activation});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,45 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+SaliencyFluid fluid_of(FluidState& state, Reads<Column::Position> p, float* saliency, std::uint8_t* target) {
+  const auto& k = state.parameters;
+  return {.position = p.position(),
+          .n = p.size(),
+          .finest_support = state.finest_support,
+          .frame_dt = k.dt * static_cast<float>(k.substeps),
+          .saliency = saliency,
+          .target = target,
+          .guards = state.guard()};
+}
+
+using Columns = ColumnView<columns(Column::Position), columns(Column::Saliency, Column::Target)>;
+
+void run(FluidState& state, Columns p) {
+  evaluate_gaze(state.saliency, fluid_of(state, p, p.saliency(), p.target()));
+}
+
+}  // namespace
+
+void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                  Array<std::uint8_t>& target) {
+  const auto size = static_cast<std::size_t>(state.particles.size());
+  saliency.resize(size);
+  target.resize(size);
+  const Reads<Column::Position> p(state.particles);
+  evaluate_gaze(observer, fluid_of(state, p, saliency.data(), target.data()));
+}
+
+Stage gaze_targets_stage() {
+  return stage_of<run>({.name = "gaze targets",
+                        .source = "FovFluid-like: fovea, band, periphery",
+                        .phase = Phase::FrameStart,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.gaze_targets ? "levels follow the gaze" : "";
+                        },
+                        .part = Part::Saliency});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,79 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Keeps the level of those that are not far enough beyond the border to a coarser one.
+struct Hold {
+  const std::uint8_t* level;
+  const float* saliency;
+  std::uint8_t* target;
+  float levels, dead_band;
+  SIM_FN void operator()(int i) const {
+    if (target[i] <= level[i]) return;
+    const float border = static_cast<float>(level[i] + 1) + dead_band;
+    if (levels * (1 - saliency[i]) < border) target[i] = level[i];
+  }
+};
+
+/// l_i <= min_j l_j + 1 over the neighbours: one sweep carries a step one support radius far.
+struct Grade {
+  const Vec4* position;
+  const std::uint8_t* target;
+  ParticleNeighbours neighbours;
+  std::uint8_t* out;
+  SIM_FN void operator()(int i) const {
+    int wish = target[i];
+    const Vec4 self = position[i];
+    const int count = wish > 1 ? neighbours.size(i) : 0;  // 0 and 1 are never too coarse
+    for (int k = 0; k < count; ++k) {
+      const int j = neighbours(i, k);
+      if (target[j] + 1 >= wish) continue;
+      const Vec4 other = position[j];
+      const Vec3 offset = xyz(self) - xyz(other);
+      const float h = 0.5f * (self.w + other.w);
+      if (dot(offset, offset) < h * h) wish = target[j] + 1;
+    }
+    out[i] = static_cast<std::uint8_t>(wish);
+  }
+};
+
+/// A step of three levels needs three sweeps.
+constexpr int sweeps = 3;
+
+using Columns = ColumnView<columns(Column::Position, Column::Level, Column::Target, Column::Neighbours),
+                           columns(Column::Target), columns(Column::Saliency)>;
+
+void run(FluidState& state, Columns p) {
+  auto& graded = state.levels.graded;
+  const auto& rules = state.levels.rules;
+  if (rules.dead_band > 0 && p.has(Column::Saliency)) {
+    for_each("hold levels", p.size(),
+             Hold{.level = p.level(),
+                  .saliency = p.saliency(),
+                  .target = p.target(),
+                  .levels = static_cast<float>(rules.coarsest + 1),
+                  .dead_band = rules.dead_band});
+  }
+  if (!rules.graded) return;
+  graded.reserve(static_cast<std::size_t>(p.capacity()));
+  graded.resize(static_cast<std::size_t>(p.size()));
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for_each("grade targets", p.size(),
+             Grade{p.position(), p.target(), state.particle_neighbours(), graded.data()});
+    p.swap<Column::Target>(graded);
+  }
+}
+
+}  // namespace
+
+Stage graded_targets_stage() {
+  return stage_of<run>({.name = "graded targets",
+                        .source = "neighbours differ by one level at most",
+                        .phase = Phase::FrameStart,
+                        .called_for = if_levels,
+                        .part = Part::Levels});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,82 @@
+/// The grid and the combined neighbour list.
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+void sort(FluidState& state) {
+  if (state.one_level) {
+    state.grid.build(state.particles, NeighbourList::margin);
+  } else {
+    state.grid.build(state.particles, NeighbourList::margin, state.supports);
+  }
+}
+
+using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, columns(Column::Active),
+                               columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
+
+/// Only those whom the frame solves need lists.
+void list_active(FluidState& state, SubstepView p) {
+  auto* dropped = &state.guard()->neighbours_dropped;
+  sort(state);
+  state.lists_by_slot = true;
+  state.lists_hold = false;
+  state.activation.list_active(p);
+  if (state.one_level) {
+    state.neighbours.build(p, state.grid, state.active(), dropped);
+  } else if (state.substep + 1 < state.parameters.substeps) {
+    state.neighbours.build_mixed(p, state.grid, state.active(), dropped);
+  } else {
+    // The next frame's levels compare everyone.
+    state.neighbours.build_mixed(p, state.grid, EverySlot{state.activation.slots.data()}, dropped);
+    state.lists_hold = true;
+  }
+}
+
+void run_substep(FluidState& state, SubstepView p) {
+  state.all_active ? find_neighbours(state, p) : list_active(state, p);
+}
+
+using FrameView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                             columns(Column::Predicted, Column::Neighbours)>;
+
+void run_frame_start(FluidState& state, FrameView p) {
+  if (state.lists_hold) return;
+  p.copy<Column::Predicted, Column::Position>();
+  find_neighbours(state, p);
+}
+
+}  // namespace
+
+void find_neighbours(FluidState& state, NeighboursView p) {
+  auto* dropped = &state.guard()->neighbours_dropped;
+  sort(state);
+  state.lists_by_slot = false;
+  state.lists_hold = true;
+  state.one_level ? state.neighbours.build(p, state.grid, dropped)
+                  : state.neighbours.build_mixed(p, state.grid, dropped);
+}
+
+Stage neighbours_stage() {
+  return stage_of<run_substep>(
+      {.name = "neighbours",
+       .source = "compact grid and one combined list a substep",
+       .phase = Phase::Substep,
+       .called_for = [](const Demand&) -> std::string { return "the density constraint needs neighbours"; }});
+}
+
+Stage frame_neighbours_stage() {
+  return stage_of<run_frame_start>({.name = "frame neighbours",
+                                    .source = "neighbour list at the frame's start",
+                                    .phase = Phase::FrameStart,
+                                    .called_for = [](const Demand& demand) -> std::string {
+                                      // Saliency finds them itself.
+                                      return demand.levels && !demand.saliency ? "levels compare neighbours"
+                                                                               : "";
+                                    },
+                                    .part = Part::Levels});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,81 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// A particle that is not solved flies at the velocity it was given: gravity and pressure are both in it.
+template <class Selection>
+struct Predict {
+  Selection select;
+  Vec4* position;
+  Vec4* velocity;
+  Vec4* predicted;
+  Walls walls;
+  Vec3 refuge;
+  Guards* guards;
+  float gravity, dt, longest_step, wall_gap;
+
+  SIM_FN void operator()(int i) const {
+    const float h = position[i].w;
+    Vec3 x = xyz(position[i]);
+    Vec3 v = xyz(velocity[i]);
+    quarantine(x, v);
+    position[i] = with_w(x, h);
+    if constexpr (Selection::everyone) {
+      v.y -= gravity * dt;
+    } else {
+      v.y -= select.falls(i) * gravity * dt;
+    }
+    v = limited(v, longest_step * h / dt, guards);
+    velocity[i] = with_w(v, 0);
+    x = fused(x, dt, v);
+    if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    predicted[i] = with_w(x, h);
+  }
+
+  /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
+  /// either.
+  SIM_FN void quarantine(Vec3& x, Vec3& v) const {
+    const bool place_lost = !all_finite(x);
+    if (!place_lost && all_finite(v)) return;
+    atomic_add(&guards->not_finite, std::uint64_t{1});
+    v = {0, 0, 0};
+    if (place_lost) x = refuge;
+  }
+};
+
+using Columns = ColumnView<columns(Column::Position, Column::Velocity),
+                           columns(Column::Predicted, Column::Position, Column::Velocity)>;
+
+template <class Selection>
+void launch(FluidState& state, Columns p, Selection select) {
+  const auto& k = state.parameters;
+  for_each("predict", p.size(),
+           Predict<Selection>{.select = select,
+                              .position = p.position(),
+                              .velocity = p.velocity(),
+                              .predicted = p.predicted(),
+                              .walls = state.walls,
+                              .refuge = state.refuge,
+                              .guards = state.guard(),
+                              .gravity = k.gravity,
+                              .dt = k.dt,
+                              .longest_step = k.longest_step,
+                              .wall_gap = k.wall_gap});
+}
+
+void run(FluidState& state, Columns p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
+
+}  // namespace
+
+Stage predict_stage() {
+  return stage_of<run>({.name = "predict",
+                        .source = "Macklin and Mueller 2013, Alg. 1 lines 1-4",
+                        .phase = Phase::Substep,
+                        .called_for = always_moves});
+}
+
+}  // namespace sim::SIM_BACKEND

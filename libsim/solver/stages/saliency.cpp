@@ -1,0 +1,106 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+using SurroundingsView =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+               columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
+
+/// What saliency reads; where its results go is the caller's.
+SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
+  const auto& k = state.parameters;
+  return {.position = p.position(),
+          .velocity = p.velocity(),
+          .density = p.density(),
+          .level = p.level(),
+          .neighbours = state.particle_neighbours(),
+          .n = p.size(),
+          .finest_support = state.finest_support,
+          .gravity = k.gravity,
+          .frame_dt = k.dt * static_cast<float>(k.substeps),
+          .guards = state.guard()};
+}
+
+/// Neighbours and densities where the particles are now.
+void find_surroundings(FluidState& state, SurroundingsView p) {
+  p.copy<Column::Predicted, Column::Position>();
+  find_neighbours(state, p);
+  constrain_density(state, p);
+}
+
+/// The same from the last substep, as far as it holds: nobody was listed before the first frame, nor what a
+/// nozzle has just moved, and who was not solved has no density of the last frame.
+void recall_surroundings(FluidState& state, SurroundingsView p) {
+  if (!state.lists_hold) {
+    find_surroundings(state, p);
+  } else if (state.lists_by_slot) {
+    p.copy<Column::Predicted, Column::Position>();
+    constrain_density(state, p, EverySlot{state.activation.slots.data()});
+  }
+}
+
+using Columns =
+    ColumnView<SurroundingsView::reads,
+               SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target)>;
+
+void run(FluidState& state, Columns p) {
+  recall_surroundings(state, p);
+  SaliencyFluid fluid = fluid_of(state, p);
+  fluid.unrest = p.unrest();
+  fluid.saliency = p.saliency();
+  fluid.target = p.target();
+  evaluate_saliency(state.saliency, fluid);
+}
+
+using PartsView = ColumnView<columns(Column::Position, Column::Unrest), columns(Column::SaliencyParts)>;
+
+void keep_parts(FluidState& state, PartsView p) {
+  SaliencyState& s = state.saliency;
+  combine_features(feature_numbers(s.readings), s.eyes, p.position(), p.unrest(), s.combined.data(),
+                   p.saliency_parts(), p.size());
+}
+
+}  // namespace
+
+void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
+                      Array<std::uint8_t>& target, Array<SaliencyParts>& parts) {
+  const SurroundingsView p(state.particles);
+  const auto size = static_cast<std::size_t>(p.size());
+  saliency.resize(size);
+  saliency.zero();
+  target.resize(size);
+  target.zero();
+  parts.resize(size);
+  find_surroundings(state, p);
+  SaliencyFluid fluid = fluid_of(state, p);
+  fluid.saliency = saliency.data();
+  fluid.target = target.data();
+  fluid.parts = parts.data();
+  evaluate_saliency(observer, fluid);
+  state.lists_hold = false;
+}
+
+Stage saliency_stage() {
+  return stage_of<run>({.name = "saliency",
+                        .source = "ViP-Fluid 3.2, Eq. 1-9",
+                        .phase = Phase::FrameStart,
+                        .called_for = [](const Demand& demand) -> std::string {
+                          return demand.saliency ? "levels follow what is seen" : "";
+                        },
+                        .part = Part::Saliency});
+}
+
+Stage saliency_parts_stage() {
+  return stage_of<keep_parts>({.name = "saliency parts",
+                               .source = "ViP-Fluid 3.2, f_a, f_m, f_T and F",
+                               .phase = Phase::FrameStart,
+                               .called_for = [](const Demand& demand) -> std::string {
+                                 return demand.saliency && demand.saliency_parts ? "an output asks for them"
+                                                                                 : "";
+                               },
+                               .part = Part::Saliency});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,52 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but free of the rounding of x while nothing pushes.
+struct Advance {
+  Vec4* position;
+  const Vec4* predicted;
+  Vec4* velocity;
+  Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
+  Guards* guards;
+  float dt, longest_step;
+  SIM_FN void operator()(int i) const {
+    const Vec3 v = xyz(velocity[i]);
+    const Vec3 free = fused(xyz(position[i]), dt, v);
+    const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
+    velocity[i] = with_w(limited(after, longest_step * predicted[i].w / dt, guards), 0);
+    if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
+    position[i] = predicted[i];
+  }
+};
+
+using Columns =
+    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity),
+               columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
+
+void run(FluidState& state, Columns p) {
+  const auto& k = state.parameters;
+  // The old places that PredictedNext holds are done with.
+  Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
+  for_each("velocity", p.size(),
+           Advance{.position = p.position(),
+                   .predicted = p.predicted(),
+                   .velocity = p.velocity(),
+                   .kick = kick,
+                   .guards = state.guard(),
+                   .dt = k.dt,
+                   .longest_step = k.longest_step});
+}
+
+}  // namespace
+
+Stage velocity_stage() {
+  return stage_of<run>({.name = "velocity",
+                        .source = "Macklin and Mueller 2013, Alg. 1 lines 20-23",
+                        .phase = Phase::SubstepEnd,
+                        .called_for = always_moves});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,157 @@
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Mean change of velocity of a cell and level's active particles over the frame, less what the others of the
+/// cell have already met; what is empty takes the mean of the other levels.
+struct MeanChange {
+  const MomentumSum* before;
+  const MomentumSum* after;
+  const MomentumSum* others_before;  ///< nullptr unless something moved the others too
+  const MomentumSum* others_after;
+  Vec4* change;
+  int cells;
+
+  SIM_FN void operator()(int i) const {
+    Vec4 own = of(i);
+    if (own.w == value_unknown) own = of_others(i % cells);
+    change[i] = own;
+  }
+  SIM_FN Vec4 of(int i) const {
+    if (before[i].mass == 0 || after[i].mass == 0) return {0, 0, 0, value_unknown};
+    Vec3 out = mean_velocity(after[i]) - mean_velocity(before[i]);
+    if (others_before && others_before[i].mass > 0 && others_after[i].mass > 0)
+      out += mean_velocity(others_before[i]) - mean_velocity(others_after[i]);
+    return with_w(out, value_measured);
+  }
+  SIM_FN Vec4 of_others(int cell) const {
+    Vec3 sum{0, 0, 0};
+    float mass = 0;
+    for (int level = 0; level < grid_levels; ++level) {
+      const Vec4 other = of(level * cells + cell);
+      if (other.w == value_unknown) continue;
+      const auto weight = static_cast<float>(before[level * cells + cell].mass);
+      sum += weight * xyz(other);
+      mass += weight;
+    }
+    return mass > 0 ? with_w((1 / mass) * sum, value_borrowed) : Vec4{0, 0, 0, value_unknown};
+  }
+};
+
+/// Algorithm 3, line 15, once all active particles are done: what was not solved takes its velocity from the
+/// grid. Its way is mended as if the change had come in equal parts in the frame's substeps.
+struct Inherit {
+  const std::uint8_t* active;
+  const std::uint8_t* level;
+  Vec4* position;
+  Vec4* velocity;
+  Guards* guards;
+  GridFrame grid;
+  const Vec4* change;
+  const Vec4* mean_velocity;
+  Walls walls;
+  float frame_dt, way_dt, wall_gap, mean_share;
+
+  SIM_FN void operator()(int i) const {
+    if (active[i]) return;
+    const float h = position[i].w;
+    Vec3 x = xyz(position[i]);
+    const Vec3 v = xyz(velocity[i]);
+    Vec3 gain{0, 0, 0};
+    if (mean_share < 1) gain = change_at(i, x - frame_dt * v);
+    gain += mean_share * (velocity_at(i, x, v + gain) - v - gain);
+    velocity[i] = with_w(v + gain, 0);
+    x += way_dt * gain;
+    if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    position[i] = with_w(x, h);
+  }
+  SIM_FN Vec3 change_at(int i, Vec3 x) const {
+    return xyz(sample(change, level[i] * grid.cells(), grid.corners(x)));
+  }
+  SIM_FN Vec3 velocity_at(int i, Vec3 x, Vec3 otherwise) const {
+    const Vec4 v = sample(mean_velocity, level[i] * grid.cells(), grid.corners(x));
+    return v.w == value_unknown ? otherwise : xyz(v);
+  }
+};
+
+/// Marks spray, which no grid may move.
+struct MarkSparse {
+  const std::uint8_t* active;
+  const float* density;
+  std::uint8_t* rest;
+  SIM_FN void operator()(int i) const {
+    if (active[i])
+      rest[i] = static_cast<std::uint8_t>((rest[i] & rest_count_mask) |
+                                          (density[i] < sparse_density ? rest_sparse : 0));
+  }
+};
+
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Density,
+                                   Column::Active, Column::Rest, Column::StartCell),
+                           columns(Column::Velocity, Column::Position, Column::Rest)>;
+
+/// Mean changes of the solved particles by the cells that they started in.
+void find_changes(FluidState& state, Columns p) {
+  auto& a = state.activation;
+  const int cells = grid_levels * a.near.cells();
+  add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.after);
+  a.change.resize(static_cast<std::size_t>(cells));
+  if (a.rules.pressed) add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.others_after, 0);
+  for_each("mean change", cells,
+           MeanChange{.before = a.before.data(),
+                      .after = a.after.data(),
+                      .others_before = a.rules.pressed ? a.others_before.data() : nullptr,
+                      .others_after = a.others_after.data(),
+                      .change = a.change.data(),
+                      .cells = a.near.cells()});
+}
+
+void inherit(FluidState& state, Columns p) {
+  auto& a = state.activation;
+  const auto& k = state.parameters;
+  if (a.rules.inherit_change) find_changes(state, p);
+  // As printed, the mean velocities are those of V.
+  const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
+  if (a.rules.inherit_change && a.rules.damping > 0) a.near.update_velocity(p, p.active());
+  const auto substeps = static_cast<float>(k.substeps);
+  const float idle = 1 - a.beta;
+  const float frame_dt = k.dt * substeps;
+  for_each("inherit", p.size(),
+           Inherit{.active = p.active(),
+                   .level = p.level(),
+                   .position = p.position(),
+                   .velocity = p.velocity(),
+                   .guards = state.guard(),
+                   .grid = from.frame(),
+                   .change = a.change.data(),
+                   .mean_velocity = from.velocity().data(),
+                   .walls = state.walls,
+                   .frame_dt = frame_dt,
+                   .way_dt = frame_dt * (substeps + 1) / (2 * substeps),
+                   .wall_gap = k.wall_gap,
+                   .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
+}
+
+/// Algorithm 3, lines 4-5 and 13-17, in two passes: line 15 reads the grid that line 13 is still writing.
+void run(FluidState& state, Columns p) {
+  auto& a = state.activation;
+  a.grid.update_velocity(p, state.all_active ? nullptr : p.active());
+  if (!state.all_active) inherit(state, p);
+  a.grid.update_energy(p);
+  for_each("mark sparse", p.size(), MarkSparse{p.active(), p.density(), p.rest()});
+  state.all_active = true;
+}
+
+}  // namespace
+
+Stage velocity_grid_stage() {
+  return stage_of<run>({.name = "velocity grid",
+                        .source = "ViP-Fluid, Algorithm 3 lines 4-5 and 13-17",
+                        .phase = Phase::FrameEnd,
+                        .called_for = if_activation,
+                        .part = Part::Activation});
+}
+
+}  // namespace sim::SIM_BACKEND
