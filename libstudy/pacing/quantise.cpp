@@ -96,8 +96,7 @@ HoldList approximate_list(HoldTarget target) {
 std::string what_bounds_sd(const HoldTarget& target) {
   const auto bounds = sd_bounds(target);
   if (bounds.low > bounds.high)
-    return fmt::format("no holds of {:.0f} to {:.0f} periods have this mean", target.shortest,
-                       target.longest);
+    return fmt::format("no holds of {} to {} periods have this mean", target.shortest, target.longest);
   if (bounds.low > target.sd + target.sd_tolerance)
     return fmt::format("at exactly the wished mean the refresh forces an sd of {:.4g} or more", bounds.low);
   if (bounds.high < target.sd - target.sd_tolerance)
@@ -156,7 +155,7 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rul
   }
   if (target.shortest > target.longest) {
     verdict.reason =
-        fmt::format("no hold lies between {:g} periods and {:g} periods", target.shortest, target.longest);
+        fmt::format("no hold lies between {} periods and {} periods", target.shortest, target.longest);
     return verdict;
   }
   HoldList list = exact_list(target);
