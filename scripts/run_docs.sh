@@ -43,8 +43,21 @@ check_blocks() {
     while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, json, toml or mermaid"; done
 }
 
+# Tests and scripts that the page names in its text. Where not all test programs are built, not every test is known.
+check_names() {
+  local spans name
+  spans=$(sed '/^```/,/^```/d' "$1" | tr '\n' ' ' | grep -oE '`[^`]+`' || true)
+  for name in $(sed -nE "s/.*ctest .*-R +'?([^'\` ]+).*/\1/p; s/.*--gtest_filter='?([A-Za-z0-9_]+).*/\1/p" <<<"$spans" | sort -u); do
+    [ "$(count_tests "$name")" != 0 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] || fail "names a test that does not exist: $name"
+  done
+  for name in $(grep -oE 'scripts/[a-z_]+\.sh' <<<"$spans" | sort -u); do
+    [ -x "$root/$name" ] || fail "names a script that does not exist: $name"
+  done
+}
+count_tests() { ctest --test-dir "$build" -N -R "$1" | sed -n 's/^Total Tests: //p'; }
+
 check_test() {  # check_test NAME: a file of the project or a test of the build
-  [ -e "$root/$1" ] || [ "$(ctest --test-dir "$build" -N -R "^${1//./\\.}\$" | sed -n 's/^Total Tests: //p')" = 1 ] ||
+  [ -e "$root/$1" ] || [ "$(count_tests "^${1//./\\.}\$")" = 1 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] ||
     fail "the table names a test that does not exist: $1"
 }
 
@@ -115,6 +128,7 @@ run_page() {  # in a subshell: the page's exports are its own
   local wrong command begins of rest
   wrong=$(check_blocks "$root/$page")
   [ -z "$wrong" ] || fail "$wrong"
+  check_names "$root/$page"
   if [ "$page" != README.md ]; then
     mkdir build
     ln -s "$build" build/dev

@@ -14,7 +14,7 @@ packages=(
   # type of the participant's window
   fonts-dejavu-core
   # tests
-  sqlite3 util-linux xvfb xauth xdotool imagemagick
+  sqlite3 util-linux xvfb xauth xdotool imagemagick clang-tidy
 )
 
 # The BIDS validator's (scripts/validate_bids.sh); whoever has npm from elsewhere keeps it.
