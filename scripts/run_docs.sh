@@ -18,8 +18,8 @@ out=$(realpath -m "${VIP_DOCS_OUT:-out/docs}")
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run|person||
-docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/512/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
-docs/methods.md|vip-bench table1|s/32k/512/|a GPU works on it for minutes|
+docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
+docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
 docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|WindowProtocol.task1
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
@@ -43,8 +43,21 @@ check_blocks() {
     while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, json, toml or mermaid"; done
 }
 
+# Tests and scripts that the page names in its text. Where not all test programs are built, not every test is known.
+check_names() {
+  local spans name
+  spans=$(sed '/^```/,/^```/d' "$1" | tr '\n' ' ' | grep -oE '`[^`]+`' || true)
+  for name in $(sed -nE "s/.*ctest .*-R +'?([^'\` ]+).*/\1/p; s/.*--gtest_filter='?([A-Za-z0-9_]+).*/\1/p" <<<"$spans" | sort -u); do
+    [ "$(count_tests "$name")" != 0 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] || fail "names a test that does not exist: $name"
+  done
+  for name in $(grep -oE 'scripts/[a-z_]+\.sh' <<<"$spans" | sort -u); do
+    [ -x "$root/$name" ] || fail "names a script that does not exist: $name"
+  done
+}
+count_tests() { ctest --test-dir "$build" -N -R "$1" | sed -n 's/^Total Tests: //p'; }
+
 check_test() {  # check_test NAME: a file of the project or a test of the build
-  [ -e "$root/$1" ] || [ "$(ctest --test-dir "$build" -N -R "^${1//./\\.}\$" | sed -n 's/^Total Tests: //p')" = 1 ] ||
+  [ -e "$root/$1" ] || [ "$(count_tests "^${1//./\\.}\$")" = 1 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] ||
     fail "the table names a test that does not exist: $1"
 }
 
@@ -115,6 +128,7 @@ run_page() {  # in a subshell: the page's exports are its own
   local wrong command begins of rest
   wrong=$(check_blocks "$root/$page")
   [ -z "$wrong" ] || fail "$wrong"
+  check_names "$root/$page"
   if [ "$page" != README.md ]; then
     mkdir build
     ln -s "$build" build/dev

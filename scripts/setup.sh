@@ -15,7 +15,7 @@ packages=(
   # type of the participant's window
   fonts-dejavu-core
   # tests
-  sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick
+  sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy
 )
 
 # The BIDS validator's (scripts/validate_bids.sh); whoever has npm from elsewhere keeps it.

@@ -16,8 +16,6 @@ using sqlite::Statement;
 namespace {
 
 constexpr const char* of_session = "LEFT JOIN session s USING (session_id)";
-constexpr const char* of_unit =
-    "LEFT JOIN unit u USING (unit_id) LEFT JOIN session s ON s.session_id = u.session_id";
 
 const std::vector<Table> followed{
     {"protocol", {"protocol_id"}},

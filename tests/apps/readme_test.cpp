@@ -117,5 +117,16 @@ TEST(Readme, LinesHoldAHundredColumns) {
   for (const std::string& line : page(root / "README.md")) EXPECT_THAT(line, SizeIs(::testing::Le(100)));
 }
 
+/// Tables, pictures and the page that vip-study writes apart.
+TEST(Docs, ProseHoldsAHundredAndTenColumns) {
+  for (const auto& entry : fs::directory_iterator(root / "docs")) {
+    if (entry.path().extension() != ".md" || entry.path().filename() == "protocol.md") continue;
+    for (const std::string& line : page(entry.path())) {
+      if (line.starts_with("|") || line.starts_with("![")) continue;
+      EXPECT_THAT(line, SizeIs(::testing::Le(110))) << entry.path();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace apps::test

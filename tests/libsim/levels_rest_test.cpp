@@ -1,4 +1,4 @@
-/// Splitting and merging in water at rest (S3, S4, S5 and coarsening), on the CPU and on CUDA.
+/// Splitting and merging in water at rest (S3, S5 and coarsening), on the CPU and on CUDA.
 
 #include "tests/libsim/levels_helpers.hpp"
 
@@ -41,85 +41,6 @@ void tank_coarsens(Backend backend) {
 }
 TEST(Levels, UniformTankCoarsens) { tank_coarsens(Backend::Cpu); }
 TEST(LevelsGpu, UniformTankCoarsens) { tank_coarsens(Backend::Cuda); }
-
-/// Largest change of a velocity from one state to the next, m/s; of those that are in both by their ids,
-/// children with the parent's id among them.
-double largest_kick(const std::vector<ParticleState>& before, const std::vector<ParticleState>& after) {
-  double largest = 0;
-  for (std::size_t i = 0, j = 0; i < before.size() && j < after.size();) {
-    const auto& a = before[i];
-    const auto& b = after[j];
-    if (a.id == b.id) {
-      largest = std::max(largest, std::hypot(static_cast<double>(b.vx_m_s - a.vx_m_s),
-                                             static_cast<double>(b.vy_m_s - a.vy_m_s),
-                                             static_cast<double>(b.vz_m_s - a.vz_m_s)));
-    }
-    i += a.id <= b.id;
-    j += b.id <= a.id;
-  }
-  return largest;
-}
-
-void splits_are_calm(Backend backend) {
-  // S4: one particle, about 1 % and all of a settled tank of level 3, split by 1, 2 and 3 levels.
-  const Settled fine(backend);
-  auto coarsening = options_for(backend, Settled::n_star, everywhere(3));
-  coarsening.start = fine.state;
-  const auto coarse = sim::make_simulation(fine.scene, coarsening);
-  for (int frame = 0; frame < 100; ++frame) coarse->step_frame();
-  const auto start = coarse->read_state();
-  // Round a particle: a sphere as small as the first may hold none elsewhere.
-  const auto from_middle = [](const ParticleState& p) {
-    return std::hypot(static_cast<double>(p.x_m) - 6 * d, static_cast<double>(p.y_m) - 7 * d,
-                      static_cast<double>(p.z_m) - 6 * d);
-  };
-  const auto nearest = std::min_element(start.begin(), start.end(), [&](const auto& a, const auto& b) {
-    return from_middle(a) < from_middle(b);
-  });
-  const sim::Vec3d middle{static_cast<double>(nearest->x_m), static_cast<double>(nearest->y_m),
-                          static_cast<double>(nearest->z_m)};
-  for (const int to : {2, 1, 0}) {
-    for (const double radius : {1.2 * d, 2.5 * d, far_m}) {
-      auto options = options_for(backend, Settled::n_star, {middle, radius, to, 3});
-      options.start = start;
-      options.readings.graded_targets = false;
-      const auto fluid = sim::make_simulation(fine.scene, options);
-      // Coarse water at rest stands lower than fine water; split as a whole it rises to the fine one's
-      // height.
-      const double before = radius > 100 ? std::max(energy(start), energy(fine.state)) : energy(start);
-      double densest = 0;
-      double moving = 0;  // largest share of kinetic energy
-      double gain = 0;
-      double kick = 0;
-      auto last = start;
-      for (int frame = 0; frame < 30; ++frame) {
-        fluid->step_frame();
-        const auto state = fluid->read_state();
-        densest = std::max(densest, fluid->report().density_max);
-        gain = std::max(gain, energy(state) / before - 1);
-        moving = std::max(moving, kinetic_energy(state) / before);
-        kick = std::max(kick, largest_kick(last, state));
-        last = state;
-      }
-      const auto events = fluid->report().levels;
-      std::printf(
-          "S4: 3 -> %d within %.2f m: %llu splits, %llu merges, max rho %.3f, energy %+.4f, kinetic %.4f, "
-          "largest kick in a frame %.2f m/s\n",
-          to, radius, static_cast<unsigned long long>(events.splits),
-          static_cast<unsigned long long>(events.merges), densest, gain, moving, kick);
-      EXPECT_GT(events.splits, 0u);
-      EXPECT_LT(densest, radius > 100 ? 1.25 : 1.15);
-      EXPECT_LT(gain, 0.01);
-      // S4 asks for 0.5 sqrt(g d_*) = 0.61 m/s in a frame; one particle keeps it. A few give up to 1.1 m/s,
-      // as merges beside them push too, and the whole tank 2.1: what the parting leaves is still pushed.
-      const double most = radius > 100 ? 2.4 : radius > 2 * d ? 1.6 : 0.61;
-      EXPECT_LT(kick, most);
-      expect_sound(*fluid, static_cast<std::int64_t>(start.size()), 8 * Settled::n_star);
-    }
-  }
-}
-TEST(Levels, SplitsAreCalm) { splits_are_calm(Backend::Cpu); }
-TEST(LevelsGpu, SplitsAreCalm) { splits_are_calm(Backend::Cuda); }
 
 void square_wave_does_not_oscillate(Backend backend) {
   // S5: targets that change every 1, 2 and 3 frames never give a merge.

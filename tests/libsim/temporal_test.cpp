@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -102,8 +104,10 @@ struct DamRun {
   double solved = 0;                  ///< mean share of active particles
 };
 
-DamRun run_dam(const sim::Scene& scene, sim::SimulationOptions options, double beta, int frames) {
+DamRun run_dam(const sim::Scene& scene, sim::SimulationOptions options, double beta, int frames,
+               std::uint32_t seed = 1) {
   options.temporal = fixed(std::log(beta) / (2 * 0.02));
+  options.temporal.seed = seed;
   const auto fluid = sim::make_simulation(scene, options);
   DamRun out;
   for (int frame = 1; frame <= frames; ++frame) {
@@ -150,36 +154,46 @@ struct DamGate {
   double beta, centre, kinetic_low, kinetic_high;
 };
 
-void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::vector<DamGate>& gates) {
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Bounds hold for the median over `draws` draws of who rests: single
+/// runs scatter by 0.003 at beta 0.3.
+void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::vector<DamGate>& gates,
+                   std::uint32_t draws) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = dam_options(backend, n_star);
   options.start = settled_dam(scene, options);
   const auto full = run_dam(scene, options, 1, frames);
   EXPECT_NEAR(full.solved, 1, 1e-9);
   for (const auto& gate : gates) {
-    const auto run = run_dam(scene, options, gate.beta, frames);
-    const double centre = centre_error(run, full, scene.fill_max_m[1]);
-    const double kinetic = kinetic_ratio(run, full);
-    std::printf(
-        "dam, %lld particles, beta %.2f: solved %.3f, max rho %.3f (full %.3f), within 0.3 d %.4f (full "
-        "%.4f), "
-        "centre of mass off by %.4f of the height, kinetic energy x %.3f\n",
-        static_cast<long long>(8 * n_star), gate.beta, run.solved, run.density_max, full.density_max,
-        run.crowded, full.crowded, centre, kinetic);
-    EXPECT_LT(run.density_max, 1.3);
-    EXPECT_LT(run.crowded, full.crowded + 0.01);
-    EXPECT_LT(centre, gate.centre);
-    EXPECT_GT(kinetic, gate.kinetic_low);
-    EXPECT_LT(kinetic, gate.kinetic_high);
+    std::vector<double> centre, kinetic;
+    for (std::uint32_t seed = 1; seed <= draws; ++seed) {
+      const auto run = run_dam(scene, options, gate.beta, frames, seed);
+      centre.push_back(centre_error(run, full, scene.fill_max_m[1]));
+      kinetic.push_back(kinetic_ratio(run, full));
+      std::printf(
+          "dam, %lld particles, beta %.2f: solved %.3f, max rho %.3f (full %.3f), within 0.3 d %.4f (full "
+          "%.4f), centre of mass off by %.4f of the height, kinetic energy x %.3f\n",
+          static_cast<long long>(8 * n_star), gate.beta, run.solved, run.density_max, full.density_max,
+          run.crowded, full.crowded, centre.back(), kinetic.back());
+      EXPECT_LT(run.density_max, 1.3);
+      EXPECT_LT(run.crowded, full.crowded + 0.01);
+    }
+    EXPECT_LT(median(centre), gate.centre);
+    EXPECT_GT(median(kinetic), gate.kinetic_low);
+    EXPECT_LT(median(kinetic), gate.kinetic_high);
   }
 }
 // S22: 10 s, or 2 s where a test must be short.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.02, 0.8, 1.05}, {0.3, 0.02, 0.8, 1.05}};
 TEST(Temporal, DamBreaksAsWithTheFullSolve) {
-  dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2});
+  dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);
 }
-TEST(TemporalSlow, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cpu, 4096, 600, s22); }
-TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cuda, 4096, 600, s22); }
+TEST(TemporalSlow, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cpu, 4096, 600, s22, 3); }
+TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cuda, 4096, 600, s22, 3); }
 
 /// The whole method: saliency, levels and temporal acceleration together.
 void ours_tsp(Backend backend) {

@@ -56,7 +56,7 @@ std::filesystem::path history_of(const std::filesystem::path& file) {
   return file.string() + ".history.jsonl";
 }
 
-void append_calibration(const std::filesystem::path& file, const std::string& text, Json entry) {
+void append_calibration(const std::filesystem::path& file, const std::string& text, const Json& entry) {
   const auto path = history_of(file);
   std::string record;
   if (std::filesystem::exists(path)) record = base::read_file(path, largest_record);

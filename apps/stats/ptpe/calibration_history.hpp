@@ -15,6 +15,6 @@ std::filesystem::path history_of(const std::filesystem::path& file);
 /// there was one, or changed by hand) is taken down first. The record grows as a whole or not at all.
 /// base::Error when the record that stands is damaged or cannot be written; nothing is changed then.
 void append_calibration(const std::filesystem::path& file, const std::string& text,
-                        nlohmann::ordered_json entry);
+                        const nlohmann::ordered_json& entry);
 
 }  // namespace apps
