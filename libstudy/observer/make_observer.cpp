@@ -1,11 +1,61 @@
-#include "libstudy/observer/adversaries.hpp"
+#include <string>
+
+#include "libstudy/base/random.hpp"
 #include "libstudy/observer/frames_observer.hpp"
+#include "libstudy/observer/observer.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/observer/specification.hpp"
 
 namespace study {
 
 namespace {
+
+// Observers who tell nothing: a report should be able to say so.
+
+/// "random": every score equally likely, whatever was shown.
+class RandomObserver final : public Observer {
+ public:
+  std::optional<std::string> simulated() const override { return "random"; }
+  int score(const Question& question, const Occasion& occasion, bool) const override {
+    return random_score(question, occasion);
+  }
+};
+
+/// "constant:4": always the score nearest to it.
+class ConstantObserver final : public Observer {
+ public:
+  explicit ConstantObserver(double score) : score_(score) {}
+  std::optional<std::string> simulated() const override { return "constant:" + shortest_number(score_); }
+  int score(const Question& question, const Occasion&, bool) const override {
+    return nearest_score(question, score_);
+  }
+
+ private:
+  double score_;
+};
+
+/// "dropout:0.2,OBSERVER": answers as that observer (random, if none is named) and leaves for good with this
+/// probability before each trial.
+class DropoutObserver final : public Observer {
+ public:
+  DropoutObserver(double probability, std::unique_ptr<Observer> answers)
+      : probability_(probability), answers_(std::move(answers)) {}
+  std::optional<std::string> simulated() const override {
+    return "dropout:" + shortest_number(probability_) + "," + answers_->simulated().value();
+  }
+  void before_trial(const Occasion& occasion) override {
+    const std::uint64_t key =
+        random_key("leaves\n" + std::to_string(occasion.seed) + '\n' + occasion.participant);
+    if (uniform_of(key, static_cast<std::uint64_t>(occasion.position)) < probability_) throw Left();
+  }
+  int score(const Question& question, const Occasion& occasion, bool judges) const override {
+    return answers_->score(question, occasion, judges);
+  }
+
+ private:
+  double probability_;
+  std::unique_ptr<Observer> answers_;
+};
 
 constexpr std::string_view constant = "constant:", dropout = "dropout:";
 const std::string kinds = "write ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2";

@@ -1,8 +1,9 @@
 #include "libstudy/pacing/exact_rates.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -16,12 +17,6 @@ namespace study {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 double arithmetic_mean(const std::vector<double>& values) {
   long double sum = 0;
@@ -47,9 +42,9 @@ struct Problem {
   double mean_of(const std::vector<double>& rates) const { return mean_rate(rates, mean); }
 
   [[noreturn]] void fail(const std::string& problem, const std::string& mend) const {
-    throw base::Error("setting " + setting_name(setting) + " over " + shown(setting.duration_s) + " s (" +
-                          std::to_string(n) + " frames)",
-                      problem, mend);
+    throw base::Error(
+        fmt::format("setting {} over {:.4g} s ({} frames)", setting_name(setting), setting.duration_s, n),
+        problem, mend);
   }
 };
 
@@ -58,9 +53,9 @@ double root_of(const Problem& problem, const std::function<double(double)>& exce
   try {
     return stats::find_root(excess, low, high);
   } catch (const std::invalid_argument&) {
-    problem.fail(
-        "no list of frame rates was found that has this mean and sd",
-        "use an sd of 0 or of at least " + shown(least_sd_fps) + ", and a mean and sd further from the cuts");
+    problem.fail("no list of frame rates was found that has this mean and sd",
+                 fmt::format("use an sd of 0 or of at least {:.4g}, and a mean and sd further from the cuts",
+                             least_sd_fps));
   }
 }
 
@@ -84,9 +79,9 @@ std::vector<double> solve_open(const Problem& problem) {
   const double bell = -10 * (problem.setting.mean + sd) / sd;
   if (excess(exponential) > 0) {
     const double least = problem.setting.mean + excess(exponential);
-    problem.fail("no truncated normal above " + shown(problem.low) +
-                     " frames/s has this mean and sd: with sd " + shown(sd) + " the mean is at least " +
-                     shown(least),
+    problem.fail(fmt::format("no truncated normal above {:.4g} frames/s has this mean and sd: with sd {:.4g} "
+                             "the mean is at least {:.4g}",
+                             problem.low, sd, least),
                  "lower fps_min (and raise max_interval_ms), lengthen the trial, or lower the sd");
   }
   return rates(root_of(problem, excess, bell, exponential));
@@ -105,9 +100,10 @@ std::vector<double> with_mean(const Problem& problem, double width) {
     reach *= 2;
   const double left = -0.5 * width - reach, right = -0.5 * width + reach;
   if (excess(left) < 0 || excess(right) > 0) {
-    problem.fail("the mean lies too near a cut (" + shown(problem.low) + " to " + shown(problem.high) +
-                     " frames/s) for any list of this length",
-                 "widen fps_min and fps_max");
+    problem.fail(
+        fmt::format("the mean lies too near a cut ({:.4g} to {:.4g} frames/s) for any list of this length",
+                    problem.low, problem.high),
+        "widen fps_min and fps_max");
   }
   return rates(root_of(problem, excess, left, right));
 }
@@ -120,9 +116,9 @@ std::vector<double> solve_capped(const Problem& problem) {
   const double flat = std::log(1e-2);
   const double narrow = std::log(20 * (problem.high - problem.low) / problem.setting.sd);
   if (excess(flat) < 0) {
-    problem.fail("no truncated normal between " + shown(problem.low) + " and " + shown(problem.high) +
-                     " frames/s has this mean and sd: at this mean the sd is at most " +
-                     shown(problem.setting.sd + excess(flat)),
+    problem.fail(fmt::format("no truncated normal between {:.4g} and {:.4g} frames/s has this mean and sd: "
+                             "at this mean the sd is at most {:.4g}",
+                             problem.low, problem.high, problem.setting.sd + excess(flat)),
                  "raise fps_max, lower fps_min, or lower the sd");
   }
   return with_mean(problem, std::exp(root_of(problem, excess, flat, narrow)));
@@ -130,8 +126,8 @@ std::vector<double> solve_capped(const Problem& problem) {
 
 void check_constant(const Problem& problem) {
   if (problem.setting.mean >= problem.low && problem.setting.mean <= problem.high) return;
-  problem.fail("a constant " + shown(problem.setting.mean) + " frames/s lies outside " + shown(problem.low) +
-                   " to " + shown(problem.high),
+  problem.fail(fmt::format("a constant {:.4g} frames/s lies outside {:.4g} to {:.4g}", problem.setting.mean,
+                           problem.low, problem.high),
                "widen fps_min, max_interval_ms or fps_max");
 }
 
@@ -153,16 +149,17 @@ std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& ru
   }
   if (problem.n < 2) problem.fail("one frame has no standard deviation", "lengthen the trial");
   if (setting.mean <= problem.low || setting.mean >= problem.high) {
-    problem.fail("the mean is not between the cuts " + shown(problem.low) + " and " + shown(problem.high) +
-                     " frames/s",
-                 "widen fps_min, max_interval_ms or fps_max");
+    problem.fail(
+        fmt::format("the mean is not between the cuts {:.4g} and {:.4g} frames/s", problem.low, problem.high),
+        "widen fps_min, max_interval_ms or fps_max");
   }
   auto rates = std::isfinite(problem.high) ? solve_capped(problem) : solve_open(problem);
   const double mean_error = std::abs(problem.mean_of(rates) / setting.mean - 1);
   const double sd_error = std::abs(population_sd(rates) / setting.sd - 1);
   if (!(mean_error <= 1e-9 && sd_error <= 1e-9)) {
-    problem.fail("the moments were met only to " + shown(std::max(mean_error, sd_error)) + " (relative)",
-                 "choose a mean and sd further from the cuts");
+    problem.fail(
+        fmt::format("the moments were met only to {:.4g} (relative)", std::max(mean_error, sd_error)),
+        "choose a mean and sd further from the cuts");
   }
   return rates;
 }

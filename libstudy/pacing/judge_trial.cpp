@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "libstudy/pacing/frame_order.hpp"
 #include "libstudy/pacing/pacer.hpp"
@@ -18,12 +19,6 @@ bool has_display_times(const PlayedTrial& played, TimingGrade grade) {
   return (grade == TimingGrade::Photodiode || grade == TimingGrade::DisplayFeedback) &&
          std::all_of(played.frames.begin(), played.frames.end(),
                      [](const FrameRecord& frame) { return frame.times.actual_display_ns >= 0; });
-}
-
-std::string format(const char* pattern, double a, double b) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, a, b);
-  return text;
 }
 
 /// Collects reasons and keeps the worst verdict.
@@ -46,14 +41,14 @@ void judge_moments(Judgement& judgement, const TimingVerdict& trial, double mean
   const double mean_error = std::abs(mean / trial.nominal.mean - 1);
   if (mean_error > tolerance.mean_relative) {
     judgement.add(mean_error > tolerance.fail_mean_relative ? Verdict::Fail : Verdict::Degraded,
-                  format("mean %.4g frames/s is off by %.2g %%", mean, 100 * mean_error));
+                  fmt::format("mean {:.4g} frames/s is off by {:.2g} %", mean, 100 * mean_error));
   }
   const double sd = trial.nominal.sd;
   const double sd_error = std::abs(trial.realised.sd - sd);
   if (sd_error > std::max(tolerance.sd_relative * sd, tolerance.sd_absolute)) {
     const bool fail = sd_error > std::max(tolerance.fail_sd_relative * sd, tolerance.fail_sd_absolute);
     judgement.add(fail ? Verdict::Fail : Verdict::Degraded,
-                  format("sd %.4g frames/s is off by %.2g", trial.realised.sd, sd_error));
+                  fmt::format("sd {:.4g} frames/s is off by {:.2g}", trial.realised.sd, sd_error));
   }
 }
 
@@ -65,10 +60,10 @@ void judge_lateness(Judgement& judgement, TimingVerdict& trial, const PlayedTria
     trial.late += late_ms > tolerance.late_after_ms;
   }
   if (trial.late > 0) {
-    judgement.add(
-        Verdict::Degraded,
-        std::to_string(trial.late) + " late frame" + (trial.late > 1 ? "s" : "") +
-            format(", the worst by %.3g ms (bound %.3g ms)", trial.worst_late_ms, tolerance.late_after_ms));
+    judgement.add(Verdict::Degraded, std::to_string(trial.late) + " late frame" +
+                                         (trial.late > 1 ? "s" : "") +
+                                         fmt::format(", the worst by {:.3g} ms (bound {:.3g} ms)",
+                                                     trial.worst_late_ms, tolerance.late_after_ms));
   }
 }
 
@@ -88,7 +83,7 @@ void judge_cut(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& pl
   trial.cut = true;
   const auto shown = static_cast<std::int64_t>(played.frames.size());
   const double after_s = 1e-9 * static_cast<double>(played.end_ns - played.frames.front().scheduled_ns);
-  std::string reason = format("cut %.3g s after its start", after_s, 0);
+  std::string reason = fmt::format("cut {:.3g} s after its start", after_s);
   if (*played.cut > 0)
     reason += ": " + std::to_string(shown) + " of " + std::to_string(shown + *played.cut) + " frames shown";
   judgement.add(Verdict::Fail, reason);

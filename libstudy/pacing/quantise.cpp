@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/pacing/frame_order.hpp"
@@ -18,12 +19,6 @@ constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
 constexpr double whole = 1e-6;  // periods; forgives rounding in refresh * frames / mean
-
-std::string format(const char* pattern, double a, double b = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, a, b);
-  return text;
-}
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
   HoldTarget target;
@@ -101,12 +96,12 @@ HoldList approximate_list(HoldTarget target) {
 std::string what_bounds_sd(const HoldTarget& target) {
   const auto bounds = sd_bounds(target);
   if (bounds.low > bounds.high)
-    return format("no holds of %.0f to %.0f periods have this mean", target.shortest, target.longest);
+    return fmt::format("no holds of {} to {} periods have this mean", target.shortest, target.longest);
   if (bounds.low > target.sd + target.sd_tolerance)
-    return format("at exactly the wished mean the refresh forces an sd of %.4g or more", bounds.low);
+    return fmt::format("at exactly the wished mean the refresh forces an sd of {:.4g} or more", bounds.low);
   if (bounds.high < target.sd - target.sd_tolerance)
-    return format("at exactly the wished mean, intervals up to %.1f ms allow an sd of %.4g at most",
-                  1e3 * target.longest / target.refresh_hz, bounds.high);
+    return fmt::format("at exactly the wished mean, intervals up to {:.1f} ms allow an sd of {:.4g} at most",
+                       1e3 * target.longest / target.refresh_hz, bounds.high);
   return {};
 }
 
@@ -115,16 +110,17 @@ std::string what_bounds_sd(const HoldTarget& target) {
 std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
   std::string words;
   if (best.holds.empty())
-    words = format("no list of holds has a mean within %g %% of %g", 100 * approximate_mean, target.mean);
+    words =
+        fmt::format("no list of holds has a mean within {:g} % of {:g}", 100 * approximate_mean, target.mean);
   else if (mean_miss(best, target) > target.mean_tolerance)
-    words = format("mean %.6g for %g", best.mean, target.mean) +
-            format(" (%+.2g %%)", 100 * (best.mean / target.mean - 1));
+    words = fmt::format("mean {:.6g} for {:g} ({:+.2g} %)", best.mean, target.mean,
+                        100 * (best.mean / target.mean - 1));
   if (!best.holds.empty() && sd_miss(best, target) > 0)
-    words += (words.empty() ? "" : ", ") + format("sd %.4g for %g", best.sd, target.sd) +
-             format(" (%.2g allowed)", target.sd_tolerance);
+    words += (words.empty() ? "" : ", ") +
+             fmt::format("sd {:.4g} for {:g} ({:.2g} allowed)", best.sd, target.sd, target.sd_tolerance);
   const std::string bound = what_bounds_sd(target);
   if (!bound.empty()) return words + (words.empty() ? "" : ": ") + bound;
-  return words.empty() ? format("no whole hold counts found nearer than sd %.4g", tried.sd) : words;
+  return words.empty() ? fmt::format("no whole hold counts found nearer than sd {:.4g}", tried.sd) : words;
 }
 
 void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rules, double refresh_hz,
@@ -144,7 +140,7 @@ void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rule
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rules, double refresh_hz,
                         std::uint64_t seed) {
   if (!(refresh_hz > 0 && std::isfinite(refresh_hz)))
-    throw base::Error("refresh " + format("%g", refresh_hz) + " Hz", "is not a refresh rate",
+    throw base::Error(fmt::format("refresh {:g} Hz", refresh_hz), "is not a refresh rate",
                       "give the display's refresh in hertz");
   const auto rules = for_display(wished_rules, refresh_hz);
   RefreshVerdict verdict;
@@ -159,7 +155,7 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rul
   }
   if (target.shortest > target.longest) {
     verdict.reason =
-        format("no hold lies between %g periods and %g periods", target.shortest, target.longest);
+        fmt::format("no hold lies between {} periods and {} periods", target.shortest, target.longest);
     return verdict;
   }
   HoldList list = exact_list(target);

@@ -1,8 +1,9 @@
 #include "libstudy/pacing/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/pacing/frame_order.hpp"
@@ -17,9 +18,7 @@ PacingRules for_display(PacingRules rules, double refresh_hz) {
 }
 
 std::string setting_name(const FpsSetting& setting) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%g, %g)", setting.mean, setting.sd);
-  return text;
+  return fmt::format("({:g}, {:g})", setting.mean, setting.sd);
 }
 
 std::int64_t frame_count(const FpsSetting& setting) {

@@ -1,7 +1,8 @@
 #include "libstudy/protocol/protocol.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "libstudy/protocol/readers.hpp"
 #include "stats/base/error.hpp"
@@ -58,11 +59,7 @@ std::string text_of(const base::TomlTable& table, std::string_view key) {
   return value;
 }
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string shown(double value) { return fmt::format("{:g}", value); }
 
 std::string id_of(const base::TomlTable& table, std::string_view key) {
   const std::string id = text_of(table, key);
@@ -122,12 +119,11 @@ void override_trial_seconds(Protocol& protocol, double seconds) {
     throw base::Error("--trial-seconds", shown(seconds) + " s is out of range",
                       "use " + shown(duration_range.min) + " to " + shown(duration_range.max) + " s");
   }
-  char line[64];
-  std::snprintf(line, sizeof line, "\n# override: trial_seconds = %.17g\n", seconds);
   for (auto& cell : protocol.design.cells) cell.setting.duration_s = seconds;
   protocol.trial_seconds = seconds;
   protocol.test_data = true;
-  protocol.sha256 = base::sha256_hex(protocol.text + line);
+  protocol.sha256 =
+      base::sha256_hex(protocol.text + fmt::format("\n# override: trial_seconds = {:.17g}\n", seconds));
 }
 
 }  // namespace study

@@ -61,13 +61,13 @@ void list_sessions(Connection& database, const std::vector<std::int64_t>& sessio
       "PRAGMA secure_delete = ON; CREATE TEMP TABLE IF NOT EXISTS gone (session_id INTEGER PRIMARY KEY);"
       "DELETE FROM temp.gone");
   Statement insert(database, "INSERT INTO temp.gone VALUES (?)");
-  for (const std::int64_t session : sessions) insert.bind(0, session).run();
+  for (const std::int64_t session : sessions) insert.bind_all(session).run();
 }
 
 std::vector<std::int64_t> sessions_of(Connection& database, const std::string& person) {
   Statement row(database, "SELECT session_id FROM session WHERE person = ?");
   std::vector<std::int64_t> sessions;
-  for (row.bind(0, person); row.step();) sessions.push_back(row.integer(0));
+  for (row.bind_all(person); row.step();) sessions.push_back(row.integer(0));
   return sessions;
 }
 
@@ -93,15 +93,15 @@ void bury_later(Connection& backup, const std::string& person, std::int64_t vers
   Transaction transaction(backup);
   bury(backup, person, version);
   if (version >= 3) {
-    Statement(backup, "DELETE FROM export_person WHERE person = ?").bind(0, person).run();
-    Statement(backup, "DELETE FROM chore WHERE person = ?").bind(0, person).run();
+    Statement(backup, "DELETE FROM export_person WHERE person = ?").bind_all(person).run();
+    Statement(backup, "DELETE FROM chore WHERE person = ?").bind_all(person).run();
   }
   transaction.commit();
 }
 
 bool is_buried(Connection& backup, const std::string& person) {
   Statement stone(backup, "SELECT 1 FROM tombstone WHERE person = ?");
-  return stone.bind(0, person).step();
+  return stone.bind_all(person).step();
 }
 
 }  // namespace
@@ -141,8 +141,7 @@ void bury(Connection& database, const std::string& person, std::int64_t version)
   Statement(database,
             "INSERT OR IGNORE INTO tombstone SELECT person, participant, code, station, ? FROM session "
             "JOIN run USING (run_id) WHERE person = ? ORDER BY run.started_utc, session.uid LIMIT 1")
-      .bind(0, base::utc_now())
-      .bind(1, person)
+      .bind_all(base::utc_now(), person)
       .run();
   delete_sessions(database, version);
 }

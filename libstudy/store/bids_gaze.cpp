@@ -21,7 +21,7 @@ std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_
                 "WHERE session_id = ? ORDER BY presentation_id");
   SessionTime time;
   std::map<std::int64_t, std::int64_t> onsets;
-  for (row.bind(0, session); row.step();) {
+  for (row.bind_all(session); row.step();) {
     std::optional<std::int64_t> end_ns;
     if (!row.is_null(2)) end_ns = row.integer(2);
     onsets[row.integer(0)] = time.onset_of(row.integer(1), end_ns);
@@ -41,7 +41,7 @@ Samples samples_of(Connection& database, std::int64_t session, const char* sourc
                 "(presentation_id) JOIN trial USING (trial_id) WHERE session_id = ? AND source = ? "
                 "ORDER BY presentation_id, sample_index");
   Samples samples;
-  for (row.bind(0, session).bind(1, source); row.step();) {
+  for (row.bind_all(session, source); row.step();) {
     const std::int64_t at_ns = onsets.at(row.integer(0)) + row.integer(1);
     samples.times_ns.push_back(at_ns);
     samples.rows.push_back({seconds(at_ns), field(row, 2), field(row, 3), field(row, 4)});

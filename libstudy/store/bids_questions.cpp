@@ -117,7 +117,7 @@ std::vector<Item> items(Connection& database, std::int64_t session, const std::s
                 "JOIN unit u ON u.session_id = s.session_id AND u.block = k.block "
                 "WHERE s.session_id = ? AND q.personal = 0 AND q.kind <> 'text' AND " +
                     of + " ORDER BY q.question_id");
-  row.bind(0, session);
+  row.bind_all(session);
   std::vector<Item> found;
   while (row.step()) found.push_back({row.integer(0), row.text(1), row.text(2), row.text(3)});
   return found;
@@ -128,7 +128,7 @@ std::pair<std::string, std::string> answer_of(Connection& database, std::int64_t
   Statement row(
       database,
       "SELECT score, response_time_s FROM response WHERE unit_id = ? AND question_id = ? AND attempt = ?");
-  if (!row.bind(0, unit).bind(1, question).bind(2, attempt).step()) return {"n/a", "n/a"};
+  if (!row.bind_all(unit, question, attempt).step()) return {"n/a", "n/a"};
   return {field(row, 0), field(row, 1)};
 }
 
@@ -145,7 +145,7 @@ void write_phenotypes(Connection& database, const std::vector<LabelledSession>& 
         database,
         "SELECT unit_id, block, kind, position FROM unit WHERE session_id = ? AND trial_id IS NULL "
         "AND state = 'done' AND kind NOT IN ('practice', 'stimulus', 'repeat') ORDER BY position");
-    for (unit.bind(0, session.id); unit.step();) {
+    for (unit.bind_all(session.id); unit.step();) {
       const std::string block = unit.text(1), kind = unit.text(2);
       auto asked = items(database, session.id, "u.unit_id = " + unit.text(0));
       if (asked.empty()) continue;

@@ -21,7 +21,7 @@ void Store::restart_block(std::int64_t session, int block, const std::string& re
   Statement row(*database_,
                 "SELECT DISTINCT u.trial_id FROM unit u JOIN presentation p USING (trial_id) "
                 "WHERE u.session_id = ? AND u.block_index = ? ORDER BY u.position");
-  for (row.bind(0, session).bind(1, block); row.step();) begun.push_back(row.integer(0));
+  for (row.bind_all(session, block); row.step();) begun.push_back(row.integer(0));
   for (const std::int64_t trial : begun) set_trial_aside(session, trial);
   if (!reason.empty()) insert_note(session, {}, reason);
   commit(transaction);
@@ -32,15 +32,15 @@ void Store::set_trial_aside(std::int64_t session, std::int64_t trial) {
                  "UPDATE trial SET state = 'planned', set_aside = (SELECT coalesce(max(attempt), 0) "
                  "FROM presentation p WHERE p.trial_id = ?1) WHERE trial_id = ?1 AND session_id = ?2 "
                  "RETURNING position");
-  if (!open.bind(0, trial).bind(1, session).step()) throw_no_trial();
+  if (!open.bind_all(trial, session).step()) throw_no_trial();
   const std::string where = "trial " + open.text(0);
   open.reset();
   Statement(*database_, "UPDATE unit SET state = 'planned', done_utc = NULL WHERE trial_id = ?")
-      .bind(0, trial)
+      .bind_all(trial)
       .run();
   Statement(*database_,
             "UPDATE session SET state = 'open', ended_utc = NULL WHERE session_id = ? AND state = 'done'")
-      .bind(0, session)
+      .bind_all(session)
       .run();
   insert_event(session, {}, "trial set aside", where, {});
 }
@@ -53,7 +53,7 @@ void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const st
   Statement(*database_,
             "UPDATE trial SET state = 'planned' WHERE trial_id = ?1 AND NOT EXISTS (SELECT 1 FROM response "
             "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")
-      .bind(0, unit.trial_id)
+      .bind_all(unit.trial_id)
       .run();
   commit(transaction);
 }
@@ -70,7 +70,7 @@ void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::s
   Statement exclude(*database_,
                     "UPDATE trial SET excluded = ?3 WHERE trial_id = ?1 AND session_id = ?2 "
                     "RETURNING position");
-  if (!exclude.bind(0, trial).bind(1, session).bind(2, reason).step()) throw_no_trial();
+  if (!exclude.bind_all(trial, session, reason).step()) throw_no_trial();
   const std::string where = "trial " + exclude.text(0);
   exclude.reset();
   insert_event(session, {}, "trial excluded", where, {});
@@ -82,12 +82,12 @@ void Store::throw_no_trial() const {
 
 bool Store::set_aside(const OpenUnit& unit, int attempt) {
   Statement row(*database_, "SELECT 1 FROM trial WHERE trial_id = ? AND set_aside >= ?");
-  return row.bind(0, unit.trial_id).bind(1, attempt).step();
+  return row.bind_all(unit.trial_id, attempt).step();
 }
 
 std::int64_t Store::trial_unit(std::int64_t trial) {
   Statement row(*database_, "SELECT unit_id FROM unit WHERE trial_id = ?");
-  return row.bind(0, trial).step() ? row.integer(0) : 0;
+  return row.bind_all(trial).step() ? row.integer(0) : 0;
 }
 
 }  // namespace study

@@ -33,7 +33,13 @@ std::vector<Chore> pending(Connection& database) {
     const std::string kind = row.text(1), batch = row.text(2);
     const bool same =
         kind == "rename" && !chores.empty() && chores.back().kind == kind && chores.back().batch == batch;
-    if (!same) chores.push_back({{}, kind, batch, row.text(3), row.text(4), {}});
+    if (!same)
+      chores.push_back({.rows = {},
+                        .kind = kind,
+                        .batch = batch,
+                        .person = row.text(3),
+                        .participant = row.text(4),
+                        .codes = {}});
     chores.back().rows.push_back(row.integer(0));
     if (kind == "rename") chores.back().codes[row.text(4)] = row.text(5);
   }
@@ -44,7 +50,7 @@ std::vector<Chore> pending(Connection& database) {
 void strike_out(Connection& database, const Chore& chore) {
   Transaction transaction(database);
   for (const std::int64_t row : chore.rows)
-    Statement(database, "DELETE FROM chore WHERE chore_id = ?").bind(0, row).run();
+    Statement(database, "DELETE FROM chore WHERE chore_id = ?").bind_all(row).run();
   ChorePlan(database).rewrite();
   transaction.commit();
 }
@@ -148,12 +154,8 @@ void ChorePlan::add(const char* kind, const std::string& person, const std::stri
                     const std::string& renamed) {
   Statement insert(database_,
                    "INSERT INTO chore (kind, batch, person, participant, renamed) VALUES (?,?,?,?,?)");
-  insert.bind(0, kind).bind(1, batch_).bind(2, person).bind(3, participant);
-  if (renamed.empty())
-    insert.bind_null(4);
-  else
-    insert.bind(4, renamed);
-  insert.run();
+  const auto other_name = renamed.empty() ? std::nullopt : std::optional(renamed);
+  insert.bind_all(kind, batch_, person, participant, other_name).run();
 }
 
 CleanUp clean_up(Connection& database) {

@@ -100,7 +100,7 @@ void back_up(Connection& database, std::int64_t version) {
   fs::remove(draft, failed);
   if (!create_private(draft)) throw base::Error(draft, "is in the way", "move it away and try again");
   try {
-    sqlite::Statement(database, "VACUUM INTO ?").bind(0, draft).run();
+    sqlite::Statement(database, "VACUUM INTO ?").bind_all(draft).run();
     fs::rename(draft, copy, failed);
     if (failed)
       throw base::Error(copy, "cannot be put in place: " + failed.message(), "check the disk and try again");

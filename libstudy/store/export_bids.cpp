@@ -74,7 +74,7 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
   Table rows(1);
   for (const auto& [name, meaning] : columns.items()) rows[0].push_back(name);
   Statement row(database, events_sql);
-  row.bind(0, session);
+  row.bind_all(session);
   bids::SessionTime time;
   while (row.step()) {
     std::optional<std::int64_t> end_ns;
@@ -108,7 +108,7 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
       database,
       "SELECT refresh_hz, screen_width_mm, viewing_distance_mm, machine, program_version, display "
       "FROM session JOIN run USING (run_id) WHERE session_id = ?");
-  screen.bind(0, session.id).step();
+  screen.bind_all(session.id).step();
   Json presentation{{"OperatingSystem", screen.text(3)},
                     {"SoftwareName", "vip-study"},
                     {"SoftwareVersion", screen.text(4)}};
@@ -154,7 +154,7 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
                   "SELECT s.started_utc, p.name, p.version, p.sha256, s.visit, s.test_data OR p.test_data, "
                   "s.observer, s.station, s.gaze_source, s.state FROM session s JOIN protocol p "
                   "USING (protocol_id) WHERE s.session_id = ?");
-    row.bind(0, session.id).step();
+    row.bind_all(session.id).step();
     std::vector<std::string> line{"ses-" + session.session};
     for (int i = 0; i < 10; ++i) line.push_back(field(row, i));
     rows->second.push_back(std::move(line));

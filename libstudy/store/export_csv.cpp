@@ -107,7 +107,7 @@ bool is_export(const fs::path& folder) {
 
 std::vector<ColumnMeaning> columns_of(Connection& database, const Table& table) {
   Statement sql(database, "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
-  if (!sql.bind(0, table.name).step()) return {};
+  if (!sql.bind_all(table.name).step()) return {};
   auto columns = column_meanings(table.name, sql.text(0));
   std::erase_if(columns, [&](const ColumnMeaning& column) { return column.column == table.left; });
   return columns;

@@ -31,8 +31,12 @@ std::vector<LabelledSession> shared_sessions(sqlite::Connection& database) {
       name_of[sha256] = fresh ? protocols.of(row.text(2)) : protocols.of(row.text(2) + sha256.substr(0, 6));
     }
     const std::string& protocol = name_of[sha256];
-    sessions.push_back({row.integer(0), row.text(5), row.text(1), people.of(row.text(1)),
-                        visits.of(protocol + "v" + row.text(4)), protocol});
+    sessions.push_back({.id = row.integer(0),
+                        .person = row.text(5),
+                        .participant = row.text(1),
+                        .subject = people.of(row.text(1)),
+                        .session = visits.of(protocol + "v" + row.text(4)),
+                        .protocol = protocol});
   }
   return sessions;
 }

@@ -65,11 +65,11 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
       "INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,'',?,0) "
       "ON CONFLICT (host, path) DO UPDATE SET kind = excluded.kind, utc = excluded.utc, tackled = 0 "
       "RETURNING export_id");
-  insert.bind(0, kind).bind(1, path.string()).bind(2, this_host()).bind(3, base::utc_now()).step();
+  insert.bind_all(kind, path.string(), this_host(), base::utc_now()).step();
   const std::int64_t id = insert.integer(0);
   insert.reset();
   Statement member(database, "INSERT OR IGNORE INTO export_person VALUES (?,?)");
-  for (const std::string& person : people) member.bind(0, id).bind(1, person).run();
+  for (const std::string& person : people) member.bind_all(id, person).run();
   return id;
 }
 
@@ -81,8 +81,8 @@ std::string export_rows::this_host() {
 }
 
 void export_rows::strike_out(Connection& database, std::int64_t id) {
-  Statement(database, "DELETE FROM export_person WHERE export_id = ?").bind(0, id).run();
-  Statement(database, "DELETE FROM export WHERE export_id = ?").bind(0, id).run();
+  Statement(database, "DELETE FROM export_person WHERE export_id = ?").bind_all(id).run();
+  Statement(database, "DELETE FROM export WHERE export_id = ?").bind_all(id).run();
 }
 
 std::set<std::string> everybody(Connection& database) {
@@ -99,8 +99,7 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   Transaction transaction(*file);
   enter(*file, kind_, path_, people_);
   Statement(*file, "INSERT INTO event (utc, kind, detail) VALUES (?, 'export', ?)")
-      .bind(0, base::utc_now())
-      .bind(1, path_.string())
+      .bind_all(base::utc_now(), path_.string())
       .run();
   transaction.commit();
 }
@@ -111,7 +110,7 @@ RegisteredExport::~RegisteredExport() {
     const auto file = open_register(database_);
     Transaction transaction(*file);
     Statement row(*file, "SELECT export_id FROM export WHERE host = ? AND path = ? AND sha256 = ''");
-    if (row.bind(0, this_host()).bind(1, path_.string()).step()) {
+    if (row.bind_all(this_host(), path_.string()).step()) {
       const std::int64_t id = row.integer(0);
       row.reset();
       strike_out(*file, id);
@@ -126,7 +125,7 @@ void RegisteredExport::will_be(const std::string& sha256) {
   const auto file = open_register(database_);
   Transaction transaction(*file);
   const std::int64_t id = enter(*file, kind_, path_, people_);
-  Statement(*file, "UPDATE export SET sha256 = ? WHERE export_id = ?").bind(0, sha256).bind(1, id).run();
+  Statement(*file, "UPDATE export SET sha256 = ? WHERE export_id = ?").bind_all(sha256, id).run();
   transaction.commit();
   named_ = true;
 }
@@ -137,7 +136,7 @@ void RegisteredExport::is_in_place() {
   Transaction transaction(*file);
   Statement gone(*file, "SELECT participant FROM tombstone WHERE person = ?");
   for (const std::string& person : people_) {
-    if (!gone.bind(0, person).step()) continue;
+    if (!gone.bind_all(person).step()) continue;
     fs::remove_all(path_);
     throw base::Error(path_.string(), "was deleted again: " + gone.text(0) + " withdrew while it was written",
                       "export again");
@@ -145,13 +144,12 @@ void RegisteredExport::is_in_place() {
   Statement member(
       *file, "SELECT person FROM export_person JOIN export USING (export_id) WHERE host = ? AND path = ?");
   std::vector<std::string> former;
-  for (member.bind(0, this_host()).bind(1, path_.string()); member.step();)
+  for (member.bind_all(this_host(), path_.string()); member.step();)
     if (!people_.contains(member.text(0))) former.push_back(member.text(0));
   Statement strike(*file,
                    "DELETE FROM export_person WHERE person = ? AND export_id = "
                    "(SELECT export_id FROM export WHERE host = ? AND path = ?)");
-  for (const std::string& person : former)
-    strike.bind(0, person).bind(1, this_host()).bind(2, path_.string()).run();
+  for (const std::string& person : former) strike.bind_all(person, this_host(), path_.string()).run();
   transaction.commit();
 }
 
@@ -181,10 +179,7 @@ void RegisteredFiles::make_folder(const fs::path& folder) const {
   const auto file = open_register(database_);
   Statement(*file,
             "INSERT OR IGNORE INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,'',?,0)")
-      .bind(0, export_rows::folder_kind)
-      .bind(1, path.string())
-      .bind(2, this_host())
-      .bind(3, base::utc_now())
+      .bind_all(export_rows::folder_kind, path.string(), this_host(), base::utc_now())
       .run();
 }
 

@@ -64,12 +64,17 @@ std::vector<Leftover> leftovers(Connection& database) {
                 "ORDER BY host, path");
   std::vector<Leftover> all;
   while (row.step())
-    all.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5) != 0});
+    all.push_back({.id = row.integer(0),
+                   .kind = row.text(1),
+                   .host = row.text(2),
+                   .sha256 = row.text(3),
+                   .path = row.text(4),
+                   .tackled = row.integer(5) != 0});
   return all;
 }
 
 void mark_tackled(Connection& database, const Leftover& one) {
-  Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind(0, one.id).run();
+  Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind_all(one.id).run();
 }
 
 /// Why it is not deleted; empty: it is gone.
@@ -96,7 +101,7 @@ void remove_empty_folders(Connection& database) {
   std::vector<std::pair<std::int64_t, std::string>> folders;
   Statement row(database,
                 "SELECT export_id, path FROM export WHERE kind = ? AND host = ? ORDER BY path DESC");
-  for (row.bind(0, export_rows::folder_kind).bind(1, this_host()); row.step();)
+  for (row.bind_all(export_rows::folder_kind, this_host()); row.step();)
     folders.emplace_back(row.integer(0), row.text(1));
   for (const auto& [id, path] : folders)
     if (::rmdir(path.c_str()) == 0 || errno == ENOENT) strike_out(database, id);

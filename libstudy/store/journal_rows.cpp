@@ -85,18 +85,18 @@ std::string selection(const Table& table, const std::string& condition) {
 
 void bind_value(Statement& statement, int index, const Json& value) {
   if (value.is_string())
-    statement.bind(index, value.get_ref<const std::string&>());
+    statement.bind_at(index, value.get_ref<const std::string&>());
   else if (value.is_number_float())
-    statement.bind(index, value.get<double>());
+    statement.bind_at(index, value.get<double>());
   else if (value.is_number())
-    statement.bind(index, value.get<std::int64_t>());
+    statement.bind_at(index, value.get<std::int64_t>());
   else
-    statement.bind_null(index);
+    statement.bind_at(index, std::nullopt);
 }
 
 std::vector<std::string> columns_of(Connection& database, const Table& table) {
   Statement row(database, "SELECT name FROM pragma_table_info(?)");
-  row.bind(0, table.name);
+  row.bind_all(table.name);
   std::vector<std::string> names;
   while (row.step()) names.push_back(row.text(0));
   return names;
@@ -121,14 +121,14 @@ void each_row(Connection& database, const Table& table, std::span<const std::int
   if (row_ids.empty()) return;
   Statement row(database, selection(table, " WHERE x.rowid = ?"));
   for (const std::int64_t id : row_ids) {
-    for (row.bind(0, id); row.step();) take(row_of(table, row));
+    for (row.bind_all(id); row.step();) take(row_of(table, row));
   }
 }
 
 void each_row_of_protocol(Connection& database, const Table& table, std::int64_t protocol_id,
                           const std::function<void(Row)>& take) {
   Statement row(database, selection(table, " WHERE x.protocol_id = ?"));
-  for (row.bind(0, protocol_id); row.step();) take(row_of(table, row));
+  for (row.bind_all(protocol_id); row.step();) take(row_of(table, row));
 }
 
 std::optional<Row> stands_as(Connection& database, const Row& wanted) {

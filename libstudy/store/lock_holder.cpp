@@ -1,10 +1,10 @@
 #include "libstudy/store/lock_holder.hpp"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -17,10 +17,7 @@ namespace {
 std::string kernel_name(const std::string& path) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return {};
-  char name[64];
-  std::snprintf(name, sizeof name, "%02x:%02x:%llu", major(file.st_dev), minor(file.st_dev),
-                static_cast<unsigned long long>(file.st_ino));
-  return name;
+  return fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev), file.st_ino);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void copy_rows(Connection& source, Connection& target, const Table& table, std::
   const std::string name = table.name, key = table.key;
   Statement row(
       source, "SELECT * FROM " + name + " WHERE " + table.rows + " ORDER BY " + (key.empty() ? "1, 2" : key));
-  row.bind(0, parent);
+  row.bind_all(parent);
   std::string columns, values;
   for (int i = 0; i < row.columns(); ++i) {
     columns += (i ? ", " : "") + row.column_name(i);
@@ -78,13 +78,13 @@ void copy_rows(Connection& source, Connection& target, const Table& table, std::
       const auto column = static_cast<std::size_t>(i);
       if (i == 0 && !key.empty()) {
         old = row.integer(0);
-        insert.bind_null(0);
+        insert.bind_at(i, std::nullopt);
       } else if (fixed[column]) {
-        insert.bind(i, *fixed[column]);
+        insert.bind_at(i, *fixed[column]);
       } else if (mapped[column] && !row.is_null(i)) {
         const auto number = mapped[column]->find(row.integer(i));
         if (number == mapped[column]->end()) throw_stray(source, row, name, key, i);
-        insert.bind(i, number->second);
+        insert.bind_at(i, number->second);
       } else {
         insert.bind_from(i, row, i);
       }
@@ -108,8 +108,7 @@ class Union {
   void add_tombstones() {
     Statement insert(target_, "INSERT INTO tombstone VALUES (?,?,?,?,?)");
     for (const auto& [person, stone] : content_.tombstones) {
-      insert.bind(0, person).bind(1, names_.at(person)).bind(2, stone.code);
-      insert.bind(3, stone.station).bind(4, stone.withdrawn_utc).run();
+      insert.bind_all(person, names_.at(person), stone.code, stone.station, stone.withdrawn_utc).run();
     }
   }
 
@@ -127,7 +126,7 @@ class Union {
     }
     Statement insert(target_, "INSERT INTO event (utc, clock_ns, kind, detail) VALUES (?,?,?,?)");
     for (const auto& [utc, clock_ns, kind, detail] : events)
-      insert.bind(0, utc).bind(1, clock_ns).bind(2, kind).bind(3, detail).run();
+      insert.bind_all(utc, clock_ns, kind, detail).run();
   }
 
   void add_session(const SessionCopy& copy) {
@@ -149,19 +148,18 @@ class Union {
       if (copy.uid != uid) continue;
       Connection& source = *content_.sources[copy.source];
       Statement change(source, "SELECT utc, granted, what FROM permission_change WHERE session_id = ?");
-      for (change.bind(0, copy.id); change.step();)
+      for (change.bind_all(copy.id); change.step();)
         changes.emplace(change.text(0), change.integer(1) == 0, change.text(2));
       Statement event(source, "SELECT utc, detail FROM event WHERE session_id = ? AND kind = ?");
-      for (event.bind(0, copy.id).bind(1, permission_event); event.step();)
+      for (event.bind_all(copy.id, permission_event); event.step();)
         events.emplace(event.text(0), event.text(1));
     }
     Statement change(target_,
                      "INSERT INTO permission_change (session_id, utc, granted, what) VALUES (?,?,?,?)");
     for (const auto& [utc, refused, what] : changes)
-      change.bind(0, session).bind(1, utc).bind(2, refused ? 0 : 1).bind(3, what).run();
+      change.bind_all(session, utc, refused ? 0 : 1, what).run();
     Statement event(target_, "INSERT INTO event (session_id, utc, kind, detail) VALUES (?,?,?,?)");
-    for (const auto& [utc, detail] : events)
-      event.bind(0, session).bind(1, utc).bind(2, permission_event).bind(3, detail).run();
+    for (const auto& [utc, detail] : events) event.bind_all(session, utc, permission_event, detail).run();
   }
 
   std::map<std::string, std::string> changes_to(const Table& table, const SessionCopy& copy) const {
@@ -185,11 +183,11 @@ class Union {
     Connection& source = *content_.sources[index];
     RowNumbers& numbers = numbers_[index];
     Statement here(source, "SELECT protocol_id FROM protocol WHERE sha256 = ?");
-    if (!here.bind(0, sha256).step()) return;
+    if (!here.bind_all(sha256).step()) return;
     const std::int64_t id = here.integer(0);
     here.reset();
     Statement there(target_, "SELECT protocol_id FROM protocol WHERE sha256 = ?");
-    if (there.bind(0, sha256).step()) {
+    if (there.bind_all(sha256).step()) {
       numbers["protocol_id"][id] = there.integer(0);
     } else {
       copy_rows(source, target_, {"protocol", "protocol_id", "protocol_id = ?1"}, id, numbers);
@@ -202,11 +200,11 @@ class Union {
   void add_questions(Connection& source, std::int64_t protocol, RowNumbers& numbers) {
     Statement row(source,
                   "SELECT question_id, code FROM question WHERE protocol_id = ? ORDER BY question_id");
-    row.bind(0, protocol);
+    row.bind_all(protocol);
     Statement there(target_, "SELECT question_id FROM question WHERE protocol_id = ? AND code = ?");
     while (row.step()) {
       const std::int64_t old = row.integer(0);
-      there.bind(0, numbers["protocol_id"].at(protocol)).bind(1, row.text(1));
+      there.bind_all(numbers["protocol_id"].at(protocol), row.text(1));
       if (there.step()) {
         numbers["question_id"][old] = there.integer(0);
         there.reset();
@@ -219,16 +217,16 @@ class Union {
   /// Tables without a row number; equal in all sources that hold sessions of the protocol.
   void add_dependants(Connection& source, std::int64_t protocol, RowNumbers& numbers, const char* table) {
     Statement there(target_, std::string("SELECT 1 FROM ") + table + " WHERE protocol_id = ?");
-    if (there.bind(0, numbers["protocol_id"].at(protocol)).step()) return;
+    if (there.bind_all(numbers["protocol_id"].at(protocol)).step()) return;
     copy_rows(source, target_, {table, "", "protocol_id = ?1"}, protocol, numbers);
   }
 
   void add_run(Connection& source, const SessionCopy& copy, RowNumbers& numbers) {
     Statement here(source, "SELECT run_id FROM session WHERE session_id = ?");
-    here.bind(0, copy.id).step();
+    here.bind_all(copy.id).step();
     const std::int64_t id = here.integer(0);
     Statement there(target_, "SELECT run_id FROM run WHERE uid = ?");
-    if (there.bind(0, copy.run_uid).step()) {
+    if (there.bind_all(copy.run_uid).step()) {
       numbers["run_id"][id] = there.integer(0);
     } else {
       copy_rows(source, target_, {"run", "run_id", "run_id = ?1"}, id, numbers);
@@ -271,8 +269,8 @@ void add_exports(Connection& source, Connection& target) {
   while (row.step()) {
     for (int i = 0; i < 6; ++i) add.bind_from(i, row, i);
     add.run();
-    for (person.bind(0, row.integer(6)); person.step();)
-      add_person.bind(0, row.text(2)).bind(1, row.text(1)).bind(2, person.text(0)).run();
+    for (person.bind_all(row.integer(6)); person.step();)
+      add_person.bind_all(row.text(2), row.text(1), person.text(0)).run();
   }
 }
 

@@ -27,7 +27,7 @@ std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   Statement row(source,
                 "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
                 "WHERE session_id = ? AND kind <> ? ORDER BY event_id");
-  row.bind(0, session).bind(1, permission_event);
+  row.bind_all(session, permission_event);
   std::vector<std::string> log;
   while (row.step()) log.push_back(row.text(0));
   return log;
@@ -66,7 +66,7 @@ void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
 std::string dangling_row(Connection& source, const std::string& table, const std::string& parent,
                          std::int64_t foreign_key) {
   Statement link(source, "SELECT \"from\" FROM pragma_foreign_key_list(?) WHERE id = ?");
-  if (!link.bind(0, table).bind(1, foreign_key).step()) return "a row of " + table;
+  if (!link.bind_all(table, foreign_key).step()) return "a row of " + table;
   const std::string column = link.text(0);
   Statement lost(source, "SELECT " + column + " FROM " + table + " WHERE " + column + " NOT IN (SELECT " +
                              column + " FROM " + parent + ") LIMIT 1");
@@ -90,7 +90,7 @@ void add_source(Content& content, std::unique_ptr<Connection> source) {
   check_references(*source);
   const std::size_t index = content.sources.size();
   Statement row(*source, sessions_sql);
-  for (row.bind(0, permission_event); row.step();) {
+  for (row.bind_all(permission_event); row.step();) {
     SessionCopy copy;
     copy.source = index;
     copy.id = row.integer(0);

@@ -14,7 +14,7 @@ std::vector<std::string> answered_questions(sqlite::Connection& database, std::i
                 "SELECT DISTINCT q.question_id, q.code FROM response r JOIN question q USING (question_id) "
                 "JOIN unit u USING (unit_id) LEFT JOIN trial t USING (trial_id) WHERE r.unit_id = ? "
                 "AND r.attempt > coalesce(t.set_aside, -1) ORDER BY q.question_id");
-  row.bind(0, unit);
+  row.bind_all(unit);
   std::vector<std::string> ids;
   while (row.step()) ids.push_back(row.text(1));
   return ids;
@@ -38,7 +38,7 @@ std::vector<OpenUnit> open_units(sqlite::Connection& database, std::int64_t sess
                 "(SELECT coalesce(max(p.attempt), 0) FROM presentation p WHERE p.trial_id = t.trial_id), "
                 "t.set_aside FROM unit u LEFT JOIN trial t USING (trial_id) "
                 "WHERE u.session_id = ? AND u.state = 'planned' ORDER BY u.position");
-  row.bind(0, session);
+  row.bind_all(session);
   std::vector<OpenUnit> units;
   while (row.step()) {
     OpenUnit unit;
@@ -101,7 +101,7 @@ std::vector<OpenSession> open_sessions(sqlite::Connection& database, std::int64_
       "refresh_hz FROM session s WHERE run_id = ? AND protocol_id = ? AND state = 'open' AND EXISTS "
       "(SELECT 1 FROM unit u WHERE u.session_id = s.session_id AND u.state = 'planned') "
       "ORDER BY session_id");
-  row.bind(0, run).bind(1, protocol);
+  row.bind_all(run, protocol);
   std::vector<OpenSession> sessions;
   while (row.step()) {
     OpenSession session;
@@ -133,12 +133,12 @@ std::vector<std::string> Store::wished_withdrawals() { return study::wished_with
 
 bool Store::has_shown(std::int64_t session) {
   Statement row(*database_, "SELECT 1 FROM presentation JOIN trial USING (trial_id) WHERE session_id = ?");
-  return row.bind(0, session).step();
+  return row.bind_all(session).step();
 }
 
 bool Store::has_answers(std::int64_t session) {
   Statement row(*database_, "SELECT 1 FROM response JOIN unit USING (unit_id) WHERE session_id = ?");
-  return row.bind(0, session).step();
+  return row.bind_all(session).step();
 }
 
 std::vector<OpenRun> Store::open_runs() {

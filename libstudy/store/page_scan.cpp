@@ -170,7 +170,7 @@ std::vector<Shape> shapes_of(sqlite::Connection& database) {
   Statement column(database, "SELECT name, type, \"notnull\", pk FROM pragma_table_info(?)");
   while (table.step()) {
     Shape shape{table.text(0), {}, table.integer(1) == 0, -1};
-    for (column.bind(0, shape.table); column.step();) {
+    for (column.bind_all(shape.table); column.step();) {
       if (shape.row_numbers && column.integer(3) > 0 && column.text(1) == "INTEGER")
         shape.row_number_column = static_cast<int>(shape.columns.size());
       shape.columns.push_back({column.text(0), column.text(1), column.integer(2) == 0});

@@ -24,9 +24,9 @@ constexpr const char* gaze_of_person =
 
 std::string person_of(Connection& database, const std::string& participant) {
   Statement here(database, "SELECT person FROM session WHERE participant = ?");
-  if (here.bind(0, participant).step()) return here.text(0);
+  if (here.bind_all(participant).step()) return here.text(0);
   Statement gone(database, "SELECT 1 FROM tombstone WHERE participant = ?");
-  const bool withdrew = gone.bind(0, participant).step();
+  const bool withdrew = gone.bind_all(participant).step();
   throw base::Error(database.path().string(),
                     withdrew ? "participant " + participant + " withdrew: nothing of theirs is left"
                              : "knows no participant " + participant,
@@ -43,18 +43,12 @@ void write_change(Connection& database, const std::string& person, const char* w
   Statement(database,
             "INSERT INTO permission_change (session_id, what, granted, utc) "
             "SELECT session_id, ?2, ?3, ?4 FROM session WHERE person = ?1 ORDER BY session_id")
-      .bind(0, person)
-      .bind(1, what)
-      .bind(2, allowed ? 1 : 0)
-      .bind(3, now)
+      .bind_all(person, what, allowed ? 1 : 0, now)
       .run();
   Statement(database,
             "INSERT INTO event (session_id, utc, kind, detail) "
             "SELECT session_id, ?2, ?3, ?4 FROM session WHERE person = ?1 ORDER BY session_id")
-      .bind(0, person)
-      .bind(1, now)
-      .bind(2, permission_event)
-      .bind(3, std::string(what) + (allowed ? " allowed" : " refused"))
+      .bind_all(person, now, permission_event, std::string(what) + (allowed ? " allowed" : " refused"))
       .run();
 }
 
@@ -64,7 +58,7 @@ void write_changes(Connection& database, const std::string& person, const Permis
   if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
   if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
   if (wish.gaze && !*wish.gaze) {
-    Statement(database, std::string("DELETE FROM ") + gaze_of_person).bind(0, person).run();
+    Statement(database, std::string("DELETE FROM ") + gaze_of_person).bind_all(person).run();
     ChorePlan(database).rewrite();
   }
   journal.write();
@@ -74,7 +68,7 @@ void write_changes(Connection& database, const std::string& person, const Permis
 
 std::int64_t count_gaze(Connection& database, const std::string& person) {
   Statement row(database, std::string("SELECT count(*) FROM ") + gaze_of_person);
-  return row.bind(0, person).step() ? row.integer(0) : 0;
+  return row.bind_all(person).step() ? row.integer(0) : 0;
 }
 
 bool holds_gaze(const fs::path& path, const std::string& person) {
@@ -101,7 +95,7 @@ std::vector<std::string> public_exports(Connection& database, const std::string&
       database,
       "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
       "(export_id) WHERE person = ? AND kind IN ('bids', 'psych-ds', 'unknown') ORDER BY export_id");
-  row.bind(0, person);
+  row.bind_all(person);
   std::vector<std::string> found;
   while (row.step()) found.push_back(row.text(0));
   return found;
@@ -117,7 +111,7 @@ std::vector<SessionPermission> read_permissions(const fs::path& path, const std:
                 "(protocol_id) JOIN permission g ON g.session_id = s.session_id AND g.what = 'gaze' "
                 "JOIN permission h ON h.session_id = s.session_id AND h.what = 'sharing' "
                 "WHERE s.person = ? ORDER BY s.session_id");
-  row.bind(0, person);
+  row.bind_all(person);
   std::vector<SessionPermission> sessions;
   while (row.step())
     sessions.push_back({row.text(0), static_cast<int>(row.integer(1)), granted(row, 2), granted(row, 3)});

@@ -43,7 +43,7 @@ void make_private(const fs::path& path) {
 void check_whole(sqlite::Connection& file) {
   Statement foreign(
       file, "SELECT name FROM sqlite_schema WHERE sql NOT IN ('CREATE TABLE ' || ?, 'CREATE TABLE ' || ?)");
-  foreign.bind(0, tables[0]).bind(1, tables[1]);
+  foreign.bind_all(tables[0], tables[1]);
   std::string wrong = foreign.step() ? "holds '" + foreign.text(0) + "', which vip-study did not make" : "";
   if (const std::string found = file.text("PRAGMA integrity_check(1)"); wrong.empty() && found != "ok")
     wrong = "is damaged: " + found;
@@ -71,15 +71,14 @@ void PersonalFile::keep(const std::vector<PersonalEntry>& entries) {
   Transaction transaction(*file_);
   Statement insert(*file_, "INSERT OR REPLACE INTO personal VALUES (?,?,?,?)");
   for (const PersonalEntry& entry : entries) {
-    insert.bind(0, entry.participant).bind(1, entry.question).bind(2, entry.wording);
-    insert.bind(3, entry.answer).run();
+    insert.bind_all(entry.participant, entry.question, entry.wording, entry.answer).run();
   }
   transaction.commit();
 }
 
 std::vector<PersonalEntry> PersonalFile::read(const std::string& participant) {
   Statement row(*file_, "SELECT * FROM personal WHERE participant = ? ORDER BY rowid");
-  row.bind(0, participant);
+  row.bind_all(participant);
   std::vector<PersonalEntry> entries;
   while (row.step()) entries.push_back({row.text(0), row.text(1), row.text(2), row.text(3)});
   return entries;
@@ -88,18 +87,18 @@ std::vector<PersonalEntry> PersonalFile::read(const std::string& participant) {
 void PersonalFile::rename(const std::string& batch, const std::map<std::string, std::string>& codes) {
   Transaction transaction(*file_);
   Statement done(*file_, "INSERT OR IGNORE INTO renaming VALUES (?) RETURNING 1");
-  const bool again = !done.bind(0, batch).step();
+  const bool again = !done.bind_all(batch).step();
   done.reset();
   if (again) return;
   // In two steps, since one may take the code that another gives up.
   Statement aside(*file_, "UPDATE personal SET participant = ' ' || ? WHERE participant = ?");
-  for (const auto& [before, now] : codes) aside.bind(0, now).bind(1, before).run();
+  for (const auto& [before, now] : codes) aside.bind_all(now, before).run();
   file_->execute("UPDATE personal SET participant = substr(participant, 2) WHERE participant LIKE ' %'");
   transaction.commit();
 }
 
 void PersonalFile::forget(const std::string& participant) {
-  Statement(*file_, "DELETE FROM personal WHERE participant = ?").bind(0, participant).run();
+  Statement(*file_, "DELETE FROM personal WHERE participant = ?").bind_all(participant).run();
   file_->execute("VACUUM");
 }
 

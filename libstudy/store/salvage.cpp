@@ -139,9 +139,8 @@ void fill(Connection& target, Connection* sound, const fs::path& database, const
             [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
   rebuild.sum_up();
   Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")
-      .bind(0, base::utc_now())
-      .bind(1, std::to_string(told.answers_database) + " answers from the database, " +
-                   std::to_string(told.answers_journal) + " from its journal alone")
+      .bind_all(base::utc_now(), std::to_string(told.answers_database) + " answers from the database, " +
+                                     std::to_string(told.answers_journal) + " from its journal alone")
       .run();
   transaction.commit();
 }

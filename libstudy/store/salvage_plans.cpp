@@ -25,9 +25,15 @@ std::vector<Planned> sessions_of(Connection& database) {
       "SELECT s.session_id, s.seed, s.participant, s.code, p.text, p.sha256, p.trial_seconds, s.slot "
       "FROM session s JOIN protocol p USING (protocol_id)");
   while (row.step()) {
-    Planned one{row.integer(0), row.integer(1), row.text(2), row.text(3), row.text(4), row.text(5), {}, 0};
+    Planned one{.session = row.integer(0),
+                .seed = row.integer(1),
+                .participant = row.text(2),
+                .code = row.text(3),
+                .text = row.text(4),
+                .sha256 = row.text(5),
+                .trial_seconds = {},
+                .slot = static_cast<int>(row.integer(7))};
     if (!row.is_null(6)) one.trial_seconds = row.real(6);
-    one.slot = static_cast<int>(row.integer(7));
     all.push_back(std::move(one));
   }
   return all;
@@ -37,7 +43,7 @@ std::vector<Planned> sessions_of(Connection& database) {
 std::optional<std::int64_t> first_row(Connection& database, const std::string& table, std::int64_t session) {
   Statement row(database, "SELECT min(" + table + "_id - position), max(" + table +
                               "_id - position), count(*) FROM " + table + " WHERE session_id = ?");
-  if (!row.bind(0, session).step() || row.integer(2) == 0 || row.integer(0) != row.integer(1)) return {};
+  if (!row.bind_all(session).step() || row.integer(2) == 0 || row.integer(0) != row.integer(1)) return {};
   return row.integer(0);
 }
 
@@ -45,7 +51,7 @@ std::optional<std::int64_t> first_row(Connection& database, const std::string& t
 bool agrees(Connection& database, std::int64_t session, const Plan& plan) {
   Statement row(database,
                 "SELECT position, first_cell, second_cell, schedule_seed FROM trial WHERE session_id = ?");
-  for (row.bind(0, session); row.step();) {
+  for (row.bind_all(session); row.step();) {
     const auto position = static_cast<std::size_t>(row.integer(0));
     if (position >= plan.trials.size()) return false;
     const PlannedTrial& trial = plan.trials[position];
@@ -71,9 +77,10 @@ void add_trials(Connection& database, std::int64_t session, std::int64_t first, 
                    "INSERT OR IGNORE INTO trial (trial_id, session_id, position, group_index, first_cell, "
                    "second_cell, schedule_seed, state, set_aside) VALUES (?,?,?,?,?,?,?,'planned',0)");
   for (const PlannedTrial& trial : plan.trials) {
-    insert.bind(0, first + trial.position).bind(1, session).bind(2, trial.position).bind(3, trial.group);
-    insert.bind(4, trial.first).bind(5, trial.second);
-    insert.bind(6, static_cast<std::int64_t>(trial.schedule_seed)).run();
+    insert
+        .bind_all(first + trial.position, session, trial.position, trial.group, trial.first, trial.second,
+                  static_cast<std::int64_t>(trial.schedule_seed))
+        .run();
   }
 }
 
@@ -87,8 +94,10 @@ void add_units(Connection& database, std::int64_t session, std::int64_t first,
     std::optional<std::int64_t> trial;
     if (unit.trial && !first_trial) continue;
     if (unit.trial) trial = *first_trial + *unit.trial;
-    insert.bind(0, first + unit.position).bind(1, session).bind(2, unit.position).bind(3, block.id);
-    insert.bind(4, unit.block).bind(5, block_kind_name(block.kind)).bind(6, trial).run();
+    insert
+        .bind_all(first + unit.position, session, unit.position, block.id, unit.block,
+                  block_kind_name(block.kind), trial)
+        .run();
   }
 }
 

@@ -38,13 +38,13 @@ std::string text_of(const Shape& shape, const Values& values, const std::string&
 
 void bind(Statement& statement, int index, const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value))
-    statement.bind(index, *whole);
+    statement.bind_at(index, *whole);
   else if (const auto* real = std::get_if<double>(&value))
-    statement.bind(index, *real);
+    statement.bind_at(index, *real);
   else if (const auto* text = std::get_if<std::string>(&value))
-    statement.bind(index, *text);
+    statement.bind_at(index, *text);
   else
-    statement.bind_null(index);
+    statement.bind_at(index, std::nullopt);
 }
 
 /// A row found twice is an old copy and the one that counts; what happens to a row later fills its columns.
@@ -154,11 +154,8 @@ void Rebuild::take_journal(const Table& table, const JournalRows& rows, bool und
     const Row& row = at->second;
     if (table.name == std::string("session") && withdrew(journal::column(row, "person"))) {
       Statement(target_, "INSERT OR IGNORE INTO tombstone VALUES (?,?,?,?,?)")
-          .bind(0, journal::column(row, "person"))
-          .bind(1, journal::column(row, "participant"))
-          .bind(2, journal::column(row, "code"))
-          .bind(3, journal::column(row, "station"))
-          .bind(4, base::utc_now())
+          .bind_all(journal::column(row, "person"), journal::column(row, "participant"),
+                    journal::column(row, "code"), journal::column(row, "station"), base::utc_now())
           .run();
     } else if (const auto now = journal::stands_as(target_, row)) {
       take_known(row, *now);

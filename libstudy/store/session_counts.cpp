@@ -33,7 +33,7 @@ SessionCounts count_session(const std::filesystem::path& path, std::int64_t sess
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   sqlite::Statement row(*database, counts_sql);
   SessionCounts counts;
-  if (!row.bind(0, session).step()) return counts;
+  if (!row.bind_all(session).step()) return counts;
   counts.participant = row.text(0);
   counts.state = row.text(1);
   int column = 2;

@@ -5,6 +5,7 @@
 /// While a connection is open, nothing else in this process may open and close the file: that would take away
 /// the locks which SQLite holds on it.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -122,7 +123,7 @@ class Connection {
   std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
-/// A prepared statement: bind all, step, reset. Indices count from 0.
+/// A prepared statement: bind_all, step, reset. Indices count from 0.
 class Statement {
  public:
   Statement(Connection& connection, std::string_view sql);
@@ -131,19 +132,30 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  Statement& bind(int index, std::int64_t value);
-  Statement& bind(int index, int value) { return bind(index, static_cast<std::int64_t>(value)); }
+  /// A value for each parameter, in their order: whole numbers of 32 or 64 bits, real ones, texts,
+  /// std::nullopt for NULL, and optionals of these. std::logic_error unless there are as many as parameters.
+  template <class... Values>
+  Statement& bind_all(const Values&... values) {
+    expect_parameters(sizeof...(values));
+    int index = 0;
+    (bind_at(index++, values), ...);
+    return *this;
+  }
+
+  /// One value alone, where the statement is not known beforehand.
+  Statement& bind_at(int index, std::int64_t value);
+  Statement& bind_at(int index, int value) { return bind_at(index, static_cast<std::int64_t>(value)); }
   /// Not a number becomes NULL.
-  Statement& bind(int index, double value);
-  Statement& bind(int index, std::string_view value);
-  Statement& bind(int index, const std::string& value) { return bind(index, std::string_view(value)); }
-  Statement& bind(int index, const char* value) { return bind(index, std::string_view(value)); }
-  Statement& bind_null(int index);
+  Statement& bind_at(int index, double value);
+  Statement& bind_at(int index, std::string_view value);
+  Statement& bind_at(int index, const std::string& value) { return bind_at(index, std::string_view(value)); }
+  Statement& bind_at(int index, const char* value) { return bind_at(index, std::string_view(value)); }
+  Statement& bind_at(int index, std::nullopt_t);
   /// The value of a column of another statement's row.
   Statement& bind_from(int index, const Statement& row, int column);
   template <class Value>
-  Statement& bind(int index, const std::optional<Value>& value) {
-    return value ? bind(index, *value) : bind_null(index);
+  Statement& bind_at(int index, const std::optional<Value>& value) {
+    return value ? bind_at(index, *value) : bind_at(index, std::nullopt);
   }
 
   /// True when there is a row. After the last one the statement is reset and its values are kept.
@@ -162,6 +174,8 @@ class Statement {
   std::string text(int index) const;
 
  private:
+  void expect_parameters(std::size_t given) const;
+
   Connection* connection_;
   sqlite3_stmt* handle_ = nullptr;
 };

@@ -1,6 +1,8 @@
 #include <sqlite3.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "libstudy/store/sqlite.hpp"
@@ -17,24 +19,24 @@ Statement::~Statement() { sqlite3_finalize(handle_); }
 Statement::Statement(Statement&& other) noexcept
     : connection_(other.connection_), handle_(std::exchange(other.handle_, nullptr)) {}
 
-Statement& Statement::bind(int index, std::int64_t value) {
+Statement& Statement::bind_at(int index, std::int64_t value) {
   connection_->check(sqlite3_bind_int64(handle_, index + 1, value));
   return *this;
 }
 
-Statement& Statement::bind(int index, double value) {
-  if (std::isnan(value)) return bind_null(index);
+Statement& Statement::bind_at(int index, double value) {
+  if (std::isnan(value)) return bind_at(index, std::nullopt);
   connection_->check(sqlite3_bind_double(handle_, index + 1, value));
   return *this;
 }
 
-Statement& Statement::bind(int index, std::string_view value) {
+Statement& Statement::bind_at(int index, std::string_view value) {
   connection_->check(sqlite3_bind_text(handle_, index + 1, value.data() ? value.data() : "",
                                        static_cast<int>(value.size()), SQLITE_TRANSIENT));
   return *this;
 }
 
-Statement& Statement::bind_null(int index) {
+Statement& Statement::bind_at(int index, std::nullopt_t) {
   connection_->check(sqlite3_bind_null(handle_, index + 1));
   return *this;
 }
@@ -42,6 +44,13 @@ Statement& Statement::bind_null(int index) {
 Statement& Statement::bind_from(int index, const Statement& row, int column) {
   connection_->check(sqlite3_bind_value(handle_, index + 1, sqlite3_column_value(row.handle_, column)));
   return *this;
+}
+
+void Statement::expect_parameters(std::size_t given) const {
+  const auto wanted = static_cast<std::size_t>(sqlite3_bind_parameter_count(handle_));
+  if (given == wanted) return;
+  throw std::logic_error(std::to_string(given) + " values for the " + std::to_string(wanted) +
+                         " parameters of: " + sqlite3_sql(handle_));
 }
 
 bool Statement::step() {

@@ -62,16 +62,36 @@ StudyStatus read_status(const std::filesystem::path& path) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   StudyStatus status;
   for (Statement row(*database, protocols_sql); row.step();) {
-    ProtocolRow protocol{row.integer(0),      row.text(1),    row.text(2),    row.text(3),   row.text(4), {},
-                         row.integer(6) != 0, row.integer(7), row.integer(8), row.integer(9)};
+    ProtocolRow protocol{.id = row.integer(0),
+                         .name = row.text(1),
+                         .version = row.text(2),
+                         .sha256 = row.text(3),
+                         .text = row.text(4),
+                         .trial_seconds = {},
+                         .test_data = row.integer(6) != 0,
+                         .sessions = row.integer(7),
+                         .trials = row.integer(8),
+                         .answered = row.integer(9)};
     if (!row.is_null(5)) protocol.trial_seconds = row.real(5);
     status.protocols.push_back(std::move(protocol));
   }
   for (Statement row(*database, sessions_sql); row.step();) {
-    status.sessions.push_back({row.integer(0), row.text(1), static_cast<int>(row.integer(2)), row.text(3),
-                               row.text(4), row.integer(5) != 0, row.integer(6), row.integer(7),
-                               row.integer(8), row.integer(9) != 0, row.text(10), row.integer(11),
-                               row.integer(12), row.integer(13), flag(row, 14), flag(row, 15)});
+    status.sessions.push_back({.protocol_id = row.integer(0),
+                               .participant = row.text(1),
+                               .visit = static_cast<int>(row.integer(2)),
+                               .observer = row.text(3),
+                               .clock = row.text(4),
+                               .test_data = row.integer(5) != 0,
+                               .trials = row.integer(6),
+                               .answered = row.integer(7),
+                               .interrupted = row.integer(8),
+                               .ended = row.integer(9) != 0,
+                               .state = row.text(10),
+                               .units = row.integer(11),
+                               .done = row.integer(12),
+                               .excluded = row.integer(13),
+                               .gaze = flag(row, 14),
+                               .sharing = flag(row, 15)});
   }
   for (Statement row(*database, "SELECT participant FROM tombstone ORDER BY participant"); row.step();)
     status.withdrawn.push_back(row.text(0));
@@ -84,7 +104,7 @@ std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, 
                                              FpsMean mean) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   Statement row(*database, certificate_sql(mean));
-  row.bind(0, run_id);
+  row.bind_all(run_id);
   std::vector<CertificateRow> rows;
   while (row.step()) {
     CertificateRow line;

@@ -90,11 +90,9 @@ std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial,
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
   Statement& begin = statements_->begin;
-  begin.bind(0, trial).bind(1, attempt).bind(2, interval).bind(3, cell).bind(4, now).bind(5, start_ns);
-  const std::int64_t id = begin.run();
+  const std::int64_t id = begin.bind_all(trial, attempt, interval, cell, now, start_ns).run();
   Statement(*database_, "UPDATE session SET started_utc = ? WHERE session_id = ? AND started_utc IS NULL")
-      .bind(0, now)
-      .bind(1, session)
+      .bind_all(now, session)
       .run();
   insert_event(session, id, "trial shown",
                "attempt " + std::to_string(attempt) + ", interval " + std::to_string(interval), start_ns);
@@ -107,24 +105,23 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
   Transaction transaction(*database_);
   insert_frames(presentation, start_ns, frames);
   Statement& end = statements_->end;
-  end.bind(0, end_ns).bind_null(1).bind(2, grade_name(verdict.grade)).bind_null(3);
-  if (verdict.nominal.mean > 0 || verdict.cut)
-    end.bind(1, verdict_name(verdict.verdict)).bind(3, verdict.reason);
-  end.bind(4, static_cast<std::int64_t>(verdict.realised.frames));
-  end.bind(5, verdict.realised.mean).bind(6, verdict.realised.mean_arithmetic).bind(7, verdict.realised.sd);
-  end.bind(8, verdict.p95_ms)
-      .bind(9, verdict.longest_ms)
-      .bind(10, verdict.shortest_ms)
-      .bind(11, verdict.lag1);
-  end.bind(12, verdict.late).bind(13, verdict.worst_late_ms).bind(14, presentation);
-  end.run();
+  std::optional<std::string> judged, reason;
+  if (verdict.nominal.mean > 0 || verdict.cut) {
+    judged = verdict_name(verdict.verdict);
+    reason = verdict.reason;
+  }
+  end.bind_all(end_ns, judged, grade_name(verdict.grade), reason,
+               static_cast<std::int64_t>(verdict.realised.frames), verdict.realised.mean,
+               verdict.realised.mean_arithmetic, verdict.realised.sd, verdict.p95_ms, verdict.longest_ms,
+               verdict.shortest_ms, verdict.lag1, verdict.late, verdict.worst_late_ms, presentation)
+      .run();
   commit(transaction);
 }
 
 void Store::interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns) {
   Transaction transaction(*database_);
   Statement(*database_, "UPDATE presentation SET state = 'interrupted' WHERE presentation_id = ?")
-      .bind(0, presentation)
+      .bind_all(presentation)
       .run();
   insert_event(session, presentation, "trial interrupted", "stopped on request", clock_ns);
   commit(transaction);
@@ -144,9 +141,9 @@ void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attemp
   Statement& insert = statements_->response;
   for (const KeptAnswer& kept : answers) {
     const Answer& answer = kept.answer.answer;
-    insert.bind(0, session).bind(1, unit.id).bind(2, attempt).bind(3, kept.question);
-    insert.bind(4, answer.score).bind(5, words_of(answer)).bind(6, kept.answer.response_time_s);
-    const bool taken = insert.bind(7, now).step();
+    insert.bind_all(session, unit.id, attempt, kept.question, answer.score, words_of(answer),
+                    kept.answer.response_time_s, now);
+    const bool taken = insert.step();
     insert.reset();
     if (!taken) {
       throw base::Error(
@@ -174,20 +171,19 @@ void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string
   Statement done(*database_,
                  "UPDATE unit SET state = 'done', done_utc = ? WHERE unit_id = ? AND session_id = ? "
                  "RETURNING position");
-  if (!done.bind(0, now).bind(1, unit).bind(2, session).step())
+  if (!done.bind_all(now, unit, session).step())
     throw base::Error(path_.string(), "holds no such unit of this session", "restore a backup of it");
   const std::string where = "unit " + done.text(0);
   done.reset();
   Statement(*database_,
             "UPDATE trial SET state = 'answered' WHERE trial_id = "
             "(SELECT trial_id FROM unit WHERE unit_id = ?)")
-      .bind(0, unit)
+      .bind_all(unit)
       .run();
   Statement(*database_,
             "UPDATE session SET state = 'done', ended_utc = ?2 WHERE session_id = ?1 AND state = 'open' "
             "AND NOT EXISTS (SELECT 1 FROM unit u WHERE u.session_id = ?1 AND u.state = 'planned')")
-      .bind(0, session)
-      .bind(1, now)
+      .bind_all(session, now)
       .run();
   insert_event(session, {}, "done", where, clock_ns);
 }
@@ -200,9 +196,7 @@ void Store::end_session(std::int64_t session, const Ending& ending, std::int64_t
 
 void Store::mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns) {
   Statement(*database_, "UPDATE session SET state = ?, ended_utc = ? WHERE session_id = ? AND state = 'open'")
-      .bind(0, state_name(ending.how))
-      .bind(1, base::utc_now())
-      .bind(2, session)
+      .bind_all(state_name(ending.how), base::utc_now(), session)
       .run();
   insert_event(session, {}, "ended early", state_name(ending.how), clock_ns);
   if (!ending.reason.empty()) insert_note(session, {}, ending.reason);
@@ -221,10 +215,7 @@ void Store::write_note(std::int64_t session, std::optional<std::int64_t> unit, c
 
 void Store::insert_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words) {
   Statement(*database_, "INSERT INTO note (session_id, unit_id, utc, words) VALUES (?,?,?,?)")
-      .bind(0, session)
-      .bind(1, unit)
-      .bind(2, base::utc_now())
-      .bind(3, words)
+      .bind_all(session, unit, base::utc_now(), words)
       .run();
 }
 
@@ -232,8 +223,7 @@ void Store::insert_event(std::optional<std::int64_t> session, std::optional<std:
                          const std::string& kind, const std::string& detail,
                          std::optional<std::int64_t> clock_ns) {
   Statement& insert = statements_->event;
-  insert.bind(0, session).bind(1, presentation).bind(2, base::utc_now()).bind(3, clock_ns);
-  insert.bind(4, kind).bind(5, detail).run();
+  insert.bind_all(session, presentation, base::utc_now(), clock_ns, kind, detail).run();
 }
 
 void Store::log(std::optional<std::int64_t> session, const std::string& kind, const std::string& detail,

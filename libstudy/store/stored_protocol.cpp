@@ -11,14 +11,14 @@ bool first_format(Connection& database, std::int64_t protocol_id) {
   Statement row(database,
                 "SELECT EXISTS (SELECT 1 FROM cell WHERE protocol_id = ?1) AND "
                 "NOT EXISTS (SELECT 1 FROM cell WHERE protocol_id = ?1 AND method <> '')");
-  row.bind(0, protocol_id).step();
+  row.bind_all(protocol_id).step();
   return row.integer(0) != 0;
 }
 
 void add_cells(Connection& database, std::int64_t protocol_id, Design& design) {
   Statement row(database,
                 "SELECT cell, mean_fps, sd_fps, duration_s FROM cell WHERE protocol_id = ? ORDER BY cell");
-  row.bind(0, protocol_id);
+  row.bind_all(protocol_id);
   while (row.step()) {
     design.cells.resize(static_cast<std::size_t>(row.integer(0)) + 1);
     design.cells.back().setting = {row.real(1), row.real(2), row.real(3)};
@@ -34,7 +34,7 @@ Block trials(Connection& database, std::int64_t protocol_id) {
   Statement row(database,
                 "SELECT code, wording, language, scale_min, scale_max FROM question WHERE protocol_id = ? "
                 "ORDER BY question_id");
-  row.bind(0, protocol_id);
+  row.bind_all(protocol_id);
   while (row.step()) {
     Question question;
     question.id = row.text(0);
@@ -55,7 +55,7 @@ Protocol stored_protocol(Connection& database, std::int64_t protocol_id, const s
   Statement row(database,
                 "SELECT name, version, sha256, test_data, text, trial_seconds FROM protocol WHERE "
                 "protocol_id = ?");
-  row.bind(0, protocol_id).step();
+  row.bind_all(protocol_id).step();
   if (!first_format(database, protocol_id)) {
     Protocol protocol = parse_protocol(row.text(4), where + ", protocol " + row.text(0), ProtocolUse::Stored);
     if (!row.is_null(5)) override_trial_seconds(protocol, row.real(5));

@@ -71,25 +71,22 @@ class Reader {
 
   std::vector<TaskSession> sessions() {
     std::vector<TaskSession> out;
-    session_.bind(0, protocol_id_).bind(1, std::string(mirror_event)).bind(2, std::string(revealed_event));
+    session_.bind_all(protocol_id_, std::string(mirror_event), std::string(revealed_event));
     while (session_.step()) {
-      TaskSession session{session_.text(1),
-                          static_cast<int>(session_.integer(2)),
-                          session_.text(3),
-                          session_.integer(4) != 0 || protocol_.test_data,
-                          session_.text(5),
-                          session_.text(6),
-                          session_.text(7),
-                          session_.text(8),
-                          {},
-                          {},
-                          session_.is_null(9) ? "" : session_.text(9),
-                          session_.is_null(10) ? "" : session_.text(10),
-                          session_.is_null(11) ? "" : session_.text(11),
-                          session_.is_null(12) ? "" : session_.text(12)};
-      session.trials = trials(session_.integer(0));
-      session.catches = catches(session_.integer(0));
-      out.push_back(std::move(session));
+      out.push_back({.participant = session_.text(1),
+                     .visit = static_cast<int>(session_.integer(2)),
+                     .observer = session_.text(3),
+                     .test_data = session_.integer(4) != 0 || protocol_.test_data,
+                     .state = session_.text(5),
+                     .gaze_source = session_.text(6),
+                     .station = session_.text(7),
+                     .display = session_.text(8),
+                     .trials = trials(session_.integer(0)),
+                     .catches = catches(session_.integer(0)),
+                     .first_answer_utc = session_.text(9),
+                     .angles = session_.text(10),
+                     .unblinded = session_.text(11),
+                     .mixed_pictures = session_.text(12)});
     }
     return out;
   }
@@ -97,7 +94,7 @@ class Reader {
  private:
   std::vector<TaskTrial> trials(std::int64_t session) {
     std::vector<TaskTrial> out;
-    trial_.bind(0, session);
+    trial_.bind_all(session);
     while (trial_.step()) {
       const std::int64_t attempt = trial_.integer(7);
       TaskTrial trial;
@@ -119,7 +116,7 @@ class Reader {
     out.what = planned.stimulus;
     out.nominal = planned.setting;
     showing_.reset();
-    showing_.bind(0, trial).bind(1, attempt).bind(2, interval);
+    showing_.bind_all(trial, attempt, interval);
     out.played = showing_.step();
     if (!out.played) return out;
     if (!showing_.is_null(0)) out.verdict = verdict_of(showing_.text(0));
@@ -136,7 +133,7 @@ class Reader {
 
   std::vector<TaskAnswer> answers(std::int64_t unit) {
     std::vector<TaskAnswer> out;
-    answer_.bind(0, unit);
+    answer_.bind_all(unit);
     while (answer_.step()) {
       out.push_back({answer_.text(0), {}});
       if (!answer_.is_null(1)) out.back().score = static_cast<int>(answer_.integer(1));
@@ -146,7 +143,7 @@ class Reader {
 
   std::vector<CatchAnswer> catches(std::int64_t session) {
     std::vector<CatchAnswer> out;
-    catch_.bind(0, session).bind(1, protocol_id_);
+    catch_.bind_all(session, protocol_id_);
     while (catch_.step()) {
       const std::optional<int> expected = expected_of(catch_.text(0));
       if (!expected) continue;

@@ -22,13 +22,13 @@ std::optional<std::string> person_of(Connection& database, const std::string& pa
   Statement row(database,
                 "SELECT person FROM session WHERE participant = ?1 UNION "
                 "SELECT person FROM tombstone WHERE participant = ?1");
-  if (!row.bind(0, participant).step()) return {};
+  if (!row.bind_all(participant).step()) return {};
   return row.text(0);
 }
 
 std::int64_t count(Connection& database, const char* sql, const std::string& person) {
   Statement row(database, sql);
-  return row.bind(0, person).step() ? row.integer(0) : 0;
+  return row.bind_all(person).step() ? row.integer(0) : 0;
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ Stock take_stock(Connection& database, const std::string& person) {
                        person);
   Statement row(database,
                 "SELECT DISTINCT station FROM session WHERE person = ? AND station <> '' ORDER BY 1");
-  for (row.bind(0, person); row.step();) stock.stations.push_back(row.text(0));
+  for (row.bind_all(person); row.step();) stock.stations.push_back(row.text(0));
   return stock;
 }
 
@@ -57,7 +57,7 @@ std::vector<std::string> wished_withdrawals(Connection& database) {
       "SELECT DISTINCT s.participant FROM session s JOIN event e USING (session_id) WHERE e.kind = ? "
       "ORDER BY 1");
   std::vector<std::string> participants;
-  for (row.bind(0, std::string(withdrawal_wish)); row.step();) participants.push_back(row.text(0));
+  for (row.bind_all(std::string(withdrawal_wish)); row.step();) participants.push_back(row.text(0));
   return participants;
 }
 

@@ -21,19 +21,16 @@ std::optional<std::string> particles_text(const std::vector<std::int64_t>& parti
   return text;
 }
 
-/// Columns 10 to 23 of a frame; what nobody measured is NULL.
-void bind_facts(Statement& insert, const FrameFacts& facts) {
-  insert.bind(10, particles_text(facts.particles_by_level));
-  for (int column = 11; column <= 23; ++column) insert.bind_null(column);
-  if (const auto& t = facts.tolerance) {
-    insert.bind(11, t->active_fraction).bind(12, t->tau_fps).bind(13, t->beta);
-    insert.bind(14, t->mu_fps).bind(15, t->delta_fps);
-  }
-  if (const auto& g = facts.guards) {
-    insert.bind(16, g->speed_limited).bind(17, g->coincident_pairs).bind(18, g->not_finite);
-    insert.bind(19, g->neighbours_dropped).bind(20, g->wall_projected).bind(21, g->nozzle_waited);
-    insert.bind(22, g->saliency_not_finite).bind(23, g->gaze_lost);
-  }
+/// One value of what a frame may lack as a whole; empty where it does.
+template <class Part, class Value>
+std::optional<Value> part(const std::optional<Part>& whole, Value Part::*member) {
+  if (!whole) return {};
+  return (*whole).*member;
+}
+template <class Part, class Value>
+std::optional<Value> part(const std::optional<Part>& whole, std::optional<Value> Part::*member) {
+  if (!whole) return {};
+  return (*whole).*member;
 }
 
 }  // namespace
@@ -43,14 +40,23 @@ void Store::insert_frames(std::int64_t presentation, std::int64_t start_ns,
   Statement& insert = statements_->frame;
   for (const FrameRecord& frame : frames) {
     const std::int64_t due = frame.scheduled_ns;
-    insert.bind(0, presentation).bind(1, frame.index).bind(2, frame.content_step);
-    insert.bind(3, frame.facts.simulation_time_s).bind(4, due - start_ns);
-    insert.bind(5, after(frame.times.submitted_ns, due)).bind(6, after(frame.times.gpu_done_ns, due));
-    insert.bind(7, after(frame.times.predicted_display_ns, due))
-        .bind(8, after(frame.times.actual_display_ns, due));
-    insert.bind(9, frame.late ? 1 : 0);
-    bind_facts(insert, frame.facts);
-    insert.run();
+    const FrameFacts& facts = frame.facts;
+    insert
+        .bind_all(
+            presentation, frame.index, frame.content_step, facts.simulation_time_s, due - start_ns,
+            after(frame.times.submitted_ns, due), after(frame.times.gpu_done_ns, due),
+            after(frame.times.predicted_display_ns, due), after(frame.times.actual_display_ns, due),
+            frame.late ? 1 : 0, particles_text(facts.particles_by_level),
+            part(facts.tolerance, &FrameTolerance::active_fraction),
+            part(facts.tolerance, &FrameTolerance::tau_fps), part(facts.tolerance, &FrameTolerance::beta),
+            part(facts.tolerance, &FrameTolerance::mu_fps), part(facts.tolerance, &FrameTolerance::delta_fps),
+            part(facts.guards, &FrameGuards::speed_limited),
+            part(facts.guards, &FrameGuards::coincident_pairs), part(facts.guards, &FrameGuards::not_finite),
+            part(facts.guards, &FrameGuards::neighbours_dropped),
+            part(facts.guards, &FrameGuards::wall_projected), part(facts.guards, &FrameGuards::nozzle_waited),
+            part(facts.guards, &FrameGuards::saliency_not_finite),
+            part(facts.guards, &FrameGuards::gaze_lost))
+        .run();
   }
 }
 

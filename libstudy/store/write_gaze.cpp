@@ -1,4 +1,6 @@
 /// What a participant allows, as the session writes it, and gaze where it is allowed.
+#include <tuple>
+
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 
@@ -10,7 +12,7 @@ using sqlite::Transaction;
 bool Store::allows_gaze(std::int64_t session) {
   Statement row(*database_,
                 "SELECT 1 FROM permission WHERE session_id = ? AND what = 'gaze' AND granted = 1");
-  return row.bind(0, session).step();
+  return row.bind_all(session).step();
 }
 
 void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
@@ -24,10 +26,10 @@ void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigi
       "permission a WHERE a.session_id = t.session_id AND a.what = 'gaze' AND a.granted = 1) "
       "RETURNING sample_index");
   for (const GazeSample& sample : samples) {
-    insert.bind(0, presentation).bind(1, origin == GazeOrigin::Tracker ? "tracker" : "mouse");
-    insert.bind(2, sample.sampled_ns - start_ns).bind(3, sample.device_ns).bind(4, sample.valid ? 1 : 0);
-    insert.bind_null(5).bind_null(6);
-    if (sample.point) insert.bind(5, sample.point->first).bind(6, sample.point->second);
+    std::optional<double> x, y;
+    if (sample.point) std::tie(x, y) = *sample.point;
+    insert.bind_all(presentation, origin == GazeOrigin::Tracker ? "tracker" : "mouse",
+                    sample.sampled_ns - start_ns, sample.device_ns, sample.valid ? 1 : 0, x, y);
     const bool taken = insert.step();
     insert.reset();
     if (!taken) {
@@ -46,9 +48,7 @@ void Store::answer_over_change(std::int64_t session, const std::string& question
       "INSERT INTO permission_change (session_id, what, granted, utc) "
       "SELECT session_id, what, answered, ?3 FROM permission_answer WHERE session_id = ?1 AND what = ?2 "
       "AND what IN (SELECT what FROM permission_change WHERE session_id = ?1)")
-      .bind(0, session)
-      .bind(1, question == gaze_question ? "gaze" : "sharing")
-      .bind(2, now)
+      .bind_all(session, question == gaze_question ? "gaze" : "sharing", now)
       .run();
 }
 

@@ -45,9 +45,11 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   std::set<std::string> written;  // a questionnaire asked before and after is one set of questions
   for (const auto& [block, question] : all_questions(protocol)) {
     if (!written.insert(question->id).second) continue;
-    insert.bind(0, protocol_id).bind(1, question->id).bind(2, question->text).bind(3, question->language);
-    insert.bind(4, kind_name(question->kind)).bind(5, question->scale_min).bind(6, question->scale_max);
-    insert.bind(7, anchors_text(*question)).bind(8, question->personal ? 1 : 0).run();
+    insert
+        .bind_all(protocol_id, question->id, question->text, question->language, kind_name(question->kind),
+                  question->scale_min, question->scale_max, anchors_text(*question),
+                  question->personal ? 1 : 0)
+        .run();
   }
 }
 
@@ -67,8 +69,7 @@ void add_asks(sqlite::Connection& database, std::int64_t protocol_id, const Prot
                    "question_id FROM question WHERE protocol_id = ? AND code = ?");
   for (const Block& block : protocol.blocks) {
     int place = 0;
-    for (const std::string& id : asked_by(block))
-      insert.bind(0, block.id).bind(1, place++).bind(2, protocol_id).bind(3, id).run();
+    for (const std::string& id : asked_by(block)) insert.bind_all(block.id, place++, protocol_id, id).run();
   }
 }
 
@@ -76,9 +77,10 @@ void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Pro
   Statement insert(database, "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?)");
   int index = 0;
   for (const Cell& cell : protocol.design.cells) {
-    insert.bind(0, protocol_id).bind(1, index++).bind(2, cell.stimulus.scene).bind(3, cell.stimulus.method);
-    insert.bind(4, cell.stimulus.n_star).bind(5, cell.setting.mean).bind(6, cell.setting.sd);
-    insert.bind(7, cell.setting.duration_s).run();
+    insert
+        .bind_all(protocol_id, index++, cell.stimulus.scene, cell.stimulus.method, cell.stimulus.n_star,
+                  cell.setting.mean, cell.setting.sd, cell.setting.duration_s)
+        .run();
   }
 }
 
@@ -89,8 +91,8 @@ std::vector<std::int64_t> add_trials(sqlite::Connection& database, std::int64_t 
                    "schedule_seed, state, set_aside) VALUES (?,?,?,?,?,?,'planned',0)");
   std::vector<std::int64_t> rows;
   for (const PlannedTrial& trial : plan.trials) {
-    insert.bind(0, session).bind(1, trial.position).bind(2, trial.group).bind(3, trial.first);
-    insert.bind(4, trial.second).bind(5, as_signed(trial.schedule_seed));
+    insert.bind_all(session, trial.position, trial.group, trial.first, trial.second,
+                    as_signed(trial.schedule_seed));
     rows.push_back(insert.run());
   }
   return rows;
@@ -106,8 +108,7 @@ void add_units(sqlite::Connection& database, std::int64_t session, const Protoco
     const Block& block = protocol.blocks.at(static_cast<std::size_t>(unit.block));
     std::optional<std::int64_t> trial;
     if (unit.trial) trial = trials.at(static_cast<std::size_t>(*unit.trial));
-    insert.bind(0, session).bind(1, unit.position).bind(2, block.id).bind(3, unit.block);
-    insert.bind(4, block_kind_name(block.kind)).bind(5, trial).run();
+    insert.bind_all(session, unit.position, block.id, unit.block, block_kind_name(block.kind), trial).run();
   }
 }
 
@@ -130,11 +131,11 @@ void insert_framing(sqlite::Connection& database, std::int64_t session,
       "shown_width_px, shown_height_px, camera_angle_deg, visual_angle_deg, cells, copied, renderer) IS (?2, "
       "?3, ?4, ?5, ?6, ?7, ?8, ?9, nullif(?10, ''), nullif(?11, '')))");
   for (const SceneFraming& one : framing) {
-    insert.bind(0, session).bind(1, one.scene).bind(2, one.width_px).bind(3, one.height_px);
-    insert.bind(4, one.shown_width_px).bind(5, one.shown_height_px);
-    insert.bind(6, one.camera_angle_deg).bind(7, one.visual_angle_deg);
-    insert.bind(8, listed(one.cells)).bind(9, listed(one.copied)).bind(10, one.renderer);
-    insert.bind(11, one.cells.empty() ? -1 : one.cells.front()).run();
+    insert
+        .bind_all(session, one.scene, one.width_px, one.height_px, one.shown_width_px, one.shown_height_px,
+                  one.camera_angle_deg, one.visual_angle_deg, listed(one.cells), listed(one.copied),
+                  one.renderer, one.cells.empty() ? -1 : one.cells.front())
+        .run();
   }
 }
 
@@ -154,9 +155,7 @@ std::int64_t Store::add_run(const RunPlan& run) {
   const std::int64_t run_id = Statement(*database_,
                                         "INSERT INTO run (uid, started_utc, program_version, options) "
                                         "VALUES (lower(hex(randomblob(16))),?,?,?)")
-                                  .bind(0, base::utc_now())
-                                  .bind(1, base::version())
-                                  .bind(2, run.options)
+                                  .bind_all(base::utc_now(), base::version(), run.options)
                                   .run();
   for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
   commit(transaction);
@@ -167,11 +166,11 @@ std::int64_t Store::add_run(const RunPlan& run) {
 std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
   const Protocol& protocol = run.protocol;
   Statement same(*database_, "SELECT protocol_id FROM protocol WHERE sha256 = ?");
-  if (same.bind(0, protocol.sha256).step()) return same.integer(0);
+  if (same.bind_all(protocol.sha256).step()) return same.integer(0);
 
   Statement changed(*database_,
                     "SELECT sha256 FROM protocol WHERE name = ? AND version = ? AND test_data = 0");
-  if (!protocol.test_data && changed.bind(0, protocol.name).bind(1, protocol.version).step()) {
+  if (!protocol.test_data && changed.bind_all(protocol.name, protocol.version).step()) {
     throw base::Error(database_->path().string(),
                       "protocol '" + protocol.name + "' version " + protocol.version +
                           " stands here with another text (" + changed.text(0).substr(0, 12) + ", now " +
@@ -182,12 +181,8 @@ std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
       Statement(
           *database_,
           "INSERT INTO protocol (sha256, name, version, text, trial_seconds, test_data) VALUES (?,?,?,?,?,?)")
-          .bind(0, protocol.sha256)
-          .bind(1, protocol.name)
-          .bind(2, protocol.version)
-          .bind(3, protocol.text)
-          .bind(4, protocol.trial_seconds)
-          .bind(5, protocol.test_data ? 1 : 0)
+          .bind_all(protocol.sha256, protocol.name, protocol.version, protocol.text, protocol.trial_seconds,
+                    protocol.test_data ? 1 : 0)
           .run();
   add_questions(*database_, id, protocol);
   add_asks(*database_, id, protocol);
@@ -199,7 +194,7 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   check_participant_code(plan.participant);
   Statement present(*database_,
                     "SELECT state FROM session WHERE protocol_id = ? AND participant = ? AND visit = ?");
-  if (present.bind(0, protocol_id).bind(1, plan.participant).bind(2, plan.visit).step()) {
+  if (present.bind_all(protocol_id, plan.participant, plan.visit).step()) {
     const bool open = present.text(0) == "open";
     throw base::Error(
         path_.string(),
@@ -212,14 +207,14 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
                   "SELECT participant FROM (SELECT participant FROM session UNION SELECT participant FROM "
                   "tombstone) WHERE lower(participant) = lower(?1) AND participant <> ?1 AND NOT EXISTS "
                   "(SELECT 1 FROM session WHERE participant = ?1)");
-  if (alike.bind(0, plan.participant).step()) {
+  if (alike.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(),
                       "participant " + plan.participant + " differs from " + alike.text(0) +
                           " in upper and lower case alone, and people take them for one",
                       "write " + alike.text(0) + " if that is who it is, or give another code");
   }
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
-  if (gone.bind(0, plan.participant).step()) {
+  if (gone.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
                       "give another code: every merge deletes what stands under this one");
   }
@@ -236,12 +231,13 @@ void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Pro
       "?1, ?2, ?3, coalesce((SELECT code FROM session WHERE participant = ?3), ?3), ?4, ?5, ?6, 'open', "
       "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, "
       "coalesce((SELECT person FROM session WHERE participant = ?3), lower(hex(randomblob(16))))");
-  insert.bind(0, run_id).bind(1, protocol_id).bind(2, plan.participant).bind(3, plan.visit);
-  insert.bind(4, as_signed(plan.seed)).bind(5, plan.plan.slot).bind(6, plan.test_data ? 1 : 0);
-  insert.bind(7, plan.observer).bind(8, plan.virtual_clock ? "virtual" : "real").bind(9, plan.display);
-  insert.bind(10, plan.stimulus).bind(11, plan.machine).bind(12, plan.station).bind(13, plan.time_zone);
-  insert.bind(14, plan.gaze_source).bind(15, plan.screen_width_mm).bind(16, plan.viewing_distance_mm);
-  const std::int64_t session = insert.bind(17, plan.ptpe).bind(18, plan.refresh_hz).run();
+  const std::int64_t session =
+      insert
+          .bind_all(run_id, protocol_id, plan.participant, plan.visit, as_signed(plan.seed), plan.plan.slot,
+                    plan.test_data ? 1 : 0, plan.observer, plan.virtual_clock ? "virtual" : "real",
+                    plan.display, plan.stimulus, plan.machine, plan.station, plan.time_zone, plan.gaze_source,
+                    plan.screen_width_mm, plan.viewing_distance_mm, plan.ptpe, plan.refresh_hz)
+          .run();
   insert_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);
   insert_event(session, {}, "planned", "program " + base::version(), {});
@@ -258,7 +254,7 @@ std::vector<int> Store::taken_slots(const std::string& protocol_sha256) {
                 "SELECT s.slot FROM session s JOIN protocol p USING (protocol_id) WHERE p.sha256 = ? "
                 "AND s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped') "
                 "ORDER BY s.session_id");
-  row.bind(0, protocol_sha256);
+  row.bind_all(protocol_sha256);
   std::vector<int> slots;
   while (row.step()) slots.push_back(static_cast<int>(row.integer(0)));
   return slots;

@@ -1,8 +1,9 @@
 #include "stats/analysis/exclusions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <tuple>
 
@@ -23,11 +24,7 @@ bool answered(const TrialRecord& trial) { return !std::isnan(trial.answer); }
 
 std::string share_text(int part, int whole) { return std::to_string(part) + " of " + std::to_string(whole); }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number_text(double value) { return fmt::format("{:.3g}", value); }
 
 std::map<VisitKey, Visit> by_visit(std::span<const TrialRecord> trials,
                                    std::span<const CatchRecord> catches) {
@@ -126,7 +123,12 @@ bool fails_timing(const TrialRecord& trial, TimingRule rule) {
 void exclude_trials(std::vector<Exclusion>& out, const Visit& visit, const ExclusionRules& rules) {
   for (const auto* list : {&visit.trials, &visit.repeats}) {
     for (const TrialRecord* trial : *list) {
-      Exclusion exclusion{trial->participant, trial->visit, trial->position, "", "", trial->answers};
+      Exclusion exclusion{.participant = trial->participant,
+                          .visit = trial->visit,
+                          .position = trial->position,
+                          .rule = "",
+                          .reason = "",
+                          .answers = trial->answers};
       if (!trial->by_experimenter.empty()) {
         exclusion.rule = "experimenter";
         exclusion.reason = trial->by_experimenter;
@@ -158,7 +160,11 @@ std::vector<Exclusion> find_exclusions(std::span<const TrialRecord> trials,
     for (const Exclusion& one : out) {
       if (one.participant == key.first && one.visit == key.second) left -= one.answers;
     }
-    out.push_back({key.first, key.second, -1, std::move(rule), std::move(reason), left});
+    out.push_back({.participant = key.first,
+                   .visit = key.second,
+                   .rule = std::move(rule),
+                   .reason = std::move(reason),
+                   .answers = left});
   }
   std::stable_sort(out.begin(), out.end(), [](const Exclusion& a, const Exclusion& b) {
     return std::tie(a.participant, a.visit, a.position) < std::tie(b.participant, b.visit, b.position);

@@ -1,8 +1,9 @@
 #include "stats/analysis/hypothesis_family.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "stats/inference/adjust.hpp"
@@ -49,20 +50,14 @@ HypothesisStatus status_of(const Hypothesis& hypothesis) {
   return hypothesis.confirmed_holm > 0 ? HypothesisStatus::PartlySupported : HypothesisStatus::NotSupported;
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 std::string sentence(const Hypothesis& out) {
   const std::size_t n = out.tests.size();
   std::string text =
       count_text(out.confirmed, n) + " " + kind_name(out.kind) + (n == 1 ? " test holds" : " tests hold");
   if (n > 1 && out.decision == DecisionRule::Holm) text += " after Holm";
   if (n > 1 && out.decision == DecisionRule::IntersectionUnion)
-    text += " at " + number_text(out.alpha) + " each, and the claim needs all; " +
-            count_text(out.confirmed_holm, n) + " after Holm";
+    text += fmt::format(" at {:g} each, and the claim needs all; {} after Holm", out.alpha,
+                        count_text(out.confirmed_holm, n));
   int refused = 0;
   for (const HypothesisTest& test : out.tests) refused += test.p ? 0 : 1;
   const int against = count_of(out, &HypothesisTest::against);

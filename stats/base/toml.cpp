@@ -1,5 +1,7 @@
 #include "stats/base/toml.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "stats/base/error.hpp"
@@ -191,9 +193,7 @@ std::string toml_quoted(std::string_view text) {
       quoted += '\\';
       quoted += c;
     } else if (byte < 0x20 || byte == 0x7f) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04X", static_cast<unsigned>(byte));
-      quoted += escape;
+      quoted += fmt::format("\\u{:04X}", byte);
     } else {
       quoted += c;
     }

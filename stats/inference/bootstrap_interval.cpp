@@ -1,8 +1,9 @@
 #include "stats/inference/bootstrap_interval.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -70,11 +71,9 @@ struct Sample {
 std::string too_few(std::size_t n, double confidence) {
   const double most = 1 - std::exp2(1 - static_cast<double>(n));
   if (most >= confidence) return {};
-  char text[128];
-  std::snprintf(text, sizeof text,
-                "%zu values are too few: an interval within their range holds at most %.4g %%, not %.4g %%",
-                n, 100 * most, 100 * confidence);
-  return text;
+  return fmt::format(
+      "{} values are too few: an interval within their range holds at most {:.4g} %, not {:.4g} %", n,
+      100 * most, 100 * confidence);
 }
 
 Result<Sample> prepare(std::span<const double> x, const Statistic& statistic, double confidence) {

@@ -73,22 +73,4 @@ Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<c
   return against(*test, margins, alpha, test->n_x + test->n_y);
 }
 
-Result<NonInferiorityTest> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
-                                                  double margin, Better better, double alpha) {
-  if (!(margin > 0) || !std::isfinite(margin)) throw std::invalid_argument("a margin must be positive");
-  const auto test = t_test_paired(x, y, options(alpha));
-  if (!test) return Refusal{test.reason()};
-  const double sign = better == Better::Higher ? 1 : -1;
-  NonInferiorityTest out;
-  out.estimate = test->estimate;
-  out.stderr_estimate = test->stderr_estimate;
-  out.df = test->df;
-  out.t = (test->estimate + sign * margin) / test->stderr_estimate;
-  out.p = student_upper(sign * out.t, out.df);
-  out.bound = test->estimate - sign * student_upper_quantile(alpha, out.df) * test->stderr_estimate;
-  out.n = test->n;
-  out.n_missing = test->n_missing;
-  return out;
-}
-
 }  // namespace stats

@@ -1,5 +1,5 @@
 #pragma once
-/// Equivalence and non-inferiority by t-tests against a margin (Schuirmann 1987; Lakens 2017). Missing
+/// Equivalence by t-tests against margins (Schuirmann 1987; Lakens 2017). Missing
 /// values, refusals and errors as in t_test.hpp.
 
 #include <array>
@@ -37,19 +37,5 @@ Result<EquivalenceTest> equivalence_independent(std::span<const double> x, std::
                                                 Margins margins, double alpha = 0.05);
 Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<const double> y,
                                           Margins margins, double alpha = 0.05);
-
-/// One-sided test that x is not worse than y by `margin` > 0 or more, pairs.
-struct NonInferiorityTest {
-  double estimate = 0, stderr_estimate = 0, df = 0;  ///< mean(x) - mean(y)
-  double t = 0, p = 0;                               ///< against "worse by the margin or more"
-  double bound = 0;  ///< one-sided 1 - alpha limit of the estimate on its bad side
-  std::size_t n = 0, n_missing = 0;
-};
-
-enum class Better { Higher, Lower };
-
-/// std::invalid_argument unless margin > 0.
-Result<NonInferiorityTest> non_inferiority_paired(std::span<const double> x, std::span<const double> y,
-                                                  double margin, Better better, double alpha = 0.05);
 
 }  // namespace stats

@@ -174,14 +174,6 @@ Result<double> tost_power(double n, const Equivalence& equivalence) {
   return tost_power_of(n, equivalence);
 }
 
-Result<SampleSize> tost_sample_size(double power, const Equivalence& e) {
-  if (const auto reason = why_no_tost(e); !reason.empty()) return Refusal{reason};
-  if (!(e.difference > e.low && e.difference < e.high))
-    return Refusal{"the true difference is not inside the margins"};
-  if (!open_unit(power)) return Refusal{"the power must lie between 0 and 1"};
-  return sample_size(power, [&](double n) { return tost_power_of(n, e); });
-}
-
 Result<BinomialPower> binomial_power(double n, double p1, double p0, double alpha, Alternative alternative) {
   if (!(n >= 1 && n <= 1e9) || n != std::floor(n)) return Refusal{"n must be a whole number from 1 to 1e9"};
   if (const auto reason = why_no_binomial(p1, p0, alpha); !reason.empty()) return Refusal{reason};
@@ -189,27 +181,6 @@ Result<BinomialPower> binomial_power(double n, double p1, double p0, double alph
   BinomialPower out{.power = rejected(region, n, p1), .actual_alpha = rejected(region, n, p0)};
   if (region.upper <= n) out.k_critical_upper = static_cast<int>(region.upper);
   if (region.lower >= 0) out.k_critical_lower = static_cast<int>(region.lower);
-  return out;
-}
-
-Result<BinomialSampleSize> binomial_sample_size(double p1, double power, double p0, double alpha,
-                                                Alternative alternative) {
-  if (const auto reason = why_no_binomial(p1, p0, alpha); !reason.empty()) return Refusal{reason};
-  if (p1 == p0 || (p1 < p0 && alternative == Alternative::Greater) ||
-      (p1 > p0 && alternative == Alternative::Less))
-    return Refusal{"no number of participants finds an effect that is not there"};
-  if (!(power > alpha && power < 1)) return Refusal{"the power must lie between alpha and 1"};
-  const auto at = [&](int n) { return rejected(rejection(n, p0, alpha, alternative), n, p1); };
-  constexpr int most = 20'000;
-  BinomialSampleSize out{.n = 1};
-  while (at(out.n) < power) {
-    if (++out.n > most) return Refusal{"more than 20,000 participants would be needed"};
-  }
-  out.power = at(out.n);
-  out.n_lasting = out.n;
-  for (int n = out.n; n <= 3 * out.n_lasting; ++n) {
-    if (at(n) < power) out.n_lasting = n + 1;
-  }
   return out;
 }
 

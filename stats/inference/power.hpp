@@ -19,7 +19,7 @@ Result<double> t_power(double n, double d, double alpha = 0.05, Design design = 
                        Alternative alternative = Alternative::TwoSided);
 
 struct SampleSize {
-  double n_real = 0;  ///< where the power is met exactly (for a binomial test: n)
+  double n_real = 0;  ///< where the power is met exactly
   int n = 0;          ///< the smallest whole number that meets it
   double power = 0;   ///< at n
 };
@@ -42,9 +42,6 @@ struct Equivalence {
 /// Phillips 1990). Refused: n <= 1, sd <= 0, low >= high, alpha outside (0, 0.5].
 Result<double> tost_power(double n, const Equivalence& equivalence);
 
-/// Refused too: a difference on or outside the margins, power outside (0, 1).
-Result<SampleSize> tost_sample_size(double power, const Equivalence& equivalence);
-
 /// A non-inferiority or superiority test against a margin is t_power with d = (difference - margin) / sd and
 /// a one-sided alternative.
 
@@ -59,15 +56,5 @@ struct BinomialPower {
 /// alpha outside (0, 1).
 Result<BinomialPower> binomial_power(double n, double p1, double p0 = 0.5, double alpha = 0.05,
                                      Alternative alternative = Alternative::TwoSided);
-
-struct BinomialSampleSize {
-  int n = 0;          ///< smallest n that has the power
-  double power = 0;   ///< at n
-  int n_lasting = 0;  ///< from here on all n up to 3 n_lasting have it (power is a saw over n)
-};
-
-/// Refused: p1 = p0, power outside (alpha, 1), more than 20,000 participants.
-Result<BinomialSampleSize> binomial_sample_size(double p1, double power, double p0 = 0.5, double alpha = 0.05,
-                                                Alternative alternative = Alternative::TwoSided);
 
 }  // namespace stats

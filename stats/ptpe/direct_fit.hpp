@@ -48,9 +48,6 @@ class DirectModel {
   /// m = q = 0: ordinary least squares of the score on log mu and delta.
   Result<DirectFit> fit_straight(std::span<const double> weights = {}) const;
 
-  /// Smallest and largest delta shown.
-  std::array<double, 2> delta_range() const { return delta_range_; }
-
  private:
   static constexpr std::size_t terms = 6;  ///< 1, x, d, x d, x^2, d^2
   struct Sums {
@@ -69,7 +66,7 @@ class DirectModel {
   std::vector<Sums> sums_;
   double level_;
   double log_mu_centre_ = 0, delta_centre_ = 0;
-  std::array<double, 2> log_mu_range_{}, delta_range_{};
+  std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest
 };
 
 /// Test of m = q = 0, which says whether the straight form may be used: Hotelling's T^2 of (m, q) with the

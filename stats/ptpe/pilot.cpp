@@ -117,8 +117,12 @@ std::vector<PilotObservation> PilotTable::observations(PilotMean mean) const {
       const auto& e = entry(p, cell);
       if (e.n == 0) continue;
       const double mu = mean == PilotMean::Harmonic ? e.mu_harmonic : e.mu_arithmetic;
-      out.push_back({p, mu / e.n, e.delta / e.n, e.score / e.n, delta_[cell % delta_.size()],
-                     mu_[cell / delta_.size()]});
+      out.push_back({.participant = p,
+                     .mu = mu / e.n,
+                     .delta = e.delta / e.n,
+                     .score = e.score / e.n,
+                     .nominal_delta = delta_[cell % delta_.size()],
+                     .nominal_mu = mu_[cell / delta_.size()]});
     }
   }
   return out;
@@ -137,13 +141,13 @@ Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const doub
                    " resamples of the participants have no fit"};
   }
   const bool extremes = expanded_tail(n, options.confidence) * static_cast<double>(a.size()) < 1;
-  return PilotSpread{expanded_percentile_interval(a, n, options.confidence),
-                     expanded_percentile_interval(b, n, options.confidence),
-                     bootstrap_se(a),
-                     bootstrap_se(b),
-                     options.resamples,
-                     failed,
-                     extremes};
+  return PilotSpread{.a_ci = expanded_percentile_interval(a, n, options.confidence),
+                     .b_ci = expanded_percentile_interval(b, n, options.confidence),
+                     .a_se = bootstrap_se(a),
+                     .b_se = bootstrap_se(b),
+                     .resamples = options.resamples,
+                     .failed = failed,
+                     .extremes = extremes};
 }
 
 namespace {

@@ -1,9 +1,10 @@
 #include "stats/ptpe/pilot_doubts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 
@@ -86,21 +87,15 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-template <class... Values>
-std::string words(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 void doubt_rise(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& people) {
   const auto slopes = over_people(people, slope_of);
   if (slopes.size() < 2) return;
   const double p = one_sided_p(slopes, Alternative::Greater);
   if (p < rise_level) return;
-  doubts.push_back({"no_rise", words("the scores do not rise with the mean frame rate: %+.2f points for each "
-                                     "doubling (one-sided p = %.3f, limit %g)",
-                                     mean_of(slopes), p, rise_level)});
+  doubts.push_back(
+      {"no_rise", fmt::format("the scores do not rise with the mean frame rate: {:+.2f} points for each "
+                              "doubling (one-sided p = {:.3f}, limit {:g})",
+                              mean_of(slopes), p, rise_level)});
 }
 
 void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& people) {
@@ -122,9 +117,10 @@ void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& peop
   }
   if (least >= fall_level) return;
   doubts.push_back(
-      {"falls", words("the scores fall where the mean frame rate rises: %+.2f points from %g to %g "
-                      "frames/s (one-sided p %s %.4f after Bonferroni, limit %g)",
-                      change, low, high, least < 1e-4 ? "<" : "=", std::max(least, 1e-4), fall_level)});
+      {"falls",
+       fmt::format("the scores fall where the mean frame rate rises: {:+.2f} points from {:g} to {:g} "
+                   "frames/s (one-sided p {} {:.4f} after Bonferroni, limit {:g})",
+                   change, low, high, least < 1e-4 ? "<" : "=", std::max(least, 1e-4), fall_level)});
 }
 
 /// The intervals that an estimator gives a and b, 0 and 1.
@@ -141,9 +137,10 @@ void doubt_agreement(std::vector<PilotDoubt>& doubts, const std::vector<Interval
         if (x[0] <= y[1] && y[0] <= x[1]) continue;
         doubts.push_back(
             {"estimators_disagree",
-             words("the estimators disagree about %s: [%.4g, %.4g] by the %s one, [%.4g, %.4g] by "
-                   "the %s one",
-                   k == 0 ? "a" : "b", x[0], x[1], estimators[i].name, y[0], y[1], estimators[j].name)});
+             fmt::format(
+                 "the estimators disagree about {}: [{:.4g}, {:.4g}] by the {} one, [{:.4g}, {:.4g}] by "
+                 "the {} one",
+                 k == 0 ? "a" : "b", x[0], x[1], estimators[i].name, y[0], y[1], estimators[j].name)});
         return;
       }
     }
@@ -165,14 +162,14 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
           {"no_spread", "the participants do not differ: an interval over them would have no width"});
     if (direct.in_reach < least_deltas_in_reach)
       doubts.push_back(
-          {"few_deltas", words("the curve runs through the frame rates shown at %d of the standard "
-                               "deviations, and at least %d are needed",
-                               direct.in_reach, least_deltas_in_reach)});
+          {"few_deltas", fmt::format("the curve runs through the frame rates shown at {} of the standard "
+                                     "deviations, and at least {} are needed",
+                                     direct.in_reach, least_deltas_in_reach)});
     if (spread.b_ci[1] < 0)
-      doubts.push_back(
-          {"b_below_zero", words("b is below zero, [%.4f, %.4f] by the direct estimate: fluctuation "
-                                 "would be liked",
-                                 spread.b_ci[0], spread.b_ci[1])});
+      doubts.push_back({"b_below_zero",
+                        fmt::format("b is below zero, [{:.4f}, {:.4f}] by the direct estimate: fluctuation "
+                                    "would be liked",
+                                    spread.b_ci[0], spread.b_ci[1])});
   }
   std::vector<Intervals> estimators;
   if (direct.jackknife) estimators.push_back({"direct", {direct.jackknife->a_ci, direct.jackknife->b_ci}});

@@ -224,7 +224,7 @@ class WithdrawalBytes : public ::testing::Test {
     succeeds({vip_study, "merge", north / "north.db", "--into", path});
     first_version = study::backups_of(path).at(0);
     Connection now(path, Open::Write);
-    Statement(now, "VACUUM INTO ?").bind(0, later_backup.string()).run();  // as an upgrade makes it
+    Statement(now, "VACUUM INTO ?").bind_all(later_backup.string()).run();  // as an upgrade makes it
     study::PersonalFile(path).keep({{leaver, "age", "How old?", secret}, {"P02", "age", "How old?", "33"}});
     write_everything_out(path, out);
     leave_drafts(path, out);

@@ -65,7 +65,7 @@ void write_station(const fs::path& path, const std::string& station, const std::
 
 void back_up(const fs::path& path, const std::string& name) {
   Connection now(path, Open::Write);
-  Statement(now, "VACUUM INTO ?").bind(0, path.string() + name).run();
+  Statement(now, "VACUUM INTO ?").bind_all(path.string() + name).run();
 }
 
 std::string age_of(const fs::path& path, const std::string& code) {

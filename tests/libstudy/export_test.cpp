@@ -63,7 +63,7 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
     ++tables;
     const auto columns = column_meanings(table.text(0), table.text(1));
     sqlite::Statement info(*database, "SELECT name, type FROM pragma_table_info(?)");
-    info.bind(0, table.text(0));
+    info.bind_all(table.text(0));
     for (const ColumnMeaning& column : columns) {
       ASSERT_TRUE(info.step()) << table.text(0);
       EXPECT_EQ(column.column, info.text(0));

@@ -271,7 +271,7 @@ TEST_F(Stations, AWithdrawalReachesTheStationWithAllThatStandsBesideIt) {
   PersonalFile(path("north")).keep({{"P02", "age", "How old?", "zebra"}, {"P01", "age", "How old?", "31"}});
   {
     Connection now(path("north"), Open::Write);
-    Statement(now, "VACUUM INTO ?").bind(0, path("north").string() + ".v2-old.bak").run();
+    Statement(now, "VACUUM INTO ?").bind_all(path("north").string() + ".v2-old.bak").run();
   }
   merge({path("north"), path("south")}, path("all"));
   withdraw(path("all"), "P02-north");

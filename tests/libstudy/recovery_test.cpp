@@ -47,7 +47,7 @@ void add_notes(Connection& database, int count) {
   for (int i = 0; i < count; ++i) {
     sqlite::Transaction transaction(database);
     sqlite::Statement(database, "INSERT INTO note (session_id, utc, words) VALUES (1, 'now', ?)")
-        .bind(0, std::string(3000, 'n'))
+        .bind_all(std::string(3000, 'n'))
         .run();
     transaction.commit();
   }

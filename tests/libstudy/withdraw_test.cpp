@@ -124,7 +124,7 @@ TEST(Withdraw, CleansBackupsOfBothSchemas) {
   Store(path, Open::Write);  // upgrades, and leaves a backup
   {
     Connection now(path, Open::Write);
-    sqlite::Statement(now, "VACUUM INTO ?").bind(0, path.string() + ".v2-later.bak").run();
+    sqlite::Statement(now, "VACUUM INTO ?").bind_all(path.string() + ".v2-later.bak").run();
   }
   ASSERT_GE(occurrences(folder.path(), telling_bytes), 6);
   const Withdrawal done = withdraw(path, leaver);

@@ -27,9 +27,6 @@ inline nlohmann::json cases(const std::string& family) {
   return nlohmann::json::parse(in).at("cases");
 }
 
-/// Whether the pack holds a family; tests of a family that is absent are skipped.
-inline bool has(const std::string& family) { return std::filesystem::exists(folder() / (family + ".json")); }
-
 /// A number, "Inf" or "-Inf"; null = missing = NaN.
 inline double number(const nlohmann::json& item) {
   if (item.is_null()) return std::numeric_limits<double>::quiet_NaN();

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "stats/inference/describe.hpp"
@@ -23,11 +24,11 @@ using nlohmann::json;
 using Values = std::vector<double>;
 constexpr double eight_digits = 1e-8, six_digits = 1e-6;
 
-/// Certified data sets of one class; empty when the pack has none.
+/// Certified data sets of one class.
 json certified(const std::string& kind) {
   std::ifstream in(oracle::folder() / "nist" / "certified.json");
-  if (!in) return json::object();
-  return json::parse(in).value(kind, json::object());
+  if (!in) throw std::runtime_error("cannot read certified.json of NIST");
+  return json::parse(in).at(kind);
 }
 
 double number(const json& item) { return std::stod(item.get<std::string>()); }
@@ -69,7 +70,7 @@ void expect_digits(const std::string& what, double got, double want, double rtol
 
 TEST(Nist, Univariate) {
   const auto sets = certified("univariate");
-  if (sets.empty()) GTEST_SKIP() << "the pack has no univariate NIST data";
+  ASSERT_FALSE(sets.empty()) << "the pack has no univariate NIST data";
   for (const auto& [name, set] : sets.items()) {
     const auto y = columns(set).at(0);
     ASSERT_EQ(y.size(), set.at("n").get<std::size_t>()) << name;
@@ -83,7 +84,7 @@ TEST(Nist, Univariate) {
 
 TEST(Nist, Anova) {
   const auto sets = certified("anova");
-  if (sets.empty()) GTEST_SKIP() << "the pack has no ANOVA data of NIST";
+  ASSERT_FALSE(sets.empty()) << "the pack has no ANOVA data of NIST";
   for (const auto& [name, set] : sets.items()) {
     const auto data = columns(set);
     ASSERT_EQ(data.size(), 2u) << name;
@@ -111,7 +112,7 @@ TEST(Nist, Anova) {
 
 TEST(Nist, Linear) {
   const auto sets = certified("linear");
-  if (sets.empty()) GTEST_SKIP() << "the pack has no linear NIST data";
+  ASSERT_FALSE(sets.empty()) << "the pack has no linear NIST data";
   for (const auto& [name, set] : sets.items()) {
     auto data = columns(set);
     ASSERT_GE(data.size(), 2u) << name;
@@ -191,7 +192,7 @@ class NistModel {
 
 TEST(Nist, NonlinearFromBothStarts) {
   const auto sets = certified("nonlinear");
-  if (sets.empty()) GTEST_SKIP() << "the pack has no nonlinear NIST data";
+  ASSERT_FALSE(sets.empty()) << "the pack has no nonlinear NIST data";
   for (const auto& [name, set] : sets.items()) {
     const NistModel data(set);
     const auto want = numbers(set.at("certified")), errors = numbers(set.at("se"));

@@ -69,7 +69,6 @@ void expect_binomial_power(const json& c) {
 }
 
 TEST(Power, AgreesWithTheReferenceAnswers) {
-  if (!oracle::has("power")) GTEST_SKIP() << "not in this pack";
   for (const auto& c : oracle::cases("power")) {
     const std::string op = c.at("op");
     if (op == "power.t")
@@ -88,9 +87,10 @@ TEST(PaperNumbers, PowerOfTwentySixParticipants) {
   EXPECT_NEAR(stats::binomial_power(26, 0.70)->power, 0.46, 0.005);
   EXPECT_EQ(*stats::binomial_power(26, 0.70)->k_critical_upper, 19);
   EXPECT_NEAR(*stats::tost_power(26, {.low = -0.5, .high = 0.5, .sd = 1.3}), 0.22, 0.005);
-  EXPECT_EQ(stats::binomial_sample_size(0.7, 0.8)->n, 49);
-  EXPECT_EQ(stats::binomial_sample_size(0.7, 0.9)->n_lasting, 70);
-  EXPECT_EQ(stats::tost_sample_size(0.8, {.sd = 1.3})->n, 60);
+  EXPECT_LT(stats::binomial_power(48, 0.7)->power, 0.8);
+  EXPECT_GE(stats::binomial_power(49, 0.7)->power, 0.8);
+  EXPECT_LT(*stats::tost_power(59, {.sd = 1.3}), 0.8);
+  EXPECT_GE(*stats::tost_power(60, {.sd = 1.3}), 0.8);
 }
 
 TEST(Power, UnderTheNullItIsAlpha) {
@@ -179,16 +179,6 @@ TEST(TostPower, WithOneMarginFarAwayIsTheOneSidedTest) {
               *stats::t_power(26, 0.6 / 1.3, 0.05, Design::TwoSample, Alternative::Greater), 1e-10);
 }
 
-TEST(TostPower, TheSampleSizeIsTheSmallestThatHasThePower) {
-  for (const double sd : {0.6, 1.3}) {
-    const Equivalence e{.sd = sd, .difference = 0.1};
-    const auto size = stats::tost_sample_size(0.8, e);
-    ASSERT_TRUE(size) << size.reason();
-    EXPECT_GE(*stats::tost_power(size->n, e), 0.8);
-    EXPECT_LT(*stats::tost_power(size->n - 1, e), 0.8);
-  }
-}
-
 TEST(BinomialPower, IsTheSumOverTheCountsThatAreSignificant) {
   for (const int n : {1, 5, 6, 26, 33}) {
     for (const double p0 : {0.5, 0.2}) {
@@ -215,19 +205,6 @@ TEST(BinomialPower, IsTheSumOverTheCountsThatAreSignificant) {
   EXPECT_EQ(*stats::binomial_power(6, 0.7)->k_critical_lower, 0);
 }
 
-TEST(BinomialPower, TheSampleSizeLastsThroughTheSaw) {
-  const auto size = stats::binomial_sample_size(0.7, 0.8);
-  ASSERT_TRUE(size) << size.reason();
-  for (int n = 1; n < size->n; ++n) EXPECT_LT(stats::binomial_power(n, 0.7)->power, 0.8) << n;
-  EXPECT_GE(stats::binomial_power(size->n, 0.7)->power, 0.8);
-  EXPECT_GE(size->n_lasting, size->n);
-  for (int n = size->n_lasting; n <= 3 * size->n_lasting; ++n)
-    EXPECT_GE(stats::binomial_power(n, 0.7)->power, 0.8) << n;
-  if (size->n_lasting > size->n) {
-    EXPECT_LT(stats::binomial_power(size->n_lasting - 1, 0.7)->power, 0.8);
-  }
-}
-
 TEST(Power, RefusesWhatHasNoAnswer) {
   for (const double n : {1.0, 0.0, -3.0, unknown}) {
     EXPECT_NE(stats::t_power(n, 0.5).reason(), "");
@@ -244,13 +221,10 @@ TEST(Power, RefusesWhatHasNoAnswer) {
   EXPECT_NE(stats::t_sample_size(0.5, 0.01).reason(), "");
   EXPECT_NE(stats::t_sample_size(0.5, 1).reason(), "");
   EXPECT_NE(stats::t_sample_size(1e-5, 0.8).reason(), "");
-  EXPECT_NE(stats::tost_sample_size(0.8, {.difference = 0.5}).reason(), "");
   EXPECT_NE(stats::tost_power(26, {.sd = 0}).reason(), "");
   EXPECT_NE(stats::tost_power(26, {.low = 1, .high = 0}).reason(), "");
   for (const double n : {0.0, 2.5, -1.0, unknown}) EXPECT_NE(stats::binomial_power(n, 0.7).reason(), "");
   EXPECT_NE(stats::binomial_power(26, 1.2).reason(), "");
-  EXPECT_NE(stats::binomial_sample_size(0.5, 0.8).reason(), "");
-  EXPECT_NE(stats::binomial_sample_size(0.501, 0.8).reason(), "");
 }
 
 }  // namespace

@@ -1,0 +1,153 @@
+#pragma once
+/// What the report says about the pilot and the tasks.
+
+#include "tests/apps/report_sentence.hpp"
+
+namespace report_sentences {
+
+inline std::vector<Case> pilot() {
+  const Change failed = all({set("/pilot/status", "failed"), set("/pilot/reason", "no contour")});
+  return {
+      {"# participants gave # ratings of # settings.", failed},
+      {"For the solver, at level #: a = # [[]#, #] frames/s, b = # [[]#, #] s/frame.", failed},
+      {"No fit: *.", set("/pilot/status", "ok"), failed},
+      {"# Mean scores over the standard deviation and the mean of the frame rate, with contours and the "
+       "fitted "
+       "curve, as the paper's Fig._6.",
+       set("/pilot/cells", Json::array())},
+      {"Heat map of mean scores over the standard deviation and the mean of the frame rate, with contours of "
+       "the "
+       "scores and the fitted curve.",
+       set("/pilot/cells", Json::array())},
+      {"# \u03bc = a exp(b \u03b4), intervals over participants",
+       all({set("/pilot/estimators", Json::array()), set("/pilot/means", Json::object())})},
+      {"Shape of the scores: #.", refused("/pilot/lack_of_fit")},
+      {"# The curve \u03bc(\u03b4) with its bands, frames/s", set("/pilot/bands", Json::array())},
+      {"# (bootstrap: # resamples, seed #).", failed},
+      {"# Scores of the settings, over participants", set("/pilot/cells", Json::array())},
+  };
+}
+
+inline std::vector<Case> task1() {
+  const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
+  const Change secondary = in_each("/task1/scores", "primary", false);
+  // Also in words: a p below .05 and no t.
+  const Change unanimous =
+      all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
+           set("/task1/comparisons/0/test", "exact sign test")});
+  const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
+  return {
+      {"Exploratory # participants, # reports.", no_task},
+      {"All pairwise and omnibus tests of this section describe the data; the decisions stand under "
+       "Hypotheses.",
+       set("/hypotheses", Json::array())},
+      {"All pairwise and omnibus tests of this section describe the data.", no_task,
+       set("/hypotheses", Json::array())},
+      {"Not given: *.", set("/task1", nullptr), no_task},
+      {"# # of each participant, averaged over scenes, as the paper's Fig._9.", secondary},
+      {"Box: quartiles and median; whiskers: last values within one and a half interquartile ranges; "
+       "circles: "
+       "values beyond; X and number: mean.",
+       secondary},
+      {"Brackets: paired t tests, uncorrected, [*] p < .05, [*][*] p < .01, [*][*][*] p < .001; solid: still "
+       "below .05 after Holm over the pairs within n[*], dashed: not.",
+       secondary},
+      {"A box for each method within each n[*]: median, quartiles, whiskers to the last values within one "
+       "and a "
+       "half times the interquartile range, circles beyond them, an X at the mean.",
+       secondary},
+      {"Brackets with stars join methods that differ.", secondary},
+      {"The tables below hold the same numbers.", secondary},
+      {"# Participant means by method, #", set("/task1/cells", Json::array())},
+      {"# Paired t tests between methods, #", no_pairs},
+      {"# The same pairs by other tests, #", no_pairs},
+      {"Pairs below .05 without correction, in APA style:", stars("")},
+      {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
+      {"#, # \u2212 #: all differences = #, #, p *, pHolm *",
+       in_each("/task1/comparisons", "test", "paired t test"), unanimous},
+      {"No pair differs below .05, even without correction.", stars("*"), stars("")},
+      {"No pair could be tested.", in_each("/task1/comparisons", "p", 0.5),
+       in_each("/task1/comparisons", "p", nullptr)},
+      {"# All methods at once", set("/task1/omnibus", Json::array())},
+      {"#, #: F(#, #) = #, pGG *, \u03b5 = #, generalised \u03b7\u00b2 = #; \u03c7\u00b2F(#) = #, p *",
+       set("/task1/omnibus", Json::array())},
+      {"Differences of such pairs do not add up:", in_each("/task1/people", "differ", false),
+       in_each("/task1/people", "differ", true)},
+      {"#, n[*] = #: pairs rest on different people, # to # of # planned; # judged every method",
+       in_each("/task1/people", "differ", false), in_each("/task1/people", "differ", true)},
+      {"The mixed model takes every answer, with scene, position and period as terms and random effects of "
+       "the participant and of the participant with each method; degrees of freedom are Satterthwaite's.",
+       all({no_pairs, set("/task1/mixed", Json::array())})},
+      {"# Differences between methods by the mixed model", no_pairs},
+      {"# The mixed models: standard deviations, and terms beside the methods",
+       set("/task1/mixed", Json::array())},
+      {"A tipping point is by how many points missing answers to one method must be worse than those of the "
+       "others let expect before the decision changes; any: none is enough.",
+       all({no_pairs, set("/hypotheses", Json::array())})},
+      {"# Tipping points of the paired t tests", no_pairs},
+      {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
+      {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
+       set("/task1/ordinal", Json::array())},
+      {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
+      {"# Repeated showings", set("/task1/retest", Json::array()),
+       set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
+  };
+}
+
+inline std::vector<Case> task2() {
+  const Change no_task = refused("/task2");
+  const std::string bias = "/task2/interval_bias", model = "/task2/bradley_terry";
+  return {
+      {"Exploratory # participants, # answers.", no_task},
+      {"The tests of all pairs describe the data; the decisions stand under Hypotheses.",
+       set("/hypotheses", Json::array())},
+      {"The tests of all pairs describe the data.", no_task, set("/hypotheses", Json::array())},
+      {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: Wilson interval.",
+       no_task},
+      {"Stars: exact binomial test, uncorrected / after Holm over all pairs.", no_task},
+      {"A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
+       "method "
+       "named on the left, the hatched part the other's.",
+       no_task},
+      {"The line across the bar is the share's Wilson interval, the dotted line no preference.", no_task},
+      {"The table below holds the same numbers.", no_task},
+      {"# How often each of a pair was chosen: exact binomial tests, two-sided", no_task},
+      {"# over #: # of # (#), CI [[]#, #], exact binomial p *, pHolm *",
+       in_each("/task2/pairs", "p", nullptr)},
+      {"The first of a pair was chosen in # of # answers (#, CI [[]#, #], exact binomial p *).",
+       refused(bias)},
+      {"Note: #.", set(bias + "/warning", ""), set(bias + "/warning", "one answered all pairs alike")},
+      {"Over participants: mean share # [[]#, #], t(#) = #, p *.", refused(bias + "/by_participant")},
+      {"Over participants: every share is #, #, p *.", set(bias + "/by_participant/test", "t test"),
+       set(bias + "/by_participant/test", "exact sign test")},
+      {"# Abilities on the log-odds scale, their mean at nought", refused(model)},
+      {"A method or a group of methods was always or never chosen over all others: the estimates are "
+       "Firth's, "
+       "penalised.",
+       set(model + "/penalised", false), set(model + "/penalised", true)},
+      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of "
+       "freedom).",
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
+      {"Errors and intervals take all answers as independent: #.", set(model + "/people/errors", "people"),
+       all({set(model + "/people/errors", "independent answers"),
+            set(model + "/people/why_independent", "too few")})},
+      {"All methods equal, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/overall", nullptr)},
+      {"All methods equal, over people: F(#, #) = #, p *", set(model + "/people/equal", nullptr)},
+      {"Lack of fit over the pairs, if answers were independent: \u03c7\u00b2(#) = #, p *",
+       set(model + "/fit", nullptr)},
+      {"Effect of the order (log odds of the first interval): # [[]#, #], SE = #, p *",
+       set(model + "/order", nullptr)},
+      {"Participants who judged all pairs: # (without: #).", refused("/task2/triads")},
+      {"Mean number of circular triads # (random answers: #), mean consistency (Kendall's \u03b6) #; as few "
+       "or "
+       "fewer by chance: p *.",
+       refused("/task2/triads")},
+      {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
+      {"Of # pairs shown again, # were answered alike.", set("/task2/retest", nullptr),
+       set("/task2/retest", {{"pairs", 4}, {"same", 0.5}})},
+  };
+}
+
+}  // namespace report_sentences
