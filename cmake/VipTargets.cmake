@@ -30,11 +30,16 @@ if(VIP_LIBFUZZER)
 endif()
 
 # vip_precompile(TARGET HEADERS...) what most files of a target include is read once. It halves the build's time and changes
-# nothing else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows.
+# nothing else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. vip_precompile(TARGET REUSE_FROM
+# OTHER) takes those of a target that is compiled with the same flags.
 function(vip_precompile target)
   if(VIP_PRECOMPILE)
-    target_precompile_headers(${target} PRIVATE <algorithm> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional>
-                              <set> <sstream> <string> <vector> ${ARGN})
+    if("${ARGV1}" STREQUAL "REUSE_FROM")
+      target_precompile_headers(${target} ${ARGN})
+    else()
+      target_precompile_headers(${target} PRIVATE <algorithm> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
+                                <optional> <set> <sstream> <string> <vector> ${ARGN})
+    endif()
     # What comes from there is no system header to g++ 12: its false alarms inside std::string show (GCC bug 105329).
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
       target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)

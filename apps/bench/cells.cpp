@@ -1,12 +1,13 @@
 #include "apps/bench/cells.hpp"
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "stats/base/error.hpp"
@@ -63,7 +64,7 @@ void add_table_options(CLI::App& command, TableOptions& options) {
   command.add_option("--preset", options.preset, "tuned, paper or both")->capture_default_str();
   command.add_option("--tau", options.tau, "live, fixed:X (frames/s) or table2 (the paper's)")
       ->capture_default_str();
-  command.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
+  add_backend(command, options.backend);
   command.add_option("--csv", options.csv, "File for the rows")->check(output_file());
   command.add_option("--markdown", options.markdown, "File for the same as a table")->check(output_file());
   command.add_option("--svg", options.svg_folder, "Folder for figures; made when missing")
@@ -110,9 +111,7 @@ stats::PtpeModel load_model(const std::string& path) {
 std::string number(double value, int digits) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "inf";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return fmt::format("{:.{}f}", value, digits);
 }
 
 std::string to_csv(const TextTable& table) {

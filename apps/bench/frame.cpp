@@ -41,7 +41,7 @@ struct FrameOptions {
   bool no_render = false;
   bool passes = false;
   bool look = false;
-  std::string size = "1280x720";
+  PictureSize size{1280, 720};
   int views = 1;
 };
 
@@ -88,7 +88,7 @@ struct Pictures {
 };
 
 Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
-  const PictureSize size = parse_picture_size(options.size);
+  const PictureSize size = options.size;
   if (options.no_render) return {nullptr, "--no-render"};
   std::optional<sim::GlContext> context;
   try {
@@ -238,10 +238,9 @@ void add_frame_command(CLI::App& app) {
   auto options = std::make_shared<FrameOptions>();
   auto* command = app.add_subcommand("frame", "Milliseconds a frame of one scene and method");
   command->add_option("scene", options->scene, "Scene file")->capture_default_str();
-  command->add_option("--method", options->method, sim::method_names())->capture_default_str();
-  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
-      ->capture_default_str();
-  command->add_option("--backend", options->backend, "cpu, cuda or auto")->capture_default_str();
+  add_method(*command, options->method);
+  add_n_star(*command, options->n_star);
+  add_backend(*command, options->backend);
   auto* tau = command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
                   ->capture_default_str();
   command
@@ -252,12 +251,8 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--ptpe", options->ptpe, ptpe_help);
   command->add_flag("--temporal", options->fluid.temporal.always,
                     "Temporal acceleration also for a method without it");
-  command->add_option("--frames", options->frames, "Timed frames")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command->add_option("--warm-up", options->warm_up, "Untimed frames before")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
+  add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
+  add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
   command->add_option("--substeps", options->fluid.substeps, "Substeps a frame; 0 = the scene's rule")
       ->check(CLI::Range(0, 64));
   command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
@@ -285,10 +280,8 @@ void add_frame_command(CLI::App& app) {
                  "Let the method see each picture and its middle, as in a live session; the picture is drawn "
                  "once more for it, untimed")
       ->excludes(no_render);
-  command->add_option("--size", options->size, "Picture of one view, px")->capture_default_str();
-  command->add_option("--views", options->views, "1, or 2 eyes side by side")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
+  add_size(*command, options->size, "Picture of one view, px");
+  add_count(*command, "--views", options->views, 1, 2, "1, or 2 eyes side by side");
   command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
   command->callback([options] {
     options->fluid.temporal.model = load_model(options->ptpe);

@@ -1,7 +1,7 @@
 #include "apps/bench/stills.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/bench/checkpoint.hpp"
 #include "apps/bench/masks.hpp"
@@ -252,9 +252,8 @@ class Stills {
   void write_sheet(const Checkpoint& checkpoint, sim::Preset preset,
                    const std::vector<SheetColumn>& columns) {
     if (options_.pictures.empty()) return;
-    char name[96];
-    std::snprintf(name, sizeof name, "%s_%s_%s_f%03d.png", scene_.name.c_str(), size_.word.c_str(),
-                  sim::preset_name(preset).c_str(), checkpoint.frame);
+    const std::string name = fmt::format("{}_{}_{}_f{:03}.png", scene_.name, size_.word,
+                                         sim::preset_name(preset), checkpoint.frame);
     sheets_.write(std::filesystem::path(options_.pictures) / name, contact_sheet(columns));
   }
 

@@ -1,5 +1,6 @@
 /// vip-bench table1: the paper's Table 1 on this machine.
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
@@ -21,7 +22,6 @@ namespace {
 /// As it was typed.
 struct Table1Words : Table1Options {
   std::string checkpoints_word = "all";
-  std::string size_word = "1280x720";
 };
 
 int checkpoints_of(const std::string& word) {
@@ -37,10 +37,8 @@ int checkpoints_of(const std::string& word) {
 std::string started(const std::vector<StartQuality>& starts, const std::string& what) {
   std::string out = "starts of " + what + " (most projections, largest compression, mean n / (8 n_*)):";
   for (const auto& start : starts) {
-    char text[96];
-    std::snprintf(text, sizeof text, " %s %d, %.2f %%, %.3f;", sim::method_name(start.method).c_str(),
-                  start.worst.projections, 100 * start.worst.compression, start.particles_share);
-    out += text;
+    out += fmt::format(" {} {}, {:.2f} %, {:.3f};", sim::method_name(start.method), start.worst.projections,
+                       100 * start.worst.compression, start.particles_share);
   }
   out.back() = '\n';
   return out;
@@ -135,24 +133,23 @@ void add_table1_command(CLI::App& app) {
       ->add_option("--checkpoints", words->checkpoints_word,
                    "all, or how many of the scene's, from the first")
       ->capture_default_str();
-  const auto count = [&](const char* name, int& value, int low, int high, const char* what) {
-    command->add_option(name, value, what)->check(CLI::Range(low, high))->capture_default_str();
-  };
-  count("--gazes", words->gazes, 1, 16, "Gaze points at a checkpoint");
-  count("--repeats", words->repeats, 1, 1000, "Perturbed starts of each");
-  count("--frames-after", words->frames_after, 1, 1000, "Frames from a checkpoint to its picture");
-  count("--cumul-frames", words->cumul_frames, 0, 100000, "Frames of SSIM-cumul and flicker; 0 = neither");
-  count("--projections", words->projections, 1, 10000, "Density projections of a start, at most");
+  add_count(*command, "--gazes", words->gazes, 1, 16, "Gaze points at a checkpoint");
+  add_count(*command, "--repeats", words->repeats, 1, 1000, "Perturbed starts of each");
+  add_count(*command, "--frames-after", words->frames_after, 1, 1000,
+            "Frames from a checkpoint to its picture");
+  add_count(*command, "--cumul-frames", words->cumul_frames, 0, 100000,
+            "Frames of SSIM-cumul and flicker; 0 = neither");
+  add_count(*command, "--projections", words->projections, 1, 10000,
+            "Density projections of a start, at most");
   command->add_flag("--unperturbed", words->unperturbed,
                     "Starts are not moved: HiRes must equal itself (a check of the bench)");
-  command->add_option("--size", words->size_word, "Pictures, px")->capture_default_str();
+  add_size(*command, words->size, "Pictures, px");
   command
       ->add_option("--pictures", words->pictures,
                    "Folder for the methods side by side, painted by level below; made when missing")
       ->check(output_folder());
   command->callback([words] {
     words->checkpoints = checkpoints_of(words->checkpoints_word);
-    words->size = parse_picture_size(words->size_word);
     run_table1(*words);
   });
 }

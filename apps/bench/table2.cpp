@@ -226,14 +226,10 @@ void add_table2_command(CLI::App& app) {
       app.add_subcommand("table2", "The paper's Table 2: particles, milliseconds by part, speed-up");
   add_table_options(*command, *options);
   command->add_option("--ptpe", options->ptpe, ptpe_help);
-  command->add_option("--frames", options->frames, "Frames of a cell")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
+  add_count(*command, "--frames", options->frames, 2, 100000, "Frames of a cell");
   command->add_option("--methods", options->methods, "all, or names with commas; HiRes runs in any case")
       ->capture_default_str();
-  command->add_option("--warm-up", options->warm_up, "Of these, left out of the figures")
-      ->check(CLI::Range(0, 99999))
-      ->capture_default_str();
+  add_count(*command, "--warm-up", options->warm_up, 0, 99999, "Of these, left out of the figures");
   command->callback([options] {
     if (options->warm_up >= options->frames) {
       throw base::Error("--warm-up", "leaves no frame to measure", "make it smaller than --frames");

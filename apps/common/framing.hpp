@@ -35,6 +35,9 @@ struct Framing {
   double visual_scale() const;
 };
 
+/// Bakes keep angles as text: what differs by less was written otherwise, or computed from other roundings.
+inline constexpr double same_angle_deg = 0.01;
+
 Framing frame_picture(const sim::Camera& camera, const Viewing& viewing, int width_px, int height_px);
 
 /// The view of that camera with the angle of frame_picture().

@@ -1,5 +1,5 @@
+#include <fmt/core.h>
 #include <cmath>
-#include <cstdio>
 
 #include "apps/common/fluid_stimulus.hpp"
 #include "libsim/solver/settled_state.hpp"
@@ -13,10 +13,9 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
   auto bake = std::make_unique<sim::BakeReader>(choice.bake);
   const double dt = bake->header().frame_dt_s;
   if (choice.content_step_s > 0 && std::abs(choice.content_step_s - dt) > 1e-3 * dt) {
-    char text[120];
-    std::snprintf(text, sizeof text, "holds frames %.6g s apart, but the content step is %.6g s", dt,
-                  choice.content_step_s);
-    throw base::Error(choice.bake.string(), text,
+    throw base::Error(choice.bake.string(),
+                      fmt::format("holds frames {:.6g} s apart, but the content step is {:.6g} s", dt,
+                                  choice.content_step_s),
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));

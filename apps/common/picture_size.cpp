@@ -1,7 +1,7 @@
 #include "apps/common/picture_size.hpp"
 
+#include <fmt/core.h>
 #include <charconv>
-#include <cstdio>
 
 #include "stats/base/error.hpp"
 
@@ -14,6 +14,8 @@ constexpr double bytes_per_pixel = 40;
 bool good_side(int px) { return px >= least_picture_side && px <= most_picture_side; }
 
 }  // namespace
+
+std::string size_words(PictureSize size) { return fmt::format("{}x{}", size.width, size.height); }
 
 PictureSize parse_picture_size(const std::string& text, const std::string& option) {
   PictureSize size;
@@ -29,10 +31,10 @@ PictureSize parse_picture_size(const std::string& text, const std::string& optio
   }
   const auto pixels = static_cast<long long>(size.width) * size.height;
   if (pixels > most_picture_pixels) {
-    char problem[96];
-    std::snprintf(problem, sizeof problem, "would take about %.1f GB of memory to draw",
-                  1e-9 * bytes_per_pixel * static_cast<double>(pixels));
-    throw base::Error(place, problem, "use at most 33554432 pixels in all, such as 8192x4096");
+    throw base::Error(place,
+                      fmt::format("would take about {:.1f} GB of memory to draw",
+                                  1e-9 * bytes_per_pixel * static_cast<double>(pixels)),
+                      "use at most 33554432 pixels in all, such as 8192x4096");
   }
   return size;
 }

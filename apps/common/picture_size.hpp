@@ -10,6 +10,9 @@ struct PictureSize {
 };
 
 inline constexpr int least_picture_side = 16, most_picture_side = 8192;
+/// "1280x720".
+std::string size_words(PictureSize size);
+
 /// 8192x4096. A picture of fluid takes about 40 bytes a pixel while it is drawn.
 inline constexpr long long most_picture_pixels = 1LL << 25;
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 
 namespace apps {
 

@@ -1,8 +1,8 @@
 #include "apps/common/svg.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace apps::svg {
 
@@ -30,9 +30,7 @@ std::string drawn(const Picture& picture, const std::string& space) {
 }  // namespace
 
 std::string number(double value, int decimals) {
-  char text[400];  // the largest double has 309 digits before the point
-  std::snprintf(text, sizeof text, "%.*f", std::clamp(decimals, 0, 17), value);
-  std::string out = text;
+  std::string out = fmt::format("{:.{}f}", value, std::clamp(decimals, 0, 17));
   if (out.front() == '-' && out.find_first_of("123456789ni") == std::string::npos) out.erase(0, 1);
   return out;
 }

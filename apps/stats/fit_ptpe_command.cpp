@@ -1,5 +1,6 @@
 /// vip-stats fit-ptpe: from the ratings of a pilot to the solver's file.
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
@@ -10,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "apps/stats/ptpe/calibration_history.hpp"
@@ -135,13 +136,10 @@ void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
   std::string reasons;
   for (const auto& doubt : fit.doubts) reasons += (reasons.empty() ? "" : "; ") + doubt.text;
   if (command.too_wide(fit)) {
-    char wide[160];
-    std::snprintf(
-        wide, sizeof wide,
-        "the interval is too wide for a calibration: mu(delta) is open by up to +-%.0f %%, the limit "
-        "is +-%.0f %%",
-        100 * fit.relative_half_width(), 100 * command.max_width);
-    reasons += (reasons.empty() ? "" : "; ") + std::string(wide);
+    reasons += fmt::format(
+        "{}the interval is too wide for a calibration: mu(delta) is open by up to +-{:.0f} %, the limit is "
+        "+-{:.0f} %",
+        reasons.empty() ? "" : "; ", 100 * fit.relative_half_width(), 100 * command.max_width);
   }
   throw base::Error(
       command.database, reasons,
@@ -207,8 +205,7 @@ void fit_ptpe(FitCommand& command) {
 void add_fit_ptpe_command(CLI::App& app) {
   auto command = std::make_shared<FitCommand>();
   auto* fit = app.add_subcommand("fit-ptpe", "Fit mu = a exp(b delta) to the ratings of a PTPE pilot");
-  auto* positional = fit->add_option("database", command->database, "The study's database");
-  fit->add_option("--db", command->database, "The same as an option")->excludes(positional);
+  add_database_argument(*fit, command->database);
   fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
   fit->add_option("--out", command->out,
                   "File for the solver (TOML), written on success only; every one is kept in "
@@ -229,7 +226,7 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option(
       "--truth", command->truth,
       "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
-  fit->add_option("--protocol", command->selection.protocol, "First digits of the protocol's SHA-256");
+  add_protocol_digits(*fit, command->selection.protocol);
   fit->add_option("--question", command->selection.question, "Id of the question, where several are asked");
   fit->add_option(
       "--plan", command->plan,
@@ -237,12 +234,11 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option("--exclude", command->exclude,
                   "Trials left out by timing verdict, instead of what the plan says (default: fail)")
       ->check(CLI::IsMember({"none", "fail", "degraded"}));
-  fit->add_option("--resamples", command->bootstrap.resamples, "Bootstrap resamples of the participants")
-      ->check(CLI::Range(100, 1000000))
-      ->capture_default_str();
+  add_count(*fit, "--resamples", command->bootstrap.resamples, 100, 1000000,
+            "Bootstrap resamples of the participants");
   fit->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's (default: 1)");
   fit->callback([command] {
-    if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    check_given(command->database);
     if (!std::isfinite(command->level)) throw CLI::ValidationError("--level", "is not a number");
     fit_ptpe(*command);
   });

@@ -1,5 +1,6 @@
 /// vip-stats power: what a study of n participants can tell, by simulation on its protocol's own plan.
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -37,18 +38,16 @@ std::vector<std::size_t> columns_to_print(const Json& json) {
   return out;
 }
 
-std::string cell(const Json& point, const std::string& figure, const char* format) {
+std::string cell(const Json& point, const std::string& figure, int decimals = 3) {
   if (!point.contains(figure) || !point.at(figure).is_number()) return "-";
-  char text[48];
-  std::snprintf(text, sizeof text, format, point.at(figure).get<double>(),
-                point.at(figure + "_se").get<double>());
-  return text;
+  return fmt::format("{0:.{2}f} ({1:.{2}f})", point.at(figure).get<double>(),
+                     point.at(figure + "_se").get<double>(), decimals);
 }
 
 void print_row(const std::string& name, const Json& curve, const std::string& figure,
-               const std::vector<std::size_t>& columns, const char* format = "%.3f (%.3f)") {
+               const std::vector<std::size_t>& columns, int decimals = 3) {
   std::printf("  %-34s", name.c_str());
-  for (const std::size_t i : columns) std::printf(" %13s", cell(curve[i], figure, format).c_str());
+  for (const std::size_t i : columns) std::printf(" %13s", cell(curve[i], figure, decimals).c_str());
   std::printf("\n");
 }
 
@@ -79,12 +78,10 @@ void print_tests(const Json& hypothesis) {
   for (const auto& test : hypothesis.at("tests")) {
     const Json& at = test.at("curve").at(0);
     const Json& closed = at.at("closed_form");
-    char formula[32] = "-";
-    if (closed.is_number()) std::snprintf(formula, sizeof formula, "%.3f", closed.get<double>());
     std::printf("    %-36s truth %6.3g  holds %s  uncorrected %s  formula %s\n",
                 test.at("label").get<std::string>().c_str(), test.at("truth").get<double>(),
-                cell(at, "holds", "%.3f (%.3f)").c_str(), cell(at, "uncorrected", "%.3f (%.3f)").c_str(),
-                formula);
+                cell(at, "holds").c_str(), cell(at, "uncorrected").c_str(),
+                closed.is_number() ? fmt::format("{:.3f}", closed.get<double>()).c_str() : "-");
   }
 }
 
@@ -112,11 +109,11 @@ void print_coefficient(const Json& json, const std::string& name, const char* un
                        const std::vector<std::size_t>& columns) {
   Json curve = Json::array();
   for (const auto& point : json.at("precision").at("curve")) curve.push_back(point.at(name));
-  const char* const format = name == "a" ? "%.2f (%.2f)" : "%.4f (%.4f)";
+  const int decimals = name == "a" ? 2 : 4;
   std::printf("%s, %s\n", name.c_str(), unit);
-  print_row("mean", curve, "mean", columns, format);
-  print_row("standard error (of estimates)", curve, "sd", columns, format);
-  print_row("interval's half width, median", curve, "half_width", columns, format);
+  print_row("mean", curve, "mean", columns, decimals);
+  print_row("standard error (of estimates)", curve, "sd", columns, decimals);
+  print_row("interval's half width, median", curve, "half_width", columns, decimals);
   print_row("coverage of the interval", curve, "coverage", columns);
   print_row("precision reached", curve, "reached", columns);
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/report/preregistration.hpp"
 

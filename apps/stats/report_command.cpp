@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/report/preregistration.hpp"
@@ -86,15 +86,12 @@ void write_report(const ReportCommand& command) {
 void add_report_command(CLI::App& app) {
   auto command = std::make_shared<ReportCommand>();
   auto* sub = app.add_subcommand("report", "One page with every table, figure, test and decision of a study");
-  auto* positional = sub->add_option("database", command->database, "The study's database");
-  sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
+  add_database_argument(*sub, command->database);
   sub->add_option("--html", command->html, "File for the page")->check(output_file());
   sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
-  auto* plan = sub->add_option("--plan", command->plan,
-                               "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, "
-                               "seed; without: the defaults");
+  auto* plan = add_plan(*sub, command->plan);
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")
       ->excludes(plan);
@@ -105,7 +102,7 @@ void add_report_command(CLI::App& app) {
       "are\n"
       "deleted, to be made again.");
   sub->callback([command] {
-    if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    check_given(command->database);
     if (command->html.empty() && command->json.empty() && command->csv.empty())
       throw CLI::RequiredError("--html, --json or --csv");
     write_report(*command);

@@ -1,12 +1,13 @@
 /// vip-stats task1, task2: tables, tests and verdicts.
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
@@ -22,18 +23,16 @@ struct TaskCommand {
   std::string database, json, csv, plan, protocol;
 };
 
-std::string number_text(const Json& value, const char* format) {
+std::string number_text(const Json& value, int decimals) {
   if (!value.is_number()) return value.is_string() ? value.get<std::string>() : "-";
-  char text[32];
-  std::snprintf(text, sizeof text, format, value.get<double>());
-  return text;
+  return fmt::format("{:.{}f}", value.get<double>(), decimals);
 }
 
 std::string word(const Json& value) { return value.get<std::string>(); }
 
 std::string p_text(const Json& p) {
   if (p.is_number() && p.get<double>() < 0.0001) return "< .0001";
-  return number_text(p, "%.4f");
+  return number_text(p, 4);
 }
 
 void print_cells(const Json& task) {
@@ -42,9 +41,9 @@ void print_cells(const Json& task) {
     const Json& ci = cell.at("ci");
     std::printf("%-28s %-5s %-9s %4d %7s %6s  [%s, %s]\n", word(cell.at("score")).c_str(),
                 word(cell.at("n_star")).c_str(), word(cell.at("method")).c_str(), cell.at("n").get<int>(),
-                number_text(cell.at("mean"), "%.2f").c_str(), number_text(cell.at("sd"), "%.2f").c_str(),
-                number_text(ci.is_array() ? ci[0] : Json(), "%.2f").c_str(),
-                number_text(ci.is_array() ? ci[1] : Json(), "%.2f").c_str());
+                number_text(cell.at("mean"), 2).c_str(), number_text(cell.at("sd"), 2).c_str(),
+                number_text(ci.is_array() ? ci[0] : Json(), 2).c_str(),
+                number_text(ci.is_array() ? ci[1] : Json(), 2).c_str());
   }
 }
 
@@ -54,10 +53,10 @@ void print_pairs(const Json& task) {
     const Json& ci = pair.at("clopper_pearson");
     std::printf("%-22s %4d %4d %6s %9s %9s  [%s, %s]%s\n",
                 (word(pair.at("a")) + " over " + word(pair.at("b"))).c_str(), pair.at("k").get<int>(),
-                pair.at("n").get<int>(), number_text(pair.at("share"), "%.2f").c_str(),
+                pair.at("n").get<int>(), number_text(pair.at("share"), 2).c_str(),
                 p_text(pair.at("p")).c_str(), p_text(pair.at("p_holm")).c_str(),
-                number_text(ci.is_array() ? ci[0] : Json(), "%.2f").c_str(),
-                number_text(ci.is_array() ? ci[1] : Json(), "%.2f").c_str(),
+                number_text(ci.is_array() ? ci[0] : Json(), 2).c_str(),
+                number_text(ci.is_array() ? ci[1] : Json(), 2).c_str(),
                 word(pair.at("warning")).empty() ? "" : " (see warning)");
   }
 }
@@ -65,7 +64,7 @@ void print_pairs(const Json& task) {
 void print_test(const Json& test) {
   const bool holds = test.at("holds").get<bool>(), against = test.at("against").get<bool>();
   std::printf("    %-36s %8s  p %-8s Holm %-8s %s\n", word(test.at("label")).c_str(),
-              number_text(test.at("estimate"), "%.3f").c_str(), p_text(test.at("p")).c_str(),
+              number_text(test.at("estimate"), 3).c_str(), p_text(test.at("p")).c_str(),
               p_text(test.at("p_holm")).c_str(),
               holds     ? "holds"
               : against ? "significant in the other direction"
@@ -135,21 +134,18 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   auto command = std::make_shared<TaskCommand>();
   command->task = task;
   auto* sub = app.add_subcommand(task_name(task), what);
-  auto* positional = sub->add_option("database", command->database, "The study's database");
-  sub->add_option("--db", command->database, "The same as an option")->excludes(positional);
+  add_database_argument(*sub, command->database);
   sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
-  sub->add_option("--plan", command->plan,
-                  "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, seed; "
-                  "without: the defaults");
-  sub->add_option("--protocol", command->protocol, "First digits of the protocol's SHA-256");
+  add_plan(*sub, command->plan);
+  add_protocol_digits(*sub, command->protocol);
   sub->footer(
       "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
       "registered in the database, which must be writable for that: when one of them withdraws, the files "
       "are\n"
       "deleted, to be made again.");
   sub->callback([command] {
-    if (command->database.empty()) throw CLI::RequiredError("database or --db");
+    check_given(command->database);
     run(*command);
   });
 }

@@ -22,11 +22,12 @@ struct BakeCommand {
   std::string scene, out, verify, protocol;
   std::string method = "HiRes", n_star = "32k", backend = "auto";
   std::string pictures, camera = "view", rate, ptpe;
-  std::int64_t frames = 600;
+  int frames = 600;
   double content_step_s = 0;
   bool force = false;
   // With a protocol:
-  std::string size, keep = "particles";
+  std::optional<PictureSize> size;
+  std::string keep = "particles";
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
@@ -94,7 +95,7 @@ void bake_all(const BakeCommand& command) {
   const std::string file = base::find_input(command.protocol).string();
   const study::Protocol protocol = study::read_protocol(file);
   ProtocolBakes wish{file, command.out, {}, command.keep == "pictures"};
-  wish.look.size = parse_picture_size(command.size);
+  wish.look.size = *command.size;
   wish.look.common.viewing =
       screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
   wish.look.common.backend = command.backend;
@@ -124,12 +125,8 @@ void verify(const std::string& path) {
 
 void add_scene_options(CLI::App& sub, BakeCommand& command) {
   for (CLI::Option* option :
-       {sub.add_option("--method", command.method, sim::method_names())->capture_default_str(),
-        sub.add_option("--n-star", command.n_star, "Particles when all are coarsest; k = 1,024")
-            ->capture_default_str(),
-        sub.add_option("--frames", command.frames, "Content steps to compute")
-            ->check(CLI::Range(1, 1 << 20))
-            ->capture_default_str(),
+       {add_method(sub, command.method), add_n_star(sub, command.n_star),
+        add_count(sub, "--frames", command.frames, 1, 1 << 20, "Content steps to compute"),
         sub.add_option("--content-step", command.content_step_s,
                        "Fluid time between frames, s; default: the scene's")
             ->check(number_in(1e-6, 1)),
@@ -146,16 +143,15 @@ void add_scene_options(CLI::App& sub, BakeCommand& command) {
 }
 
 void add_protocol_options(CLI::App& sub, BakeCommand& command) {
-  for (CLI::Option* option :
-       {sub.add_option("--size", command.size, "Pixels of the participant's picture, as in run"),
-        sub.add_option("--keep", command.keep,
-                       "particles: the session draws them. pictures: both, and the session copies pictures")
-            ->check(CLI::IsMember({"particles", "pictures"}))
-            ->capture_default_str(),
-        sub.add_option("--screen-width-mm", command.screen_width_mm,
-                       "Width of the participant's picture on the screen"),
-        sub.add_option("--viewing-distance-mm", command.viewing_distance_mm, "From the eye to the screen")})
-    option->group("A protocol")->needs("--protocol");
+  auto* size = add_size(sub, command.size, "Pixels of the participant's picture, as in run");
+  auto* keep =
+      sub.add_option("--keep", command.keep,
+                     "particles: the session draws them. pictures: both, and the session copies pictures")
+          ->check(CLI::IsMember({"particles", "pictures"}))
+          ->capture_default_str();
+  const auto [width, distance] = add_viewing(sub, command.screen_width_mm, command.viewing_distance_mm,
+                                             "Width of the participant's picture on the screen");
+  for (CLI::Option* option : {size, keep, width, distance}) option->group("A protocol")->needs("--protocol");
 }
 
 }  // namespace
@@ -172,9 +168,7 @@ void add_bake_command(CLI::App& app) {
   protocol->excludes(scene);
   add_scene_options(sub, *command);
   add_protocol_options(sub, *command);
-  sub.add_option("--backend", command->backend, "Computes the fluid")
-      ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
-      ->capture_default_str();
+  add_backend(sub, command->backend, "Computes the fluid");
   sub.add_option("--ptpe", command->ptpe, "PTPE file that tau of Ours-TSp goes by; default: the paper's");
   auto* check = sub.add_option("--verify", command->verify, "Read this bake and check every frame");
   check->excludes(scene)->excludes(out);
@@ -183,7 +177,7 @@ void add_bake_command(CLI::App& app) {
     const bool whole = !command->protocol.empty();
     if (!whole && command->scene.empty()) throw CLI::RequiredError("scene");
     if (command->out.empty()) throw CLI::RequiredError("--out");
-    if (whole && command->size.empty()) throw CLI::RequiredError("--size");
+    if (whole && !command->size) throw CLI::RequiredError("--size");
     whole ? bake_all(*command) : bake(*command);
   });
 }

@@ -28,7 +28,8 @@ struct CheckOptions {
   std::string json;
   bool compare = false;
   bool measure = false;
-  std::string backend = "auto", size = "1920x1080", preview;
+  std::string backend = "auto", preview;
+  PictureSize size{1920, 1080};
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
@@ -61,8 +62,7 @@ MeasuredReport measure_here(const CheckOptions& options, const CheckReport& repo
   RunOptions choice;
   choice.display = "headless";
   choice.backend = options.backend;
-  const PictureSize size = parse_picture_size(options.size);
-  HeadlessDisplay display(size.width, size.height);
+  HeadlessDisplay display(options.size.width, options.size.height);
   CellStimuli stimuli(choice, protocol, {}, viewing);
   const auto all = [](int) { return true; };
   const auto live = measure_live(protocol, stimuli, {display, report.scenes, options.refresh_hz, {}, all});
@@ -74,14 +74,14 @@ MeasuredReport measure_here(const CheckOptions& options, const CheckReport& repo
 CheckReport make_report(const CheckOptions& options, const study::Protocol& protocol) {
   const Viewing viewing =
       screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle);
-  CheckReport report{protocol,
-                     outline_session(protocol),
-                     check_balance(protocol),
-                     checked_settings(protocol),
-                     {},
-                     {},
-                     {},
-                     frame_scenes(protocol, viewing, parse_picture_size(options.size))};
+  CheckReport report{.protocol = protocol,
+                     .outline = outline_session(protocol),
+                     .balance = check_balance(protocol),
+                     .settings = checked_settings(protocol),
+                     .refresh = {},
+                     .common = {},
+                     .measured = {},
+                     .scenes = frame_scenes(protocol, viewing, options.size)};
   if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
   std::int64_t frames = 0;
   for (const auto& one : report.settings) frames += study::frame_count(one.setting);
@@ -126,12 +126,9 @@ void add_check_command(CLI::App& app) {
       "--measure", options->measure,
       "Run each live stimulus through a trial on this machine, at --size: what run does before a "
       "session, which then need not");
-  command->add_option("--backend", options->backend, "Computes the fluid")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "Pixels of the participant's picture")->capture_default_str();
-  command->add_option("--screen-width-mm", options->screen_width_mm, "Its width on the screen");
-  command->add_option("--viewing-distance-mm", options->viewing_distance_mm, "From the eye to the screen");
+  add_backend(*command, options->backend, "Computes the fluid");
+  add_size(*command, options->size, "Pixels of the participant's picture");
+  add_viewing(*command, options->screen_width_mm, options->viewing_distance_mm, "Its width on the screen");
   command
       ->add_option("--preview", options->preview,
                    "Folder for a page that shows each scene as the participant will see it")

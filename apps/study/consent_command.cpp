@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/permissions.hpp"
@@ -63,7 +64,7 @@ void add_consent_command(CLI::App& app) {
   auto command = std::make_shared<ConsentCommand>();
   CLI::App& sub = *app.add_subcommand("consent", "Show or change what a participant allows");
   sub.add_option("participant", command->participant, "Code of the participant")->required();
-  sub.add_option("--db", command->database, "Database of the study")->required();
+  add_database(sub, command->database);
   sub.add_option("--gaze", command->gaze,
                  "Whether where they look may be recorded; no deletes what was, also from the raw file")
       ->check(CLI::IsMember({"yes", "no"}));

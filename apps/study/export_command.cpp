@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/store/export_bids.hpp"
@@ -46,7 +46,7 @@ void add_export_command(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
-  sub.add_option("--db", options->database, "Database of the study")->required();
+  add_database(sub, options->database);
   auto* formats = sub.add_option_group("formats");
   formats->add_option("--csv", options->csv, "Folder of CSV files with a data dictionary")
       ->check(output_folder());

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/merge.hpp"

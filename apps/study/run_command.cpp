@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
@@ -32,7 +32,8 @@ struct RunCommand {
   int visit = 1;
   std::int64_t seed = 0;
   std::optional<double> trial_seconds;
-  std::string bake, size, ptpe;
+  std::string bake, ptpe;
+  std::optional<PictureSize> size;
 };
 
 /// P01, P02, ... or the codes given.
@@ -56,14 +57,10 @@ void choose_defaults(RunOptions& run) {
 }
 
 /// Without a size a window fills the monitor.
-void read_size(const std::string& text, RunOptions& run) {
-  if (text.empty()) {
-    if (run.display == "window") run.width_px = run.height_px = 0;
-    return;
-  }
-  const PictureSize size = parse_picture_size(text);
-  run.width_px = size.width;
-  run.height_px = size.height;
+void take_size(const std::optional<PictureSize>& size, RunOptions& run) {
+  if (!size && run.display != "window") return;
+  run.width_px = size ? size->width : 0;
+  run.height_px = size ? size->height : 0;
 }
 
 study::Protocol read_checked_protocol(const RunCommand& command) {
@@ -142,7 +139,7 @@ Played play(const RunCommand& command, const study::Protocol& protocol, const st
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
   choose_defaults(command.run);
-  read_size(command.size, command.run);
+  take_size(command.size, command.run);
   if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
   const auto codes = participant_codes(command, protocol);
   for (const std::string& code : codes) study::check_participant_code(code);
@@ -200,9 +197,7 @@ void add_run_command(CLI::App& app) {
                                "Run P01, P02, ... (default: as many as the protocol plans)");
   count->check(CLI::Range(1, 9999));
   sub.add_option("--participant", command->codes, "Code of a participant; may be repeated")->excludes(count);
-  sub.add_option("--visit", command->visit, "Visit of these participants under this protocol")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_count(sub, "--visit", command->visit, 1, 1000, "Visit of these participants under this protocol");
   sub.add_option(
       "--observer", command->run.observer,
       "Simulated observer: ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2; without: a person");
@@ -219,15 +214,12 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
       ->check(text_up_to(100));
-  sub.add_option(
-      "--screen-width-mm", command->run.screen_width_mm,
-      "Width of the participant's picture on the screen: with the distance it gives visual angles");
-  sub.add_option("--viewing-distance-mm", command->run.viewing_distance_mm, "From the eye to the screen");
-  sub.add_option("--size", command->size,
-                 "Pixels of the display (default: 640x360 without a window; a window fills the monitor)");
-  sub.add_option("--monitor", command->run.monitor, "Monitor of a window that fills it; 0: the primary one")
-      ->check(CLI::Range(0, 15))
-      ->capture_default_str();
+  add_viewing(sub, command->run.screen_width_mm, command->run.viewing_distance_mm,
+              "Width of the participant's picture on the screen: with the distance it gives visual angles");
+  add_size(sub, command->size,
+           "Pixels of the display (default: 640x360 without a window; a window fills the monitor)");
+  add_count(sub, "--monitor", command->run.monitor, 0, 15,
+            "Monitor of a window that fills it; 0: the primary one");
   sub.add_option("--seed", command->seed, "Seed of orders, schedules and observers")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
@@ -236,9 +228,7 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--stimulus", command->bake,
                  "Bake to play (vip-study bake), or folder of bakes (vip-study bake --protocol), of which "
                  "what is there is played and the rest runs live; without: live fluid, or nothing");
-  sub.add_option("--backend", command->run.backend, "Computes live fluid")
-      ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
-      ->capture_default_str();
+  add_backend(sub, command->run.backend, "Computes live fluid");
   sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
   sub.footer(exit_status_help);
   sub.callback([command] { run(*command); });

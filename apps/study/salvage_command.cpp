@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/salvage.hpp"
 

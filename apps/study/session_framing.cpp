@@ -1,29 +1,21 @@
 #include "apps/study/session_framing.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "apps/study/desk/viewing.hpp"
 #include "libsim/methods/method.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
 namespace {
 
-/// Bakes keep a camera's angle as text: what differs by less was written otherwise.
-constexpr double same_angle_deg = 0.01;
-
-std::string degrees(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g deg", value);
-  return text;
-}
-
-std::string size_words(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+std::string degrees(double value) { return fmt::format("{:.4g} deg", value); }
 
 bool follows_gaze(const std::string& method) { return sim::traits_of(sim::parse_method(method)).adaptive(); }
 
@@ -49,7 +41,7 @@ std::string departure_of(const sim::BakeHeader& bake, const FramedScene& framed,
     all.push_back("camera angle " + degrees(framed.framing.camera_deg) + " instead of " +
                   degrees(wanted_deg));
   if (const std::string levels = levels_departure(bake, framed); !levels.empty()) all.push_back(levels);
-  return joined(all);
+  return base::joined(all);
 }
 
 FramedScene frame_live(const sim::Scene& scene, const Viewing& viewing, PictureSize display) {
@@ -105,11 +97,11 @@ std::string difference(const FramedScene& a, const FramedScene& b) {
   if (a.renderer != b.renderer)
     all.push_back("renderer '" + known(a.renderer) + "' and '" + known(b.renderer) + "'");
   if (one.width != other.width || one.height != other.height)
-    all.push_back("size " + size_words(one.width, one.height) + " and " +
-                  size_words(other.width, other.height));
+    all.push_back("size " + size_words({one.width, one.height}) + " and " +
+                  size_words({other.width, other.height}));
   if (differ(a.framing.camera_deg, b.framing.camera_deg))
     all.push_back("angle " + degrees(a.framing.camera_deg) + " and " + degrees(b.framing.camera_deg));
-  return joined(all);
+  return base::joined(all);
 }
 
 }  // namespace
@@ -166,7 +158,7 @@ std::string mixed_pictures(const std::vector<FramedScene>& scenes) {
         std::find_if(scenes.begin(), one, [&](const auto& had) { return had.file == one->file; });
     if (before != one) all.push_back(one->file + ": " + difference(*before, *one));
   }
-  return joined(all);
+  return base::joined(all);
 }
 
 void check_one_picture(const study::Protocol& protocol, const std::vector<FramedScene>& scenes) {
@@ -184,7 +176,7 @@ void check_visible(const std::vector<FramedScene>& scenes) {
     const auto& to = one.view.viewport;
     throw base::Error(
         one.file,
-        one.cut.front() + " leaves the picture of " + size_words(to.width, to.height) +
+        one.cut.front() + " leaves the picture of " + size_words({to.width, to.height}) +
             " px at the camera's " + degrees(one.framing.camera_deg),
         "sit nearer or make the picture larger under camera_angle = \"true\", else make it wider; "
         "vip-study check --preview shows it");
@@ -203,13 +195,12 @@ std::vector<study::SceneFraming> framing_record(const std::vector<FramedScene>& 
 
 std::string describe_framing(const FramedScene& scene) {
   const auto& drawn = scene.view.viewport;
-  std::string out = scene.scene.name + ", " + size_words(drawn.width, drawn.height) + ": camera " +
+  std::string out = scene.scene.name + ", " + size_words({drawn.width, drawn.height}) + ": camera " +
                     degrees(scene.framing.camera_deg);
   const auto ratio = scene.framing.ratio();
   if (!ratio) return out + ", angle of the eye's view not known";
-  char text[32];
-  std::snprintf(text, sizeof text, " (ratio %.2f)", *ratio);
-  return out + ", " + degrees(*scene.framing.visual_deg) + " of the eye's view" + text;
+  return fmt::format("{}, {} of the eye's view (ratio {:.2f})", out, degrees(*scene.framing.visual_deg),
+                     *ratio);
 }
 
 std::vector<std::string> framing_notes(const study::Protocol& protocol,
@@ -228,8 +219,8 @@ std::vector<std::string> framing_notes(const study::Protocol& protocol,
   for (const FramedScene& one : scenes) {
     const auto& drawn = one.view.viewport;
     if (drawn.width == one.shown.width && drawn.height == one.shown.height) continue;
-    out.push_back(one.scene.name + ": baked pictures of " + size_words(drawn.width, drawn.height) +
-                  " px are scaled to " + size_words(one.shown.width, one.shown.height) + " px");
+    out.push_back(one.scene.name + ": baked pictures of " + size_words({drawn.width, drawn.height}) +
+                  " px are scaled to " + size_words({one.shown.width, one.shown.height}) + " px");
   }
   return out;
 }

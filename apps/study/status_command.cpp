@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
@@ -60,7 +61,7 @@ void status(const std::string& database) {
 void add_status_command(CLI::App& app) {
   auto database = std::make_shared<std::string>();
   CLI::App& sub = *app.add_subcommand("status", "Say what a database holds and what is left to do");
-  sub.add_option("--db", *database, "Database of the study")->required();
+  add_database(sub, *database);
   sub.callback([database] { status(*database); });
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "stats/base/error.hpp"
@@ -46,7 +47,7 @@ void add_withdraw_command(CLI::App& app) {
   auto command = std::make_shared<WithdrawCommand>();
   CLI::App& sub = *app.add_subcommand("withdraw", "Delete a participant's data, for good");
   sub.add_option("participant", command->participant, "Code of the participant")->required();
-  sub.add_option("--db", command->database, "Database of the study")->required();
+  add_database(sub, command->database);
   sub.add_flag("--yes", command->yes, "Do not ask");
   sub.footer(
       "Deletes from the database and its log, its backups, the file of personal data, and every export and "

@@ -1,8 +1,8 @@
 #include "apps/view/choices.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "libsim/methods/method.hpp"
@@ -70,9 +70,7 @@ double FrameStrip::scale_ms() const {
 }
 
 std::string screenshot_name(const ViewOptions& options, int frame) {
-  char number[16];
-  std::snprintf(number, sizeof number, "%04d", frame);
-  return "vip-view_" + scene_title(options.scene) + "_" + options.method + "_" + number + ".png";
+  return fmt::format("vip-view_{}_{}_{:04}.png", scene_title(options.scene), options.method, frame);
 }
 
 }  // namespace apps

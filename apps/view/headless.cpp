@@ -1,4 +1,5 @@
 #include <epoxy/gl.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <cstdio>
@@ -25,9 +26,7 @@ double seconds_now() {
 
 /// frame_0040.png; of several overlays, those that paint have their name in it: frame_0040_level.png.
 std::filesystem::path picture_path(const std::string& folder, int frame, OverlayKind overlay, bool several) {
-  char number[32];
-  std::snprintf(number, sizeof number, "frame_%04d", frame);
-  std::string name = number;
+  std::string name = fmt::format("frame_{:04}", frame);
   if (several && overlay != OverlayKind::None)
     name += "_" + overlay_names()[static_cast<std::size_t>(overlay)];
   return std::filesystem::path(folder) / (name + ".png");

@@ -3,27 +3,15 @@
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
-#include "libsim/methods/method.hpp"
-
-namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
-}  // namespace
+#include "stats/base/text.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
   apps::ViewOptions options;
-  std::string size = "1280x720";
   app.add_option("scene", options.scene, "Scene file")->required();
   app.add_flag("--headless", options.headless, "No window: run the frames and write pictures");
-  app.add_option("--method", options.method, sim::method_names())->capture_default_str();
-  app.add_option("--n-star", options.n_star, "Particles when all are coarsest; k = 1,024")
-      ->capture_default_str();
+  apps::add_method(app, options.method);
+  apps::add_n_star(app, options.n_star);
   app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")->capture_default_str();
   app.add_option("--levels", options.levels, "N: levels of methods that split and merge (1 to 4)")
       ->capture_default_str();
@@ -34,21 +22,17 @@ int main(int argc, char** argv) {
                  "Constraint projections a substep; the scene's when left out")
       ->check(CLI::Range(1, sim::LiveNumbers::most_iterations));
   app.add_option("--overlay", options.overlay,
-                 "Painted over the water: " + joined(apps::overlay_names()) +
+                 "Painted over the water: " + base::joined(apps::overlay_names()) +
                      "; headless, several with commas make a picture each")
       ->capture_default_str();
   app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
       ->capture_default_str();
-  app.add_option("--backend", options.backend, "cpu, cuda or auto")->capture_default_str();
-  app.add_option("--frames", options.frames, "Frames to run (headless)")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
+  apps::add_backend(app, options.backend);
+  apps::add_count(app, "--frames", options.frames, 1, 10'000, "Frames to run (headless)");
   app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing")
       ->check(apps::output_folder());
-  app.add_option("--every", options.every, "A picture every so many frames")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  app.add_option("--size", size, "Picture or window, px")->capture_default_str();
+  apps::add_count(app, "--every", options.every, 1, 10'000, "A picture every so many frames");
+  apps::add_size(app, options.size, "Picture or window, px");
   app.add_option("--camera", options.camera, "view or overview")
       ->check(CLI::IsMember({"view", "overview"}))
       ->capture_default_str();
@@ -56,7 +40,6 @@ int main(int argc, char** argv) {
                  "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
-    options.size = apps::parse_picture_size(size);
     if (options.headless) {
       apps::run_headless(options);
     } else {

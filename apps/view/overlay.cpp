@@ -1,10 +1,11 @@
 #include "apps/view/overlay.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -12,12 +13,6 @@ namespace {
 
 constexpr float fastest_m_s = 15;
 constexpr float densest_error = 0.05F;
-
-std::string range_text(const char* what, double low, double high, const char* unit) {
-  char out[96];
-  std::snprintf(out, sizeof out, "%s %.3g to %.3g%s", what, low, high, unit);
-  return out;
-}
 
 }  // namespace
 
@@ -38,9 +33,7 @@ OverlayKind parse_overlay(std::string_view name) {
   const auto& names = overlay_names();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<OverlayKind>(found - names.begin());
-  std::string known;
-  for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
-  throw base::Error("--overlay " + std::string(name), "is not known", "use one of " + known);
+  throw base::Error("--overlay " + std::string(name), "is not known", "use one of " + base::joined(names));
 }
 
 std::vector<OverlayKind> parse_overlays(std::string_view names) {
@@ -98,14 +91,13 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
     case OverlayKind::Speed:
       field(sim::ParticleField::Speed);
       overlay.high = fastest_m_s;
-      legend_ = range_text("speed", 0, static_cast<double>(fastest_m_s), " m/s");
+      legend_ = fmt::format("speed 0 to {:.3g} m/s", fastest_m_s);
       break;
     case OverlayKind::Density:
       field(sim::ParticleField::DensityError);
       overlay.low = -densest_error;
       overlay.high = densest_error;
-      legend_ = range_text("rho / rho_0 - 1:", -100 * static_cast<double>(densest_error),
-                           100 * static_cast<double>(densest_error), " %");
+      legend_ = fmt::format("rho / rho_0 - 1: {:.3g} to {:.3g} %", -100 * densest_error, 100 * densest_error);
       break;
     case OverlayKind::Active:
       field(sim::ParticleField::Active);
@@ -120,7 +112,7 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
       if (kind != OverlayKind::Saliency && kind != OverlayKind::Acuity) {
         overlay.high = std::max(1e-6F, *std::max_element(values_.begin(), values_.end()));
       }
-      legend_ = range_text(name.c_str(), 0, static_cast<double>(overlay.high), "");
+      legend_ = fmt::format("{} 0 to {:.3g}", name, overlay.high);
   }
   overlay.values = values_;
   picture.renderer().paint(overlay, framebuffer);

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -188,7 +189,7 @@ BakeReader::BakeReader(ByteSpan bytes, const std::string& name)
 BakeReader::~BakeReader() = default;
 
 const BakeHeader& BakeReader::header() const { return state_->header; }
-std::string BakeReader::content_hash() const { return bake::hex(state_->content_hash); }
+std::string BakeReader::content_hash() const { return fmt::format("{:016x}", state_->content_hash); }
 std::uint64_t BakeReader::file_bytes() const { return state_->source.size(); }
 
 void BakeReader::read_frame(std::int64_t frame, BakeFrame& out) const {

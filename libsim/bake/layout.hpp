@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include "libsim/bake/bytes.hpp"
@@ -32,12 +31,6 @@ struct IndexEntry {
 
 inline ByteSpan as_bytes(const std::array<char, 8>& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-inline std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
 }
 
 inline std::string frame_place(const std::string& file, const char* what, std::int64_t frame) {

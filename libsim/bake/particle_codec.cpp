@@ -1,6 +1,6 @@
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "libsim/bake/codec.hpp"
 
@@ -43,12 +43,11 @@ void check_error(const Box& box, const std::vector<float>& radii, const std::str
   for (const Axis& axis : box) {
     const float error = (axis.max - axis.min) / (2 * steps);
     if (error < finest / 20) continue;
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "particles spread over %.4g m, which 16 bit resolve to %.3g m; radius %.3g m needs a twentieth",
-        static_cast<double>(axis.max - axis.min), static_cast<double>(error), static_cast<double>(finest));
-    throw base::Error(place, text, "keep the fluid inside the tank, or use a smaller --n-star");
+    throw base::Error(place,
+                      fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
+                                  "{:.3g} m needs a twentieth",
+                                  axis.max - axis.min, error, finest),
+                      "keep the fluid inside the tank, or use a smaller --n-star");
   }
 }
 

@@ -1,23 +1,21 @@
 #include "libsim/ptpe/ptpe_file.hpp"
 
-#include <charconv>
+#include <fmt/core.h>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
 
 namespace {
-/// The shortest text that reads back to the same double, always with a point or exponent so that TOML sees a
-/// float.
+/// Always with a point or exponent, so that TOML sees a float.
 std::string exact(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("a PTPE file holds finite numbers only");
-  std::array<char, 32> text{};
-  const std::string out(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
+  const std::string out = base::shortest(value);
   return out.find_first_of(".e") == std::string::npos ? out + ".0" : out;
 }
 
@@ -48,12 +46,10 @@ const char* mean_name(stats::FpsMean mean) {
 }  // namespace
 
 std::string describe(const PtpeFile& file) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "a = %.4f frames/s, b = %.5f s/frame (level %.3g, %s mean, %d participants", file.model.a,
-                file.model.b, file.level, mean_name(file.model.mean), file.n_participants);
-  std::string out = text;
-  if (file.n_simulated > 0) out += ", " + std::to_string(file.n_simulated) + " of them SIMULATED";
+  std::string out =
+      fmt::format("a = {:.4f} frames/s, b = {:.5f} s/frame (level {:.3g}, {} mean, {} participants",
+                  file.model.a, file.model.b, file.level, mean_name(file.model.mean), file.n_participants);
+  if (file.n_simulated > 0) out += fmt::format(", {} of them SIMULATED", file.n_simulated);
   return out + (file.test_data ? ", TEST DATA)" : ")");
 }
 

@@ -1,7 +1,7 @@
 #include "libsim/scene/extent.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <string>
 
@@ -16,19 +16,13 @@ constexpr double always_allowed_cells = 1 << 20;
 constexpr double cells_per_particle = 16;
 constexpr int most_substeps = 1000;
 
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 void check_water(const Scene& scene, const std::string& place, double spacing) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double side = scene.fill_max_m[k] - scene.fill_min_m[k];
     if (side >= spacing) continue;
     throw base::Error(
         place + "water.max_m",
-        "makes the water " + rounded(side) + " m thin, where particles are " + rounded(spacing) + " m apart",
+        fmt::format("makes the water {:.3g} m thin, where particles are {:.3g} m apart", side, spacing),
         "make the water thicker, or use a larger --n-star");
   }
 }
@@ -36,10 +30,10 @@ void check_water(const Scene& scene, const std::string& place, double spacing) {
 void check_substeps(const Scene& scene, const std::string& place, std::int64_t n_star) {
   const int substeps = substeps_of(scene, n_star);
   if (substeps <= most_substeps) return;
-  throw base::Error(place + "time.v_ref_m_s",
-                    "makes " + std::to_string(substeps) + " substeps a frame, at most " +
-                        std::to_string(most_substeps) + " are computed",
-                    "lower it, raise frames_per_s, or use a smaller --n-star");
+  throw base::Error(
+      place + "time.v_ref_m_s",
+      fmt::format("makes {} substeps a frame, at most {} are computed", substeps, most_substeps),
+      "lower it, raise frames_per_s, or use a smaller --n-star");
 }
 
 }  // namespace
@@ -53,10 +47,11 @@ void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, do
   const auto particles = static_cast<double>(particle_count(method, n_star));
   const double most = std::max(always_allowed_cells, cells_per_particle * particles);
   if (cells <= most) return;
-  throw base::Error(place + "tank.size_m",
-                    "makes " + rounded(cells) + " cells of pressure for " + rounded(particles) +
-                        " particles, at most " + rounded(most) + " are computed",
-                    "make the tank smaller or the water larger");
+  throw base::Error(
+      place + "tank.size_m",
+      fmt::format("makes {:.3g} cells of pressure for {:.3g} particles, at most {:.3g} are computed", cells,
+                  particles, most),
+      "make the tank smaller or the water larger");
 }
 
 std::optional<double> available_memory_bytes() {
@@ -74,8 +69,8 @@ void check_memory(MethodKind method, std::int64_t n_star, std::optional<double> 
   const double wished = (adaptive ? 2.3e3 : 1.1e3) * static_cast<double>(particle_count(method, n_star));
   if (!available_bytes || wished <= *available_bytes) return;
   throw base::Error("n_* " + std::to_string(n_star),
-                    "takes about " + rounded(1e-9 * wished) + " GB of memory, " +
-                        rounded(1e-9 * *available_bytes) + " GB are free",
+                    fmt::format("takes about {:.3g} GB of memory, {:.3g} GB are free", 1e-9 * wished,
+                                1e-9 * *available_bytes),
                     "use a smaller --n-star, or free memory");
 }
 

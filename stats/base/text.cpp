@@ -1,5 +1,8 @@
 #include "stats/base/text.hpp"
 
+#include <array>
+#include <charconv>
+
 namespace base {
 
 namespace {
@@ -60,6 +63,17 @@ std::string shortened(std::string_view value, std::size_t most_bytes) {
   while (tail < value.size() && continues(value[tail])) ++tail;
   return plain(value.substr(0, head)) + " ... (" + std::to_string(value.size()) + " bytes) ... " +
          plain(value.substr(tail));
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 }  // namespace base

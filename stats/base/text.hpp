@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace base {
 
@@ -18,5 +19,11 @@ bool is_plain_line(std::string_view text);
 /// A user's value as a message shows it: what is no character of a plain line is '?', and where it has more
 /// than `most_bytes`, its middle gives way to the number of its bytes.
 std::string shortened(std::string_view value, std::size_t most_bytes = 120);
+
+/// The words one after another, with ", " between them.
+std::string joined(const std::vector<std::string>& words);
+
+/// The shortest text that reads back to the same double: "0.1", "1e-05".
+std::string shortest(double value);
 
 }  // namespace base

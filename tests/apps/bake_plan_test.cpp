@@ -8,6 +8,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps {
@@ -103,7 +104,7 @@ std::string departures_after(const Change& change, bool view = false) {
   BakeOrder other = order();
   change(other);
   const auto found = header_of(other), wanted = header_of(order());
-  return joined(view ? view_departures(found, wanted) : fluid_departures(found, wanted));
+  return base::joined(view ? view_departures(found, wanted) : fluid_departures(found, wanted));
 }
 
 TEST(BakeOrder, EveryDepartureOfTheFluidIsNamed) {

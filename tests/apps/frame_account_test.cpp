@@ -186,9 +186,9 @@ TEST_F(FrameAccountE2e, WhatNobodyMeasuredIsEmpty) {
 
 TEST_F(FrameAccountE2e, FramesOfABakeHoldTheAccountThatWasBaked) {
   const std::string bake = folder_ / "dam.bake";
-  const Ended baked =
-      run_program({apps::test::vip_study, "bake", "data/scenes/single_dam.toml", "--method", "Ours",
-                   "--n-star", "64", "--backend", "cpu", "--frames", "40", "--out", bake});
+  const Ended baked = run_program({apps::test::vip_study, "bake", "data/scenes/single_dam.toml", "--method",
+                                   "Ours", "--n-star", "64", "--backend", "cpu", "--frames", "40",
+                                   "--pictures", "64x36", "--out", bake});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   write_protocol("settings", "\"Ours\"");
   ASSERT_NO_FATAL_FAILURE(run({"--display", "none", "--stimulus", bake}));

@@ -17,7 +17,7 @@ class Table2E2e : public apps::test::TableTest {
 };
 
 TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
-  const auto ended = table2("--scene Faucet --n-star 64 --frames 4 --warm-up 1 --csv " + path("t2.csv") +
+  const auto ended = table2("--scene SingleDam --n-star 64 --frames 4 --warm-up 1 --csv " + path("t2.csv") +
                             " --markdown " + path("t2.md") + " --svg " + path("figures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto table = rows("t2.csv");
@@ -48,7 +48,7 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
     EXPECT_EQ(row.at("picture_by"), looks ? "host" : "none") << method;
   }
   EXPECT_NE(base::read_file(path("figures/table2_speedup.svg"), 1 << 20).find("Ours-TSp"), std::string::npos);
-  EXPECT_NE(base::read_file(path("t2.md"), 1 << 20).find("| Faucet |"), std::string::npos);
+  EXPECT_NE(base::read_file(path("t2.md"), 1 << 20).find("| SingleDam |"), std::string::npos);
 }
 
 TEST_F(Table2E2e, RefusesUnknownWordsByName) {

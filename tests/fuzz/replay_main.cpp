@@ -1,6 +1,6 @@
-/// Replays a corpus folder through LLVMFuzzerTestOneInput: each file as it is, each truncation at 64 places,
-/// and 256 fixed-seed mutations of it. A crash, a sanitizer report or an exception that leaves the entry
-/// point fails the test.
+/// ROUNDS FOLDER replays a corpus folder through LLVMFuzzerTestOneInput: each file as it is, its truncation
+/// at ROUNDS / 4 places, and ROUNDS fixed-seed mutations of it. A crash, a sanitizer report or an exception
+/// that leaves the entry point fails the test.
 
 #include <algorithm>
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <string>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -44,22 +45,22 @@ Bytes mutated(Bytes bytes, std::mt19937_64& random) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const std::size_t rounds = std::stoul(argv[1]), cuts = rounds / 4;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(argv[2])) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
   std::size_t fed = 0;
-  for (int i = 1; i < argc; ++i) {
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(argv[i])) files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    for (const auto& file : files) {
-      std::ifstream in(file, std::ios::binary);
-      const Bytes bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-      feed(bytes);
-      for (std::size_t cut = 0; cut < 64; ++cut) {
-        feed(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() * cut / 64)));
-      }
-      std::mt19937_64 random(bytes.size());
-      for (int round = 0; round < 256; ++round) feed(mutated(bytes, random));
-      fed += 1 + 64 + 256;
+  for (const auto& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    const Bytes bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    feed(bytes);
+    for (std::size_t cut = 0; cut < cuts; ++cut) {
+      feed(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() * cut / cuts)));
     }
+    std::mt19937_64 random(bytes.size());
+    for (std::size_t round = 0; round < rounds; ++round) feed(mutated(bytes, random));
+    fed += 1 + cuts + rounds;
   }
   std::printf("%zu inputs replayed\n", fed);
   return fed ? 0 : 1;

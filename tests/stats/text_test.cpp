@@ -38,5 +38,17 @@ TEST(Text, LongValuesAreShownByTheirEndsInWholeCharacters) {
   }
 }
 
+TEST(Text, NumbersAreTheShortestThatReadBack) {
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(1e-5), "1e-05");
+  EXPECT_EQ(std::stod(shortest(1.0 / 3)), 1.0 / 3);
+}
+
+TEST(Text, WordsAreJoinedByCommas) {
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(joined({"a"}), "a");
+  EXPECT_EQ(joined({"a", "", "b"}), "a, , b");
+}
+
 }  // namespace
 }  // namespace base

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace apps {
@@ -20,11 +20,6 @@ constexpr std::array decision_names{"intersection-union", "holm"};
 constexpr std::array tests_names{"paired", "mixed"};
 constexpr const char* as_once_frozen = "H2, H3 and H6";
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 /// A number, or "none".
 std::optional<double> optional_number(const base::TomlTable& table, const char* key,
                                       std::optional<double> fallback, base::Range range) {
@@ -35,7 +30,7 @@ std::optional<double> optional_number(const base::TomlTable& table, const char* 
 }
 
 std::string number_or_none(const std::optional<double>& value) {
-  return value ? shortest(*value) : "\"none\"";
+  return value ? base::shortest(*value) : "\"none\"";
 }
 
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
@@ -136,7 +131,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
   std::string list;
   for (const auto& one : protocols) list += (list.empty() ? "" : ", ") + base::toml_quoted(one);
   return "format = 1\nprotocols = [" + list +
-         "]                # SHA-256 of the protocols\nalpha = " + shortest(plan.alpha) +
+         "]                # SHA-256 of the protocols\nalpha = " + base::shortest(plan.alpha) +
          "                    # of each claim\ndecision = \"" +
          decision_names[static_cast<std::size_t>(plan.decision)] +
          "\"  # a claim needs all of its tests, each at alpha; or \"holm\": each after Holm\ndirectional = " +
@@ -144,14 +139,14 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          tests_names[static_cast<std::size_t>(plan.tests)] +
          "\"                # of H1 to H3: paired t tests, or the \"mixed\" model of all answers\nconfidence "
          "= " +
-         shortest(plan.confidence) +
+         base::shortest(plan.confidence) +
          "               # of intervals\nresamples = " + std::to_string(plan.resamples) +
          "               # of BCa intervals\nseed = " + std::to_string(plan.seed) +
          "\nmore_than_one_trial = \"" + repeated_names[static_cast<std::size_t>(plan.repeated_pairs)] +
          "\"  # a participant with several answers to one pair: refuse or warn\n\n[margins]                  "
          "     # points on "
          "the scale\nrealism = " +
-         shortest(plan.margin_realism) + "\nsickness = " + shortest(plan.margin_sickness) +
+         base::shortest(plan.margin_realism) + "\nsickness = " + base::shortest(plan.margin_sickness) +
          "\n\n[exclusions]\ntiming = \"" + timing_rule_name(rules.timing) +
          "\"                 # verdicts that exclude a trial: none, fail or degraded (and "
          "fail)\nmin_catch_correct = " +
@@ -163,7 +158,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "   # share of repeated pairs answered alike\nstraight_lining_answers = " +
          std::to_string(rules.straight_lining_answers) +
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
-         shortest(rules.min_answered) + "                # share of a visit's trials\n";
+         base::shortest(rules.min_answered) + "                # share of a visit's trials\n";
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stats/base/text.hpp"
+
 namespace apps {
 
 namespace {
@@ -10,12 +12,6 @@ using study::Question;
 using study::TaskProtocol;
 using study::TaskSession;
 using study::TaskTrial;
-
-std::string joined(const std::vector<std::string>& list) {
-  std::string out;
-  for (const auto& one : list) out += (out.empty() ? "" : ", ") + one;
-  return out;
-}
 
 const char* what_it_shows(TaskKind task) {
   if (task == TaskKind::Pilot) return "that shows frame rates";
@@ -72,7 +68,8 @@ stats::Result<ChosenProtocol> choose_protocol(const study::TaskStudy& study, con
   for (const auto* one : fit)
     names.push_back(one->name + " " + one->version + " " + one->sha256.substr(0, 12));
   if (fit.size() > 1)
-    return stats::Refusal{"several protocols are never pooled; choose one with --protocol: " + joined(names)};
+    return stats::Refusal{"several protocols are never pooled; choose one with --protocol: " +
+                          base::joined(names)};
   ChosenProtocol out{*fit.front(), {}};
   for (const auto* one : test) out.set_aside.push_back(one->name + " " + one->version);
   return out;
@@ -96,7 +93,8 @@ stats::Result<Question> main_question(const TaskProtocol& protocol, const TaskSe
   }
   std::vector<std::string> ids;
   for (const auto& question : found) ids.push_back(question.id);
-  return stats::Refusal{"several questions are never pooled; choose one with --question: " + joined(ids)};
+  return stats::Refusal{"several questions are never pooled; choose one with --question: " +
+                        base::joined(ids)};
 }
 
 }  // namespace apps

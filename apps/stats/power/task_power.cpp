@@ -247,15 +247,12 @@ class Simulation {
 
   HypothesisPower describe(const Judged& judged) const {
     const auto& hypothesis = judged.hypothesis;
-    HypothesisPower out{hypothesis.id,
-                        hypothesis.title,
-                        hypothesis.rule,
-                        hypothesis.paper_rule,
-                        hypothesis.kind,
-                        0,
-                        {},
-                        {},
-                        {}};
+    HypothesisPower out;
+    out.id = hypothesis.id;
+    out.title = hypothesis.title;
+    out.rule = hypothesis.rule;
+    out.paper_rule = hypothesis.paper_rule;
+    out.kind = hypothesis.kind;
     for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
       out.tests.push_back(describe_test(judged, i));
       out.claims_true += judged.claims[i] ? 1 : 0;

@@ -1,8 +1,8 @@
 #include "apps/stats/power/worlds.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "stats/base/error.hpp"
 
@@ -17,12 +17,6 @@ constexpr std::array<const char*, 5> methods_by_rank{"LoRes", "FovFluid", "Ours"
 int rank_of(const std::string& method) {
   const auto* const found = std::find(methods_by_rank.begin(), methods_by_rank.end(), method);
   return found == methods_by_rank.end() ? -1 : static_cast<int>(found - methods_by_rank.begin());
-}
-
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
 }
 
 using Qualities = std::array<double, 5>;  // by rank
@@ -82,13 +76,15 @@ World task1_world(const PowerRequest& request, const ShownFactors& factors, cons
   }
   if (id == "margin") {
     const double realism = request.plan.plan.margin_realism, sickness = request.plan.plan.margin_sickness;
-    return {
-        id,
-        "differences of exactly the margin (" + figure(realism) + " on realism, " + figure(sickness) +
-            " on cybersickness): H1's methods better by it than FovFluid; H2's worse by it than HiRes and "
-            "Ours-TSp worse by it than Ours, so that H2's and H3's claims are just false",
-        {by_quality(factors, {"H1", "H2"}, {-1, -1, 0, 0, 1}, realism, sickness),
-         by_quality(factors, {"H3"}, {-1, -1, 0, -1, 0}, realism, sickness)}};
+    return {id,
+            fmt::format("differences of exactly the margin ({:.4g} on realism, {:.4g} on cybersickness): "
+                        "H1's methods better "
+                        "by it than FovFluid; H2's worse by it than HiRes and Ours-TSp worse by it than "
+                        "Ours, so that H2's "
+                        "and H3's claims are just false",
+                        realism, sickness),
+            {by_quality(factors, {"H1", "H2"}, {-1, -1, 0, 0, 1}, realism, sickness),
+             by_quality(factors, {"H3"}, {-1, -1, 0, -1, 0}, realism, sickness)}};
   }
   if (id == "paper") {
     return {id,
@@ -100,11 +96,13 @@ World task1_world(const PowerRequest& request, const ShownFactors& factors, cons
                       "add --effect (in standard deviations of the differences) or --difference (points)");
   }
   const double d = request.effect ? *request.effect : *request.difference / request.sd_realism;
-  return {id,
-          "Ours, Ours-TSp and HiRes alike, FovFluid worse by " + figure(d * request.sd_realism) +
-              " on realism and " + figure(d * request.sd_sickness) + " on cybersickness (" + figure(d) +
-              " standard deviations of the differences): all of H1, H2, H3 are true",
-          {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism, d * request.sd_sickness)}};
+  return {
+      id,
+      fmt::format(
+          "Ours, Ours-TSp and HiRes alike, FovFluid worse by {:.4g} on realism and {:.4g} on cybersickness "
+          "({:.4g} standard deviations of the differences): all of H1, H2, H3 are true",
+          d * request.sd_realism, d * request.sd_sickness, d),
+      {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism, d * request.sd_sickness)}};
 }
 
 /// The same preference for the better of any two methods.
@@ -168,9 +166,11 @@ World task2_world(const PowerRequest& request, const ShownFactors& factors, cons
     throw base::Error("--world effect", "no effect was given",
                       "add --effect, the true preference of the better method, such as --effect 0.7");
   }
-  return world("the better of two methods is chosen with probability " + figure(*request.effect) +
-                   " (from worse to better: LoRes, FovFluid, Ours, Ours-TSp, HiRes)",
-               equal_preference(factors, *request.effect));
+  return world(
+      fmt::format("the better of two methods is chosen with probability {:.4g} (from worse to better: "
+                  "LoRes, FovFluid, Ours, Ours-TSp, HiRes)",
+                  *request.effect),
+      equal_preference(factors, *request.effect));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "apps/stats/ptpe/estimates_json.hpp"
 
+#include <fmt/core.h>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace apps {
@@ -154,9 +154,8 @@ Json lack_of_fit_json(const stats::DirectEstimate& estimate) {
   if (!estimate.lack_of_fit) return {{"refused", estimate.lack_of_fit.reason()}};
   const auto& test = *estimate.lack_of_fit;
   const bool straight_fits = test.p >= 0.05;
-  char statistic[80];
-  std::snprintf(statistic, sizeof statistic, "F(%d, %d) = %.2f, p %s %.3f", test.df1, test.df2, test.f,
-                test.p < 0.001 ? "<" : "=", std::max(test.p, 0.001));
+  const std::string statistic = fmt::format("F({}, {}) = {:.2f}, p {} {:.3f}", test.df1, test.df2, test.f,
+                                            test.p < 0.001 ? "<" : "=", std::max(test.p, 0.001));
   const std::string text =
       straight_fits
           ? std::string(statistic) +

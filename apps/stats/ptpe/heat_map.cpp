@@ -1,9 +1,9 @@
 #include "apps/stats/ptpe/heat_map.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "apps/stats/ptpe/contour_lines.hpp"
@@ -69,10 +69,7 @@ Colour colour_of(double share) {
 }
 
 std::string hex(const Colour& c) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", static_cast<unsigned>(std::lround(c.r)),
-                static_cast<unsigned>(std::lround(c.g)), static_cast<unsigned>(std::lround(c.b)));
-  return text;
+  return fmt::format("#{:02x}{:02x}{:02x}", std::lround(c.r), std::lround(c.g), std::lround(c.b));
 }
 
 bool is_dark(const Colour& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b < 128; }

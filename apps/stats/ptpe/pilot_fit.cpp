@@ -1,5 +1,6 @@
 #include "apps/stats/ptpe/pilot_fit.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -106,21 +107,13 @@ void flag_resamples(std::vector<FitFlag>& flags, const PilotEstimate& contour) {
   }
 }
 
-std::string list(const std::vector<double>& numbers) {
-  std::string out;
-  for (const double number : numbers) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%s%g", out.empty() ? "" : ", ", number);
-    out += text;
-  }
-  return out;
-}
-
 void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direct) {
   if (!direct.out_of_reach.empty()) {
-    flags.push_back({"out_of_reach", "at standard deviations of " + list(direct.out_of_reach) +
-                                         " the curve lies outside the frame rates shown; those settings are "
-                                         "left out and the curve is extrapolated there"});
+    flags.push_back(
+        {"out_of_reach", fmt::format("at standard deviations of {:g} the curve lies outside the frame "
+                                     "rates shown; those settings are left out and the curve is "
+                                     "extrapolated there",
+                                     fmt::join(direct.out_of_reach, ", "))});
   }
 }
 

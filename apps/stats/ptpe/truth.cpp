@@ -1,7 +1,7 @@
 #include "apps/stats/ptpe/truth.hpp"
 
+#include <fmt/core.h>
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "libstudy/observer/ptpe_observer.hpp"
@@ -15,10 +15,8 @@ bool holds(const std::array<double, 2>& interval, double value) {
 }
 
 std::string line(const char* name, const std::array<double, 2>& interval, bool held, double truth) {
-  char text[120];
-  std::snprintf(text, sizeof text, "  %s: the interval [%.4g, %.4g] %s the true %g\n", name, interval[0],
-                interval[1], held ? "holds" : "does NOT hold", truth);
-  return text;
+  return fmt::format("  {}: the interval [{:.4g}, {:.4g}] {} the true {:g}\n", name, interval[0], interval[1],
+                     held ? "holds" : "does NOT hold", truth);
 }
 
 }  // namespace
@@ -37,9 +35,8 @@ Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth) {
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery) {
   const auto main = fit.main();
   const auto& spread = *main.spread;
-  char head[80];
-  std::snprintf(head, sizeof head, "against the observer's truth (level %.3g, harmonic mean):\n", fit.level);
-  return head + line("a", spread.a_ci, recovery.a_held, recovery.truth.a) +
+  return fmt::format("against the observer's truth (level {:.3g}, harmonic mean):\n", fit.level) +
+         line("a", spread.a_ci, recovery.a_held, recovery.truth.a) +
          line("b", spread.b_ci, recovery.b_held, recovery.truth.b);
 }
 

@@ -105,7 +105,12 @@ Json sensitivity_json(const study::TaskStudy& study, const TaskSelection& select
 
   TaskSelection other = selection;
   other.protocol = data.protocol.sha256;
-  other.plan.exclusions = {stats::TimingRule::None, {}, {}, {}, 0, 0};
+  other.plan.exclusions = {.timing = stats::TimingRule::None,
+                           .min_catch_correct = {},
+                           .max_repeat_difference = {},
+                           .min_repeat_agreement = {},
+                           .straight_lining_answers = 0,
+                           .min_answered = 0};
   writer.add("no_exclusions", "nothing excluded by rule", select_task(study, other), other.plan);
 
   other.plan = selection.plan;

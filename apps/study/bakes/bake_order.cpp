@@ -1,7 +1,7 @@
 #include "apps/study/bakes/bake_order.hpp"
 
+#include <fmt/core.h>
 #include <cmath>
-#include <cstdio>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -10,26 +10,15 @@ namespace apps {
 
 namespace {
 
-/// Angles that differ by less were computed from other roundings of the same screen.
-constexpr double same_angle_deg = 0.01;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string degrees(double value) { return value > 0 ? number(value) + " deg" : "not known"; }
+std::string degrees(double value) { return value > 0 ? fmt::format("{:.6g} deg", value) : "not known"; }
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)); }
-
-std::string size_words(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 std::string words_of(const std::optional<sim::BakedTolerance>& tolerance) {
   if (!tolerance) return "tau not known";
   const auto& [rate, model, seed] = *tolerance;
-  return "tau of " + number(rate.mean) + ", " + number(rate.sd) + " frames/s with a = " + number(model.a) +
-         ", b = " + number(model.b) + ", seed " + std::to_string(seed);
+  return fmt::format("tau of {:.6g}, {:.6g} frames/s with a = {:.6g}, b = {:.6g}, seed {}", rate.mean,
+                     rate.sd, model.a, model.b, seed);
 }
 
 std::string words_of(const sim::BakedView& view) {
@@ -109,7 +98,8 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
   out.add("n_*", std::to_string(found.n_star), std::to_string(wanted.n_star));
   // A file rounds the step of a protocol.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
-    out.add("content step", number(found.frame_dt_s) + " s", number(wanted.frame_dt_s) + " s");
+    out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),
+            fmt::format("{:.6g} s", wanted.frame_dt_s));
   if (found.frame_count < wanted.frame_count)
     out.add("", std::to_string(found.frame_count) + " frames", std::to_string(wanted.frame_count));
   if (found.method != wanted.method) return out.take();
@@ -131,19 +121,13 @@ std::vector<std::string> view_departures(const sim::BakeHeader& found, const sim
     return one.camera == "overview" ? "overview" : "view";
   };
   out.add("camera", camera(found), camera(wanted));
-  out.add("picture", size_words(a.width_px, a.height_px), size_words(b.width_px, b.height_px));
+  out.add("picture", size_words({a.width_px, a.height_px}), size_words({b.width_px, b.height_px}));
   if (std::abs(a.camera_angle_deg - b.camera_angle_deg) > same_angle_deg)
     out.add("camera angle", degrees(a.camera_angle_deg), degrees(b.camera_angle_deg));
   const double seen = a.visual_angle_deg.value_or(0), wished = b.visual_angle_deg.value_or(0);
   if (std::abs(seen - wished) > same_angle_deg)
     out.add("angle of the eye's view", degrees(seen), degrees(wished));
   return out.take();
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& one : words) out += (out.empty() ? "" : ", ") + one;
-  return out;
 }
 
 }  // namespace apps

@@ -35,7 +35,4 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
 /// was drawn.
 std::vector<std::string> view_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
-/// "a, b, c".
-std::string joined(const std::vector<std::string>& words);
-
 }  // namespace apps

@@ -1,7 +1,7 @@
 #include "apps/study/bakes/bake_plan.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "apps/study/check/rehearsal.hpp"
@@ -33,11 +33,7 @@ std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
-  if (one.rate) {
-    char rate[64];
-    std::snprintf(rate, sizeof rate, "_%.6g_%.6g", one.rate->mean, one.rate->sd);
-    out += rate;
-  }
+  if (one.rate) out += fmt::format("_{:.6g}_{:.6g}", one.rate->mean, one.rate->sd);
   return out + ".bake";
 }
 
@@ -66,7 +62,9 @@ std::vector<PlannedStimulus> plan_bakes(const study::Protocol& protocol) {
       return one.what == cell.stimulus && (!by_rate || same_rate(*one.rate, cell.setting));
     });
     if (known == out.end()) {
-      known = out.insert(out.end(), {cell.stimulus, {}, {}, traits.adaptive(), 0, {}, {}});
+      known = out.emplace(out.end());
+      known->what = cell.stimulus;
+      known->adaptive = traits.adaptive();
       if (by_rate) known->rate = cell.setting;
     }
     known->cells.push_back(static_cast<int>(i));

@@ -1,5 +1,6 @@
 #include "apps/study/bakes/bake_protocol.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "apps/study/bakes/write_bake.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -79,7 +81,7 @@ std::string problem_of(const base::Error& error) {
 std::string fault_of(const Task& task, const std::function<void()>& stop) {
   try {
     const sim::BakeReader bake(task.out);
-    const std::string departures = joined(all_departures(bake.header(), task.header));
+    const std::string departures = base::joined(all_departures(bake.header(), task.header));
     if (!departures.empty()) return task.out.string() + ": " + departures;
     read_whole(bake, stop);
     return "";
@@ -117,12 +119,12 @@ void check_room(const std::vector<Task>& tasks, const fs::path& folder) {
   double needed = 0;
   for (const Task& task : tasks) needed += static_cast<double>(most_bytes(task.header));
   const double room = free_bytes(folder);
-  char text[120];
-  std::snprintf(text, sizeof text, "take up to %.1f GB, and %.1f GB are free", 1e-9 * needed, 1e-9 * room);
+  const std::string text =
+      fmt::format("take up to {:.1f} GB, and {:.1f} GB are free", 1e-9 * needed, 1e-9 * room);
   if (needed > room)
     throw base::Error(folder.string(), std::to_string(tasks.size()) + " bakes " + text,
                       "name a folder on another disk, or make room");
-  std::printf("%zu bakes to make %s\n", tasks.size(), text);
+  std::printf("%zu bakes to make %s\n", tasks.size(), text.c_str());
   std::fflush(stdout);
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -53,7 +54,7 @@ std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t most = 6;
   const std::vector<std::string> first(
       names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
-  return joined(first) +
+  return base::joined(first) +
          (names.size() > most ? ", and " + std::to_string(names.size() - most) + " more" : "");
 }
 
@@ -81,7 +82,7 @@ void SessionBakes::use_file(const study::Protocol& protocol, const SessionLook& 
   }
   if (sim::traits_of(sim::parse_method(bake->header.method)).adaptive() && !protocol.fixation)
     departures.emplace_back("a gaze that was known beforehand instead of the participant's");
-  departure_ = joined(departures);
+  departure_ = base::joined(departures);
 }
 
 void SessionBakes::use_folder(const study::Protocol& protocol, const SessionLook& look) {
@@ -96,7 +97,7 @@ void SessionBakes::use_folder(const study::Protocol& protocol, const SessionLook
     }
     if (!departures.empty())
       throw base::Error(
-          bake->path.string(), "holds " + joined(departures),
+          bake->path.string(), "holds " + base::joined(departures),
           "make it again: vip-study bake --protocol FILE --out " + path_.string() + " " + options_);
     source.bake = bake;
     any = true;

@@ -1,8 +1,8 @@
 #include "apps/study/check/measured_check.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 
@@ -14,16 +14,6 @@ namespace {
 
 /// Of the refresh: a method this near to it shows what the display shows.
 constexpr double at_refresh = 0.98;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char out[240];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  std::snprintf(out, sizeof out, pattern, values...);
-#pragma GCC diagnostic pop
-  return out;
-}
 
 /// Least tau over windows of 30 frames, as the solver sees it.
 double least_tau(const std::vector<double>& intervals_s) {
@@ -41,10 +31,11 @@ void judge_rate(MeasuredCell& out, const study::Protocol& protocol, double alone
   const double asked = out.setting.mean;
   if (asked > 0 && alone < asked) {
     out.too_slow = true;
-    out.words = format("too slow live: %.3g frames/s where %.4g are asked for", alone, asked);
+    out.words = fmt::format("too slow live: {:.3g} frames/s where {:.4g} are asked for", alone, asked);
   } else if (asked == 0 && alone < protocol.pacing.fps_min) {
     out.too_slow = true;
-    out.words = format("too slow live: %.3g frames/s, below fps_min = %.4g", alone, protocol.pacing.fps_min);
+    out.words =
+        fmt::format("too slow live: {:.3g} frames/s, below fps_min = {:.4g}", alone, protocol.pacing.fps_min);
   }
 }
 
@@ -91,7 +82,7 @@ std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<i
     any_temporal = any_temporal || temporal.at(one.cell);
     accelerates = accelerates || (temporal.at(one.cell) && one.tau_min < 0);
   }
-  if (all_reach) return format("every method reaches the %g Hz of the display", refresh_hz);
+  if (all_reach) return fmt::format("every method reaches the {:g} Hz of the display", refresh_hz);
   if (any_temporal && !accelerates) return "tau of the accelerated methods never falls below zero";
   return {};
 }
@@ -129,12 +120,12 @@ std::string stimulus_name(const study::StimulusSpec& what) {
 }
 
 std::string measured_table(const MeasuredReport& report) {
-  std::string out =
-      format("%-28s %-15s %9s %8s %8s %8s\n", "stimulus", "asked", "frames/s", "sd", "p95 ms", "tau min");
+  std::string out = fmt::format("{:<28} {:<15} {:>9} {:>8} {:>8} {:>8}\n", "stimulus", "asked", "frames/s",
+                                "sd", "p95 ms", "tau min");
   for (const MeasuredCell& one : report.cells) {
     const std::string asked = one.setting.mean > 0 ? study::setting_name(one.setting) : "as it runs";
-    out += format("%-28s %-15s %9.1f %8.2f %8.1f %8.2f  ", stimulus_name(one.what).c_str(), asked.c_str(),
-                  one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
+    out += fmt::format("{:<28} {:<15} {:9.1f} {:8.2f} {:8.1f} {:8.2f}  ", stimulus_name(one.what), asked,
+                       one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
            one.words + "\n";
   }
   return out;

@@ -1,7 +1,7 @@
 #include "apps/study/check/session_outline.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <sstream>
 #include <tuple>
@@ -15,13 +15,6 @@ namespace {
 
 using study::BlockKind;
 using study::StepKind;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char out[256];
-  std::snprintf(out, sizeof out, pattern, values...);
-  return out;
-}
 
 double reading_s(const std::string& text, const Pace& pace) {
   if (pace.words_per_s <= 0) return 0;
@@ -76,13 +69,13 @@ void add(Span& sum, const Span& part) {
 std::string step_words(const study::Protocol& protocol, const study::TrialStep& step) {
   switch (step.kind) {
     case StepKind::Black:
-      return format("black %g s", step.seconds);
+      return fmt::format("black {:g} s", step.seconds);
     case StepKind::Rest:
-      return format("rest %g s", step.seconds);
+      return fmt::format("rest {:g} s", step.seconds);
     case StepKind::Ask:
-      return format("ask %zu", step.asks.size());
+      return fmt::format("ask {}", step.asks.size());
     default:
-      return format("stimulus %g s", protocol.design.cells.front().setting.duration_s);
+      return fmt::format("stimulus {:g} s", protocol.design.cells.front().setting.duration_s);
   }
 }
 
@@ -116,20 +109,20 @@ SessionOutline outline_session(const study::Protocol& protocol) {
 std::string describe_block(const study::Protocol& protocol, const BlockOutline& outline) {
   const study::Block& block = *outline.block;
   if (study::has_trials(block.kind)) {
-    std::string out = format("%d trials: ", outline.trials);
+    std::string out = fmt::format("{} trials: ", outline.trials);
     for (const auto& step : block.steps)
       out += (&step == &block.steps.front() ? "" : ", ") + step_words(protocol, step);
-    if (outline.pages > 0) out += format("; %g s between groups", block.between_groups_s);
+    if (outline.pages > 0) out += fmt::format("; {:g} s between groups", block.between_groups_s);
     return out;
   }
   std::string out;
-  if (block.kind == BlockKind::Catch) out = format("%d pages among the trials", outline.pages);
+  if (block.kind == BlockKind::Catch) out = fmt::format("{} pages among the trials", outline.pages);
   if (!block.questions.empty())
-    out += format("%s%zu question%s", out.empty() ? "" : ", ", block.questions.size(),
-                  block.questions.size() == 1 ? "" : "s");
+    out += fmt::format("{}{} question{}", out.empty() ? "" : ", ", block.questions.size(),
+                       block.questions.size() == 1 ? "" : "s");
   if (block.seconds > 0)
-    out += format("%s%g s%s", out.empty() ? "" : ", ", block.seconds,
-                  block.kind == BlockKind::Rest || block.kind == BlockKind::Black ? "" : " at least");
+    out += fmt::format("{}{:g} s{}", out.empty() ? "" : ", ", block.seconds,
+                       block.kind == BlockKind::Rest || block.kind == BlockKind::Black ? "" : " at least");
   return out;
 }
 
@@ -170,21 +163,22 @@ Balance check_balance(const study::Protocol& protocol) {
 
 std::string describe_balance(const study::Protocol& protocol, const Balance& balance) {
   const study::Design& design = protocol.design;
-  std::string out = format("%d participants: ", balance.planned);
+  std::string out = fmt::format("{} participants: ", balance.planned);
   if (design.assignment == study::Assignment::PaperRandom)
     out += "scenes, n_* and intervals are drawn for each";
   else if (balance.sequences == 1)
     out += "all meet the same cells";
   else
-    out += format("each of %d sequences of scene and n_* is met by %d to %d", balance.sequences,
-                  balance.least, balance.most);
+    out += fmt::format("each of {} sequences of scene and n_* is met by {} to {}", balance.sequences,
+                       balance.least, balance.most);
   if (design.pairs && design.assignment == study::Assignment::Balanced)
-    out += format("; the two orders of a pair differ by at most %d within each", balance.interval_difference);
+    out += fmt::format("; the two orders of a pair differ by at most {} within each",
+                       balance.interval_difference);
   if (balance.even == 1) return out + "; any number divides evenly";
   if (balance.even_below == balance.planned) return out + "; divides evenly";
-  out += format("; does not divide by %d: ", balance.even);
-  if (balance.even_below > 0) out += format("%d or ", balance.even_below);
-  return out + format("%d would", balance.even_above);
+  out += fmt::format("; does not divide by {}: ", balance.even);
+  if (balance.even_below > 0) out += fmt::format("{} or ", balance.even_below);
+  return out + fmt::format("{} would", balance.even_above);
 }
 
 }  // namespace apps

@@ -1,5 +1,6 @@
 #include "apps/study/desk/console.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
@@ -53,8 +54,8 @@ void Console::begin(const study::OpenSession& session) {
   warnings_.clear();
   ending_.reset();
   verdicts_.clear();
-  say(text("%s: %zu steps of %zu left, %s; disk %.1f GB free", session.plan.participant.c_str(),
-           session.units.size(), session.planned, left().c_str(), 1e-3 * free_mb(database_)));
+  say(fmt::format("{}: {} steps of {} left, {}; disk {:.1f} GB free", session.plan.participant,
+                  session.units.size(), session.planned, left(), 1e-3 * free_mb(database_)));
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
            ? "; H1 and H5 are not testable without tracked gaze"
@@ -184,11 +185,12 @@ void Console::command(char byte) {
     case 'n':
       return ask(Asking::Note, "note: ");
     case 'r':
-      return trial ? ask(Asking::Repeat, text("repeat trial %d, reason: ", trial->trial->position + 1))
+      return trial ? ask(Asking::Repeat, fmt::format("repeat trial {}, reason: ", trial->trial->position + 1))
                    : say("no trial to repeat");
     case 'x':
-      return trial ? ask(Asking::Exclude, text("exclude trial %d, reason: ", trial->trial->position + 1))
-                   : say("no trial to exclude");
+      return trial
+                 ? ask(Asking::Exclude, fmt::format("exclude trial {}, reason: ", trial->trial->position + 1))
+                 : say("no trial to exclude");
     case 'e':
       return ask(Asking::End, "end the session (a rest, then the exit)? write yes: ");
     case 'm':
@@ -239,28 +241,28 @@ void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const study::OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;
   keep(
-      text("repeat of trial %d: ", trial.trial->position + 1) + reason,
+      fmt::format("repeat of trial {}: ", trial.trial->position + 1) + reason,
       [=, this] { store_.repeat_trial(session, trial.trial_id, reason); },
       [=, this] {
         if (unit_done_ || unit_->trial_id != trial.trial_id) return show_at_the_end(trial);
         repeat_ = true;
-        say(text("trial %d is shown again, from its start", trial.trial->position + 1));
+        say(fmt::format("trial {} is shown again, from its start", trial.trial->position + 1));
       });
 }
 
 void Console::show_at_the_end(const study::OpenUnit& trial) {
   reopened_ = true;
-  say(text("trial %d is shown again at the end of the session", trial.trial->position + 1));
+  say(fmt::format("trial {} is shown again at the end of the session", trial.trial->position + 1));
 }
 
 void Console::exclude(const std::string& reason) {
   const study::OpenUnit trial = unit_ && unit_->trial ? *unit_ : *last_trial_;
   const std::int64_t session = session_->id;
   keep(
-      text("exclusion of trial %d: ", trial.trial->position + 1) + reason,
+      fmt::format("exclusion of trial {}: ", trial.trial->position + 1) + reason,
       [=, this] { store_.exclude_trial(session, trial.trial_id, reason); },
       [=, this] {
-        say(text("trial %d is excluded from analyses; its data stay", trial.trial->position + 1));
+        say(fmt::format("trial {} is excluded from analyses; its data stay", trial.trial->position + 1));
       });
 }
 

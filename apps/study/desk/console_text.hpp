@@ -3,23 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "stats/base/file.hpp"
 
 namespace apps {
-
-template <class... Values>
-std::string text(const char* pattern, Values... values) {
-  char out[300];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  std::snprintf(out, sizeof out, pattern, values...);
-#pragma GCC diagnostic pop
-  return out;
-}
 
 /// "14:03:05" in UTC.
 inline std::string clock_time() { return base::utc_now().substr(11, 8); }

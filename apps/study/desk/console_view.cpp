@@ -1,4 +1,5 @@
 /// What the console says and shows of a session.
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "apps/study/desk/console.hpp"
@@ -45,9 +46,9 @@ std::string Console::left() const {
 
 std::string Console::describe(const study::OpenUnit& unit) const {
   const study::Block& block = protocol_.blocks.at(static_cast<std::size_t>(unit.plan.block));
-  std::string line = text("step %d of %zu: %s '%s'", unit.plan.position + 1, session_->planned,
-                          study::block_kind_name(block.kind).c_str(), block.id.c_str());
-  if (unit.trial) line += text(", trial %d", unit.trial->position + 1);
+  std::string line = fmt::format("step {} of {}: {} '{}'", unit.plan.position + 1, session_->planned,
+                                 study::block_kind_name(block.kind), block.id);
+  if (unit.trial) line += fmt::format(", trial {}", unit.trial->position + 1);
   if (unit.trial && revealed_) line += " (" + describe_cells(*unit.trial) + ")";
   return line;
 }
@@ -70,11 +71,11 @@ std::string Console::describe(const study::TimingVerdict& verdict) const {
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";
   std::string line =
       "timing " + study::verdict_name(verdict.verdict) +
-      text(", grade %c: mean %+.2f %%, late %lld, worst %.2f ms", static_cast<char>(verdict.grade),
-           100 * (verdict.realised.mean / verdict.nominal.mean - 1), static_cast<long long>(verdict.late),
-           verdict.worst_late_ms);
+      fmt::format(", grade {}: mean {:+.2f} %, late {}, worst {:.2f} ms", static_cast<char>(verdict.grade),
+                  100 * (verdict.realised.mean / verdict.nominal.mean - 1), verdict.late,
+                  verdict.worst_late_ms);
   if (revealed_)
-    line += text("; realised %.2f, sd %.2f frames/s", verdict.realised.mean, verdict.realised.sd);
+    line += fmt::format("; realised {:.2f}, sd {:.2f} frames/s", verdict.realised.mean, verdict.realised.sd);
   if (revealed_ && !verdict.reason.empty()) line += "; " + verdict.reason;
   return line;
 }
@@ -106,11 +107,11 @@ std::string Console::describe_course() const {
   if (unit_done_ || c.frames < 2) return "-";
   const double shown_s = 1e-9 * static_cast<double>(c.last_shown_ns - c.first_shown_ns);
   const double scheduled_s = 1e-9 * static_cast<double>(c.last_scheduled_ns - c.first_scheduled_ns);
-  std::string line = text("%.1f s, rate %+.2f %%, late %lld, worst %.2f ms", shown_s,
-                          100 * (scheduled_s / shown_s - 1), static_cast<long long>(c.late), c.worst_late_ms);
+  std::string line = fmt::format("{:.1f} s, rate {:+.2f} %, late {}, worst {:.2f} ms", shown_s,
+                                 100 * (scheduled_s / shown_s - 1), c.late, c.worst_late_ms);
   if (revealed_) {
     const double frames = static_cast<double>(c.frames - 1);
-    line += text(", %.1f of %.1f frames/s", frames / shown_s, frames / scheduled_s);
+    line += fmt::format(", {:.1f} of {:.1f} frames/s", frames / shown_s, frames / scheduled_s);
   }
   return line;
 }
@@ -119,13 +120,13 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
   std::vector<std::string> all;
   if (ending_) all.push_back(words_of(*ending_));
   if (disk_mb >= 0 && disk_mb < little_disk_mb)
-    all.push_back(text("disk: only %.0f MB are free; free space before the next trial", disk_mb));
+    all.push_back(fmt::format("disk: only {:.0f} MB are free; free space before the next trial", disk_mb));
   if (const char* failure = failure_of(verdicts_))
-    all.push_back(text("trial %d: ", last_trial_->trial->position + 1) + failure +
+    all.push_back(fmt::format("trial {}: ", last_trial_->trial->position + 1) + failure +
                   "; r shows it again, else it is left out by the timing rule");
   if (!unit_done_ && course_.late > 0)
-    all.push_back(text("%lld late frame%s in this showing; close other programs",
-                       static_cast<long long>(course_.late), course_.late == 1 ? "" : "s"));
+    all.push_back(fmt::format("{} late frame{} in this showing; close other programs", course_.late,
+                              course_.late == 1 ? "" : "s"));
   const auto idle = idle_ ? idle_() : std::nullopt;
   if (session_ && unit_ && !unit_done_ && !looks(now_ns) && idle &&
       std::min(*idle, on_page_s(now_ns)) > long_s)
@@ -149,15 +150,15 @@ ConsoleView Console::view(std::int64_t now_ns) const {
   for (const study::TimingVerdict& verdict : verdicts_)
     view.last += (view.last.empty() ? "" : "; ") + describe(verdict);
   if (!session_) return view;
-  view.title = session_->plan.participant + text(", visit %d: ", session_->plan.visit) + view.title +
+  view.title = session_->plan.participant + fmt::format(", visit {}: ", session_->plan.visit) + view.title +
                (session_->plan.test_data ? " (test data)" : "");
   const std::size_t left_units = session_->units.size() - std::min(done_, session_->units.size());
   const std::size_t before = session_->planned - std::min(left_units, session_->planned);
   view.done =
       session_->planned > 0 ? static_cast<double>(before) / static_cast<double>(session_->planned) : 1;
-  view.plan = text("%zu of %zu steps done; left: ", before, session_->planned) + left();
+  view.plan = fmt::format("{} of {} steps done; left: ", before, session_->planned) + left();
   view.now = unit_ ? describe(*unit_) : "-";
-  view.station = "gaze " + session_->plan.gaze_source + text("; disk %.1f GB free", 1e-3 * disk_mb) +
+  view.station = "gaze " + session_->plan.gaze_source + fmt::format("; disk {:.1f} GB free", 1e-3 * disk_mb) +
                  (session_->plan.station.empty() ? "" : "; " + session_->plan.station);
   return view;
 }

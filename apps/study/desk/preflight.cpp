@@ -1,5 +1,7 @@
 #include "apps/study/desk/preflight.hpp"
+#include "stats/base/text.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,15 +12,6 @@ namespace apps {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string text(const char* pattern, double a, double b = 0) {
-  char out[160];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  std::snprintf(out, sizeof out, pattern, a, b);
-#pragma GCC diagnostic pop
-  return out;
-}
 
 std::string first_word(const fs::path& file) {
   std::ifstream in(file);
@@ -65,11 +58,12 @@ PreflightLine judge_refresh(const std::optional<ScreenFacts>& screen) {
     return {Readiness::Warn, what,
             "swaps do not wait for the screen: switch on vertical synchronisation in the driver"};
   if (screen->told_hz == 0)
-    return {Readiness::Unknown, what, text("measured %.3f Hz, the system tells none", screen->measured_hz)};
+    return {Readiness::Unknown, what,
+            fmt::format("measured {:.3f} Hz, the system tells none", screen->measured_hz)};
   const bool same = std::abs(screen->measured_hz / screen->told_hz - 1) < 0.005;
   return {same ? Readiness::Ok : Readiness::Warn, what,
-          text(same ? "%.4g Hz, measured %.3f Hz" : "told %.4g Hz, but measured %.3f Hz", screen->told_hz,
-               screen->measured_hz)};
+          fmt::format("{}{:.4g} Hz, {}measured {:.3f} Hz", same ? "" : "told ", screen->told_hz,
+                      same ? "" : "but ", screen->measured_hz)};
 }
 
 PreflightLine judge_compositor(const std::optional<ScreenFacts>& screen) {
@@ -82,8 +76,7 @@ PreflightLine judge_compositor(const std::optional<ScreenFacts>& screen) {
 
 PreflightLine judge_governor(const StationFacts& station) {
   if (station.governors.empty()) return {Readiness::Unknown, "power governor", "not told by the system"};
-  std::string all;
-  for (const std::string& one : station.governors) all += (all.empty() ? "" : ", ") + one;
+  const std::string all = base::joined(station.governors);
   if (all == "performance") return {Readiness::Ok, "power governor", all};
   return {Readiness::Warn, "power governor", all + ": set it to performance for steady frame times"};
 }
@@ -95,14 +88,14 @@ PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes
   // Ten times over: the log of a database can grow as large as what it holds.
   const bool enough = *station.free_disk_bytes / 10 >= needed_bytes;
   return {enough ? Readiness::Ok : Readiness::Warn, "free disk",
-          text("%.0f MB, the session writes about %.0f MB", free_mb, needed_mb)};
+          fmt::format("{:.0f} MB, the session writes about {:.0f} MB", free_mb, needed_mb)};
 }
 
 PreflightLine judge_gpu(const StationFacts& station) {
   if (!station.gpu_clock_mhz || !station.gpu_max_mhz)
     return {Readiness::Unknown, "GPU clock", "no nvidia-smi"};
   return {Readiness::Ok, "GPU clock",
-          text("%.0f of %.0f MHz now, at rest", *station.gpu_clock_mhz, *station.gpu_max_mhz)};
+          fmt::format("{:.0f} of {:.0f} MHz now, at rest", *station.gpu_clock_mhz, *station.gpu_max_mhz)};
 }
 
 }  // namespace

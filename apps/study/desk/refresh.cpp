@@ -1,8 +1,8 @@
 #include "apps/study/desk/refresh.hpp"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace apps {
@@ -22,12 +22,6 @@ double share_in_time(const std::vector<double>& steps_ns, double period_ns) {
   return static_cast<double>(good) / static_cast<double>(steps_ns.size());
 }
 
-std::string text(const char* pattern, double a, double b) {
-  char out[160];
-  std::snprintf(out, sizeof out, pattern, a, b);
-  return out;
-}
-
 }  // namespace
 
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz) {
@@ -43,8 +37,8 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted[sorted.size() / 2];
   if (median < shortest_ns || median > longest_ns || share_in_time(steps, median) < 0.9) {
-    out.finding =
-        text("swaps do not wait for the screen (median %.3g ms); told %.4g Hz", 1e-6 * median, told_hz);
+    out.finding = fmt::format("swaps do not wait for the screen (median {:.3g} ms); told {:.4g} Hz",
+                              1e-6 * median, told_hz);
     return out;
   }
   double periods = 0, total = 0;
@@ -58,7 +52,8 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   const bool told_well = told_hz > 0 && std::abs(measured_hz / told_hz - 1) < 0.005;
   out.nominal_hz = told_well ? told_hz : measured_hz;
   out.beat_ns = beat_of(returns_ns.last(10), out.period_ns);
-  out.finding = text("swaps wait for the screen: measured %.4f Hz, told %.4g Hz", measured_hz, told_hz);
+  out.finding =
+      fmt::format("swaps wait for the screen: measured {:.4f} Hz, told {:.4g} Hz", measured_hz, told_hz);
   return out;
 }
 

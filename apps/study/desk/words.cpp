@@ -19,9 +19,9 @@ DeskWords english() {
   words.corner = "Esc: stop";
   words.begin = "You may stop at any time: press the key Esc.";
   words.one_open = "1 question is still open";
-  words.many_open = "%d questions are still open";
-  words.wait = "in %d s";
-  words.range = "%d to %d";
+  words.many_open = "{} questions are still open";
+  words.wait = "in {} s";
+  words.range = "{} to {}";
   words.optional = "may be left empty";
   words.digits = "Press a number or click, then Enter";
   words.arrows = "Choose with the arrow keys and Enter, or click";
@@ -78,9 +78,9 @@ DeskWords german() {
   words.corner = "Esc: abbrechen";
   words.begin = "Sie können jederzeit abbrechen: drücken Sie die Taste Esc.";
   words.one_open = "1 Frage ist noch offen";
-  words.many_open = "%d Fragen sind noch offen";
-  words.wait = "in %d s";
-  words.range = "%d bis %d";
+  words.many_open = "{} Fragen sind noch offen";
+  words.wait = "in {} s";
+  words.range = "{} bis {}";
   words.optional = "darf leer bleiben";
   words.digits = "Drücken Sie eine Zahl oder klicken Sie, dann Eingabe";
   words.arrows = "Wählen Sie mit den Pfeiltasten und Eingabe, oder klicken Sie";

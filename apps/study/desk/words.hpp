@@ -22,9 +22,9 @@ struct DeskWords {
   std::string first, second;        ///< of two stimuli
   std::string held_title, held;     ///< while the experimenter pauses
   std::string corner, begin;        ///< how to stop: on every page, and as a sentence on the first
-  std::string one_open, many_open;  ///< "%d" stands for how many
-  std::string wait;                 ///< "%d" stands for seconds
-  std::string range;                ///< two "%d"
+  std::string one_open, many_open;  ///< "{}" stands for how many
+  std::string wait;                 ///< "{}" stands for seconds
+  std::string range;                ///< two "{}"
   std::string optional;
   std::string digits, arrows, tab;  ///< how to answer
   DeskChoice stop;

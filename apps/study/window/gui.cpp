@@ -2,6 +2,7 @@
 
 // epoxy first: GLFW then leaves GL's headers alone.
 #include <epoxy/gl.h>
+#include <fmt/core.h>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -189,9 +189,7 @@ void draw_corner(const Gui& gui, const std::string& words) {
 }
 
 void draw_countdown(const Gui& gui, const PauseWords& words, int left_s, const std::string& corner) {
-  char left[32];
-  std::snprintf(left, sizeof left, "%d:%02d", left_s / 60, left_s % 60);
-  draw_on_black(gui, left, words, corner);
+  draw_on_black(gui, fmt::format("{}:{:02}", left_s / 60, left_s % 60).c_str(), words, corner);
 }
 
 void draw_words(const Gui& gui, const PauseWords& words, const std::string& corner) {

@@ -1,4 +1,5 @@
 /// The questions of a page.
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -131,7 +132,7 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   const float after = from.x + (width + w) / 2 + 2;
   if (caret) list.AddLine({after, y}, {after, y + size}, colour::text, 2);
   list.AddText({to.x + size, y}, wrong ? colour::warning : colour::dim,
-               text(words_.range.c_str(), question.scale_min, question.scale_max).c_str());
+               fmt::format(fmt::runtime(words_.range), question.scale_min, question.scale_max).c_str());
 }
 
 /// A field while it has the focus, else its words in a box.

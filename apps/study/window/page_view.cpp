@@ -1,5 +1,6 @@
 #include "apps/study/window/page_view.hpp"
 
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -155,8 +156,9 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   const int missing = static_cast<int>(state.missing());
   const int wait = static_cast<int>(state.wait_s(now_ns) + 0.999);
   std::string why;
-  if (missing > 0) why = missing == 1 ? words_.one_open : text(words_.many_open.c_str(), missing);
-  if (missing == 0 && wait > 0) why = text(words_.wait.c_str(), wait);
+  if (missing > 0)
+    why = missing == 1 ? words_.one_open : fmt::format(fmt::runtime(words_.many_open), missing);
+  if (missing == 0 && wait > 0) why = fmt::format(fmt::runtime(words_.wait), wait);
   draw_centred(why, {screen.x / 2, from.y - 1.3F * size}, column_, colour::dim);
   std::string how;
   if (state.focus() < state.size()) {

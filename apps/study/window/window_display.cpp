@@ -2,10 +2,10 @@
 
 // epoxy first: GLFW then leaves GL's headers alone.
 #include <epoxy/gl.h>
+#include <fmt/core.h>
 
 #include <GLFW/glfw3.h>
 
-#include <cstdio>
 #include <vector>
 
 #include "libsim/render/gl_context.hpp"
@@ -17,10 +17,7 @@ namespace {
 constexpr int measured_swaps = 120, queued_swaps = 4, beat_swaps = 6;
 
 std::string describe(const Monitor& monitor) {
-  char text[160];
-  std::snprintf(text, sizeof text, "monitor '%s' %dx%d", monitor.name.c_str(), monitor.width_px,
-                monitor.height_px);
-  return text;
+  return fmt::format("monitor '{}' {}x{}", monitor.name, monitor.width_px, monitor.height_px);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 // epoxy first: GLFW then leaves GL's headers alone.
 #include <epoxy/gl.h>
+#include <fmt/core.h>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -9,7 +10,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
@@ -58,9 +58,8 @@ void draw_figures(const Figures& f) {
   ImGui::Text("mu %.2f  delta %.2f frames/s  (last %zu)", f.fps.mean, f.fps.sd, f.fps.frames);
   ImGui::Text("tau %.2f frames/s  beta %.3f  (%s)", f.tau, f.beta, f.model.c_str());
   const double top = f.strip.scale_ms();
-  char scale[64];
-  std::snprintf(scale, sizeof scale, "%.2f ms; 0 to %g ms", f.frame_ms, top);
-  ImGui::PlotLines("frame", f.strip.ms(), FrameStrip::length, f.strip.oldest(), scale, 0,
+  const std::string scale = fmt::format("{:.2f} ms; 0 to {:g} ms", f.frame_ms, top);
+  ImGui::PlotLines("frame", f.strip.ms(), FrameStrip::length, f.strip.oldest(), scale.c_str(), 0,
                    static_cast<float>(top), {0, 56});
 }
 

@@ -1,4 +1,4 @@
-#include "apps/common/option_checks.hpp"
+#include "apps/common/options.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "libsim/methods/method.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
@@ -41,6 +42,70 @@ std::string check_finite(std::string& text) {
 }
 
 }  // namespace
+
+CLI::Option* add_database(CLI::App& command, std::string& database) {
+  return command.add_option("--db", database, "Database of the study")->required();
+}
+
+void add_database_argument(CLI::App& command, std::string& database) {
+  auto* positional = command.add_option("database", database, "The study's database");
+  command.add_option("--db", database, "The same as an option")->excludes(positional);
+}
+
+void check_given(const std::string& database) {
+  if (database.empty()) throw CLI::RequiredError("database or --db");
+}
+
+CLI::Option* add_plan(CLI::App& command, std::string& plan) {
+  return command.add_option(
+      "--plan", plan,
+      "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, seed; "
+      "without: the defaults");
+}
+
+CLI::Option* add_protocol_digits(CLI::App& command, std::string& digits) {
+  return command.add_option("--protocol", digits, "First digits of the protocol's SHA-256");
+}
+
+CLI::Option* add_method(CLI::App& command, std::string& method) {
+  return command.add_option("--method", method, sim::method_names())->capture_default_str();
+}
+
+CLI::Option* add_n_star(CLI::App& command, std::string& n_star) {
+  return command.add_option("--n-star", n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
+}
+
+CLI::Option* add_backend(CLI::App& command, std::string& backend) {
+  return command.add_option("--backend", backend, "cpu, cuda or auto")->capture_default_str();
+}
+
+CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* what) {
+  return command.add_option("--backend", backend, what)
+      ->check(CLI::IsMember({"cpu", "cuda", "auto"}))
+      ->capture_default_str();
+}
+
+CLI::Option* add_size(CLI::App& command, PictureSize& size, const char* what) {
+  const auto take = [&size](const std::string& text) { size = parse_picture_size(text); };
+  return command.add_option_function<std::string>("--size", take, what)->default_str(size_words(size));
+}
+
+CLI::Option* add_size(CLI::App& command, std::optional<PictureSize>& size, const char* what) {
+  const auto take = [&size](const std::string& text) { size = parse_picture_size(text); };
+  return command.add_option_function<std::string>("--size", take, what);
+}
+
+std::array<CLI::Option*, 2> add_viewing(CLI::App& command, std::optional<double>& screen_width_mm,
+                                        std::optional<double>& viewing_distance_mm,
+                                        const char* width_of_what) {
+  return {command.add_option("--screen-width-mm", screen_width_mm, width_of_what),
+          command.add_option("--viewing-distance-mm", viewing_distance_mm, "From the eye to the screen")};
+}
+
+CLI::Option* add_count(CLI::App& command, const char* name, int& value, int low, int high, const char* what) {
+  return command.add_option(name, value, what)->check(CLI::Range(low, high))->capture_default_str();
+}
 
 CLI::Validator number_in(double low, double high) {
   const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);
