@@ -7,6 +7,7 @@ packages=(
   g++ cmake ninja-build pkg-config
   # libraries fixed by the project
   libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev libgtest-dev libgmock-dev
+  libopenxr-dev libopenxr-loader1
   # texts, TOML, JSON, PNG, compression, checksums, SHA-256
   libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
   # software OpenGL for machines without a GPU
@@ -14,7 +15,7 @@ packages=(
   # type of the participant's window
   fonts-dejavu-core
   # tests
-  sqlite3 util-linux xvfb xauth xdotool imagemagick clang-tidy
+  sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy
 )
 
 # The BIDS validator's (scripts/validate_bids.sh); whoever has npm from elsewhere keeps it.

@@ -18,6 +18,7 @@ void add_consent_command(CLI::App& app);
 void add_withdraw_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
+void add_headset_command(CLI::App& app);
 
 /// --db, --max-pages, --events: shared by run and resume.
 void add_play_options(CLI::App& command, PlayOptions& options);

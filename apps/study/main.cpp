@@ -4,6 +4,7 @@
 int main(int argc, char** argv) {
   CLI::App app("Studies of people's perception of real-time fluid", "vip-study");
   apps::add_check_command(app);
+  apps::add_headset_command(app);
   apps::add_reference_command(app);
   apps::add_bake_command(app);
   apps::add_run_command(app);

@@ -76,6 +76,7 @@ std::vector<Trial> list_trials(const char* client_extensions) {
 
 struct GlContext::State {
   EGLDisplay display = EGL_NO_DISPLAY;
+  EGLConfig config = nullptr;
   EGLContext context = EGL_NO_CONTEXT;
 
   State() = default;
@@ -102,7 +103,6 @@ struct GlContext::State {
     }
     if (!eglBindAPI(EGL_OPENGL_API)) return "no desktop OpenGL";
     const EGLint config_attributes[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-    EGLConfig config = nullptr;
     EGLint configs = 0;
     if (!eglChooseConfig(display, config_attributes, &config, 1, &configs) || configs == 0) {
       return "no configuration with OpenGL";
@@ -154,6 +154,8 @@ void GlContext::make_current() {
 }
 
 void GlContext::release() { eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+EglHandles GlContext::egl() const { return {state_->display, state_->config, state_->context}; }
 
 namespace {
 std::string gl_string(GLenum name) {

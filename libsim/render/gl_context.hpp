@@ -7,6 +7,13 @@
 
 namespace sim {
 
+/// EGL's own names of a context, for those who hand it on.
+struct EglHandles {
+  void* display = nullptr;
+  void* config = nullptr;
+  void* context = nullptr;
+};
+
 /// A headless EGL context, current on the thread that made it; destroyed with the object. Order of trial: EGL
 /// devices with hardware (a GPU without a display), Mesa's surfaceless platform, EGL's software devices.
 class GlContext {
@@ -22,6 +29,7 @@ class GlContext {
   void make_current();
   /// Leaves the calling thread without a context.
   void release();
+  EglHandles egl() const;
 
  private:
   struct State;

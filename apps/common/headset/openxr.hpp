@@ -1,0 +1,16 @@
+#pragma once
+/// OpenXR's declarations with what this project uses of them: OpenGL through EGL, and functions by pointer,
+/// since the loader is opened at run time.
+
+// epoxy first: it replaces the headers of EGL and GL.
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <time.h>
+
+#define XR_NO_PROTOTYPES
+#define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_PLATFORM_EGL
+#define XR_USE_TIMESPEC
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>

@@ -1,0 +1,129 @@
+/// vip-study headset: what the headset's runtime offers, and what a protocol comes to on it.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/common/headset/offer.hpp"
+#include "apps/common/program.hpp"
+#include "apps/study/check/refresh_check.hpp"
+#include "apps/study/commands.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct HeadsetOptions {
+  std::string protocol, json;
+};
+
+/// "72, 80, 90".
+template <class Values, class Text>
+std::string listed(const Values& values, Text text) {
+  std::string out;
+  for (const auto& value : values) out += (out.empty() ? "" : ", ") + text(value);
+  return out;
+}
+
+std::string hertz(double rate) { return fmt::format("{:g}", rate); }
+
+std::string refresh_text(const HeadsetOffer& offer) {
+  if (!offer.session) return "not known: " + offer.no_session;
+  const HeadsetOffer::InSession& session = *offer.session;
+  if (session.refresh_hz.empty()) return "not told; it is measured when a session runs";
+  std::string out = listed(session.refresh_hz, hertz) + " Hz";
+  if (session.refresh_now) out += ", now " + hertz(*session.refresh_now) + " Hz";
+  return out;
+}
+
+void print_offer(const HeadsetOffer& offer) {
+  const auto row = [](const char* name, const std::string& text) { fmt::print("{:<12}{}\n", name, text); };
+  row("runtime", offer.runtime + " " + offer.runtime_version);
+  row("headset", offer.headset);
+  row("pictures", listed(offer.eyes, [](const EyePicture& eye) {
+        return fmt::format("{} x {} px", eye.width, eye.height);
+      }));
+  row("refresh", refresh_text(offer));
+  row("blend", offer.opaque ? "opaque" : "the world shows through the picture");
+  row("head", offer.position ? "direction and place are followed" : "direction alone is followed");
+  row("gaze", offer.eye_gaze ? "eye tracker" : "none");
+  row("times", offer.time_converts ? "told on the system's clock: evidence grade C"
+                                   : "not told on the system's clock: evidence grade D");
+  if (offer.session) row("formats", listed(offer.session->formats, gl_format_name));
+  row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
+}
+
+/// One line a setting: "mean 40, SD 5 frames/s   exact at 90, 120 Hz".
+void print_settings(const std::vector<CheckedSetting>& settings, const std::vector<RefreshCheck>& checks) {
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    std::string exact;
+    for (const RefreshCheck& check : checks) {
+      if (check.verdicts[i].feasibility != study::Feasibility::Exact) continue;
+      exact += (exact.empty() ? "" : ", ") + hertz(check.refresh_hz);
+    }
+    fmt::print("  mean {:>3g}, SD {:>3g} frames/s  {}\n", settings[i].setting.mean, settings[i].setting.sd,
+               exact.empty() ? "exact at none" : "exact at " + exact + " Hz");
+  }
+}
+
+nlohmann::ordered_json offer_json(const HeadsetOffer& offer) {
+  nlohmann::ordered_json out{{"runtime", offer.runtime},      {"runtime_version", offer.runtime_version},
+                             {"headset", offer.headset},      {"eyes", nlohmann::ordered_json::array()},
+                             {"opaque", offer.opaque},        {"position", offer.position},
+                             {"eye_gaze", offer.eye_gaze},    {"time_converts", offer.time_converts},
+                             {"extensions", offer.extensions}};
+  for (const EyePicture& eye : offer.eyes)
+    out["eyes"].push_back({{"width_px", eye.width}, {"height_px", eye.height}});
+  if (offer.session) {
+    out["refresh_hz"] = offer.session->refresh_hz;
+    if (offer.session->refresh_now) out["refresh_now_hz"] = *offer.session->refresh_now;
+    out["formats"] = nlohmann::ordered_json::array();
+    for (const std::int64_t format : offer.session->formats) out["formats"].push_back(gl_format_name(format));
+  }
+  return out;
+}
+
+void show_headset(const HeadsetOptions& options) {
+  std::optional<study::Protocol> protocol;
+  if (!options.protocol.empty()) protocol = study::read_protocol(base::find_input(options.protocol));
+  const HeadsetOffer offer = read_headset_offer();
+  print_offer(offer);
+  nlohmann::ordered_json json = offer_json(offer);
+  if (protocol) {
+    const std::vector<CheckedSetting> settings = checked_settings(*protocol);
+    std::vector<RefreshCheck> checks;
+    if (offer.session) {
+      for (const double rate : offer.session->refresh_hz) checks.push_back(check_refresh(*protocol, rate));
+    }
+    fmt::print("\n{}, {} settings\n", protocol->name, settings.size());
+    if (checks.empty())
+      fmt::print("  which of them are exact follows from the refresh: vip-study check --refresh HZ\n");
+    for (const RefreshCheck& check : checks) {
+      fmt::print("  at {} Hz: {} exact, {} approximate, {} unreachable\n", hertz(check.refresh_hz),
+                 check.exact, check.approximate, check.unreachable);
+      json["protocol"].push_back({{"refresh_hz", check.refresh_hz},
+                                  {"exact", check.exact},
+                                  {"approximate", check.approximate},
+                                  {"unreachable", check.unreachable}});
+    }
+    if (!checks.empty()) print_settings(settings, checks);
+  }
+  if (!options.json.empty()) base::write_file_atomically(options.json, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_headset_command(CLI::App& app) {
+  auto options = std::make_shared<HeadsetOptions>();
+  auto* command = app.add_subcommand("headset", "Say what the OpenXR headset on this machine offers");
+  command->add_option("protocol", options->protocol, "Protocol file: which of its settings are exact on it");
+  command->add_option("--json", options->json, "File for the same as JSON")->check(output_file());
+  command->callback([options] { show_headset(*options); });
+}
+
+}  // namespace apps
