@@ -43,7 +43,7 @@ class HeadsetE2e : public ::testing::Test {
   std::string log() const { return folder_ / "calls.log"; }
   std::string calls() const { return std::filesystem::exists(log()) ? base::read_file(log(), 1 << 20) : ""; }
 
-  const test::TemporaryFolder folder_;
+  const ::test::TemporaryFolder folder_;
 };
 
 TEST_F(HeadsetE2e, SaysWhatTheRuntimeOffers) {
