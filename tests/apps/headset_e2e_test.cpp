@@ -96,7 +96,7 @@ TEST_F(HeadsetE2e, APositiveCodeIsNoFailure) {
 
 TEST_F(HeadsetE2e, SaysWhichSettingsOfAProtocolAreExact) {
   const std::string json = folder_ / "offer.json";
-  const auto ended = on("rates=120,72,90", {"ptpe_pilot.toml", "--json", json});
+  const auto ended = on("rates=120,72,90", {"protocols/ptpe_pilot.toml", "--json", json});
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   for (const char* line : {"at 72 Hz: 10 exact", "at 90 Hz: 14 exact", "at 120 Hz: 19 exact"})
     EXPECT_THAT(ended.out, HasSubstr(line));

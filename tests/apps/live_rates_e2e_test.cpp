@@ -33,6 +33,12 @@ class LiveRatesE2e : public ::testing::Test {
   }
   /// No machine makes a thousand such frames a second.
   void write_too_fast() { write_protocol("1000", "0.5"); }
+  /// A trial is cut as soon as its time is over, also on a machine that makes most of its frames.
+  void cut_at_once() {
+    const std::string text = base::read_file(protocol_, 1 << 20);
+    base::write_file_atomically(
+        protocol_, replaced(text, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "));
+  }
   std::function<void()> own_cache() {
     return [this] { ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1); };
   }
@@ -66,6 +72,7 @@ TEST_F(LiveRatesE2e, CellsThatAreNotReachedAreRefusedBeforeAnythingIsWritten) {
 
 TEST_F(LiveRatesE2e, TheyArePlayedWhereThatIsAcceptedAlsoByResumeAndCutWithTheirAnswersKept) {
   write_too_fast();
+  cut_at_once();
   Process stopped(live({"--accept-slow"}), own_cache());
   for (auto line = stopped.read_line(); line && line->find(" stimulus ") == std::string::npos;)
     line = stopped.read_line();
