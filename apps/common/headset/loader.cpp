@@ -70,7 +70,7 @@ XrConnection::XrConnection(const std::vector<std::string>& needed, const std::ve
   for (const auto& one : read_array<XrExtensionProperties>(
            "xrEnumerateInstanceExtensionProperties", blank,
            [&](auto capacity, auto*size, auto*values) { return list(nullptr, capacity, size, values); }))
-    offered_.push_back(one.extensionName);
+    offered_.emplace_back(one.extensionName);
   for (const std::string& name : needed) {
     if (!holds(offered_, name))
       throw base::Error("OpenXR", "the runtime does not offer " + name, "use a runtime that does");
