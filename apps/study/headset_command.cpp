@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/common/headset/offer.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/commands.hpp"
