@@ -80,8 +80,11 @@ TEST(SimulatedSessionGl, ImagesAreWrittenAsTheyAreShown) {
   client.make_swapchains(GL_RGBA16F, 2);  // of light, of which sRGB is made
   frames(client, 1);
   look("000007_right", {137, 188, 225});
-  client.frame([](Drawing& d) { d.views[1].subImage.imageArrayIndex = 1; });  // never drawn
-  look("000008_right", {0, 0, 0});
+  const std::array<float, 4> white{1, 1, 1, 1};
+  for (const auto& image : client.images[1])
+    glClearTexSubImage(image.image, 0, 0, 0, 1, 64, 48, 1, GL_RGBA, GL_FLOAT, white.data());
+  client.frame([](Drawing& d) { d.views[1].subImage.imageArrayIndex = 1; });
+  look("000008_right", {255, 255, 255});
   EXPECT_FALSE(std::filesystem::exists(client.folder() / "000005_left.png"));
 }
 
