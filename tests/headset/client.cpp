@@ -168,7 +168,8 @@ void Client::draw(int eye, const std::array<float, 4>& colour) {
   while (result == XR_TIMEOUT_EXPIRED)
     result = call<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage")(swapchains[at], &info);
   expect(result, "xrWaitSwapchainImage");
-  glClearTexImage(images[at][index].image, 0, GL_RGBA, GL_FLOAT, colour.data());
+  glClearTexSubImage(images[at][index].image, 0, 0, 0, 0, static_cast<GLsizei>(width),
+                     static_cast<GLsizei>(height), 1, GL_RGBA, GL_FLOAT, colour.data());
   expect(call<PFN_xrReleaseSwapchainImage>("xrReleaseSwapchainImage")(swapchains[at], nullptr),
          "xrReleaseSwapchainImage");
 }

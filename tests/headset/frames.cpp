@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tests/headset/gl.hpp"
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -49,6 +49,10 @@ XrResult destroy_instance(XrInstance instance) {
   if (!all.sessions.empty()) note("the instance takes a session with it");
   while (!all.sessions.empty()) end_session_objects(all.sessions.begin()->first);
   all.events.clear();
+  all.action_sets.clear();
+  all.actions.clear();
+  all.suggested.clear();
+  all.paths.clear();
   all.instances.erase(number_of(instance));
   all.instance_lost_at = -1;
   return XR_SUCCESS;

@@ -1,7 +1,7 @@
 /// Swapchains: textures of the session's context, taken and given back in the specification's order.
 
 #include "tests/headset/gl.hpp"
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
