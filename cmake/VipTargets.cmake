@@ -29,9 +29,10 @@ if(VIP_LIBFUZZER)
   target_link_options(vip_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# vip_precompile(TARGET HEADERS...) what most files of a target include is read once. It halves the build's time and changes
-# nothing else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. vip_precompile(TARGET REUSE_FROM
-# OTHER) takes those of a target that is compiled with the same flags.
+# vip_precompile(TARGET HEADERS...) what most files of a target include is read once. It shortens the build and changes nothing
+# else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. vip_precompile(TARGET REUSE_FROM OTHER) takes
+# those of a target that is compiled with the same flags. Templates of such headers are instantiated in every file, whether it
+# uses them or not: CLI11, which few files need, cost each of the others 2.6 s.
 function(vip_precompile target)
   if(VIP_PRECOMPILE)
     if("${ARGV1}" STREQUAL "REUSE_FROM")

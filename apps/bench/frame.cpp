@@ -15,10 +15,11 @@
 #include "apps/bench/watcher.hpp"
 #include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_stimulus.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
-#include "libsim/solver/settled_state.hpp"
 #include "libsim/simulation.hpp"
+#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 

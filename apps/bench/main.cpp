@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "apps/bench/commands.hpp"
 #include "apps/common/program.hpp"
 

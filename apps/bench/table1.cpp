@@ -10,6 +10,7 @@
 #include "apps/bench/commands.hpp"
 #include "apps/bench/film.hpp"
 #include "apps/bench/stills.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"

@@ -14,6 +14,7 @@
 #include "apps/bench/timing.hpp"
 #include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"

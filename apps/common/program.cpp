@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "apps/common/options.hpp"
 #include "apps/common/streams.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"

@@ -1,13 +1,14 @@
 #pragma once
 /// What every program does alike: parse, run, report errors, show progress.
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <exception>
 #include <filesystem>
 #include <string>
 
-#include "apps/common/options.hpp"
+namespace CLI {
+class App;
+}
 
 namespace apps {
 

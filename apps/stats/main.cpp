@@ -1,5 +1,7 @@
 /// vip-stats: from the database to figures, decisions and the solver's file.
 
+#include <CLI/CLI.hpp>
+
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"
 

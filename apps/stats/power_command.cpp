@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/power/power_figure.hpp"

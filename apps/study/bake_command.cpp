@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/bakes/bake_protocol.hpp"
 #include "apps/study/bakes/read_whole.hpp"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/common/headless_display.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"

@@ -1,7 +1,9 @@
 #pragma once
 /// The commands of vip-study: each in a file of its own, each adds itself to the program.
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace apps {
 

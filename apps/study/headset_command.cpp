@@ -9,6 +9,7 @@
 
 #include "apps/common/headset/offer.hpp"
 #include "apps/common/headset/picture_copy.hpp"
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/commands.hpp"

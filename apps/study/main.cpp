@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
 

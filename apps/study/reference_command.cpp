@@ -1,5 +1,6 @@
 /// vip-study reference: every key of a protocol file.
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "apps/study/commands.hpp"

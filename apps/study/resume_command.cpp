@@ -1,4 +1,5 @@
 /// vip-study resume: finish what a database says is left to do.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"

@@ -18,59 +18,50 @@ struct TableText {
 const std::vector<TableText>& table_texts() {
   static const std::vector<TableText> texts{
       {"", "The file itself", "Stands before the first table."},
-      {"design", "[design]",
-       "What is shown. Every scene, n_* and method, and under `settings` every pair of moments with sd_fps "
-       "below "
-       "mean_fps, make one cell. Cells of one scene and n_* are a group; a participant meets `groups` of "
-       "them, one "
-       "after another."},
+      {"design", "[design]", R"(What is shown. Every scene, n_* and method, and under `settings` every pair of
+moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a participant
+meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
-       "The frame rate of one cell each, for `timing = \"table2\"`; without effect under native and equal."},
+       R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"pacing", "[pacing]", "How a mean and a standard deviation become the intervals of frames."},
       {"content", "[content]", "How the process elapses with the frames."},
       {"timing", "[timing]", "What a trial must meet to pass. The table may be left out."},
-      {"block", "[[block]]",
-       "The blocks of a session in their order. Kinds:\n\n"
-       "| kind | what it is |\n|---|---|\n"
-       "| instructions | a text to be read |\n"
-       "| screening | questions that may rule a person out |\n"
-       "| consent | a text with boxes; one of its questions has `accept`. A refusal is asked once more, then "
-       "the "
-       "session is over |\n"
-       "| demographics | questions, as a rule personal |\n"
-       "| practice | trials that are flagged, never dropped |\n"
-       "| stimulus | the trials of the design; exactly one block |\n"
-       "| question | questions outside the trials |\n"
-       "| rest | a pause with a countdown that nobody can cut short |\n"
-       "| break | a pause that ends when the participant wishes, not before its seconds |\n"
-       "| black | a black screen |\n"
-       "| repeat | trials shown again, with the very same intervals: test-retest |\n"
-       "| catch | pages after trials drawn at random, with an answer that attention gives |\n"
-       "| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3; exports "
-       "and "
-       "report hold its scores |\n"
-       "| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20; exports and report "
-       "hold "
-       "mean and peak |\n"
-       "| debrief | the last text |"},
+      {"block", "[[block]]", R"(The blocks of a session in their order. Kinds:
+
+| kind | what it is |
+|---|---|
+| instructions | a text to be read |
+| screening | questions that may rule a person out |
+| consent | a text with boxes; one of its questions has `accept`. A refusal is asked once more, then the session is over |
+| demographics | questions, as a rule personal |
+| practice | trials that are flagged, never dropped |
+| stimulus | the trials of the design; exactly one block |
+| question | questions outside the trials |
+| rest | a pause with a countdown that nobody can cut short |
+| break | a pause that ends when the participant wishes, not before its seconds |
+| black | a black screen |
+| repeat | trials shown again, with the very same intervals: test-retest |
+| catch | pages after trials drawn at random, with an answer that attention gives |
+| ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3 |
+| fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20 |
+| debrief | the last text |
+
+Exports and report hold the scores of the SSQ, and the mean and the peak of the FMS.)"},
       {"block.question", "[[block.question]]",
-       "What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its "
-       "block. "
-       "Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.\n\n"
-       "Two ids are kept for questions whose answers the program obeys. They stand in a block of kind "
-       "consent, "
-       "with "
-       "`kind = \"choice\"`, the answers 0 (no) and 1 (yes) and not personal:\n\n"
-       "- `gaze_kept`: may be recorded where one looks. No row of gaze is written unless it was answered "
-       "with "
-       "1; a "
-       "protocol that does not ask records none.\n"
-       "- `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was "
-       "asked "
-       "and has not answered, is left out of them whole. Those whom no protocol asked are in them.\n\n"
-       "`vip-study consent` changes both later."},
+       R"(What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its
+block. Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.
+
+Two ids are kept for questions whose answers the program obeys. They stand in a block of kind consent, with
+`kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
+
+- `gaze_kept`: may be recorded where one looks. No row of gaze is written unless it was answered with 1; a
+  protocol that does not ask records none.
+- `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was asked
+  and has not answered, is left out of them whole. Those whom no protocol asked are in them.
+
+`vip-study consent` changes both later.)"},
       {"block.question.anchors", "anchors",
-       "Words by score, as in `anchors = {1 = \"poor\", 7 = \"good\"}`."}};
+       R"(Words by score, as in `anchors = {1 = "poor", 7 = "good"}`.)"}};
   return texts;
 }
 
@@ -241,14 +232,13 @@ const std::vector<KeyReference>& protocol_reference() {
 
 std::string protocol_reference_page() {
   std::string out = "# Protocol files, format " + std::to_string(Protocol::format_version) +
-                    "\n\n"
-                    "Written by `vip-study reference`; `vip-study check FILE` says what a file comes to. "
-                    "Files are TOML. Units "
-                    "stand in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An "
-                    "unknown key, a wrong type, a "
-                    "value out of range and keys that contradict each other are errors at line and column. "
-                    "Every byte of a file "
-                    "enters the SHA-256 that is stored with the data.\n";
+                    R"(
+
+Written by `vip-study reference`; `vip-study check FILE` says what a file comes to. Files are TOML. Units
+stand in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An unknown key, a wrong type, a
+value out of range and keys that contradict each other are errors at line and column. Every byte of a file
+enters the SHA-256 that is stored with the data.
+)";
   for (const auto& text : table_texts()) {
     out += std::string("\n## ") + text.heading + "\n\n" + text.text +
            "\n\n| key | type | default | meaning |\n|---|---|---|---|\n";

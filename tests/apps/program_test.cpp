@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <CLI/CLI.hpp>
 
 #include <stdexcept>
 

@@ -25,10 +25,17 @@ struct RuntimeRequest {
 };
 
 XRAPI_ATTR XrResult XRAPI_CALL get_function(XrInstance, const char* name, PFN_xrVoidFunction* function) {
+  const std::lock_guard held(simulated::lock());
   simulated::Functions functions;
-  functions["xrGetInstanceProcAddr"] = simulated::as_void(get_function);
+  functions["xrGetInstanceProcAddr"] = reinterpret_cast<PFN_xrVoidFunction>(get_function);
   simulated::add_instance_functions(functions);
   simulated::add_session_functions(functions);
+  simulated::add_event_functions(functions);
+  simulated::add_frame_functions(functions);
+  simulated::add_swapchain_functions(functions);
+  simulated::add_space_functions(functions);
+  simulated::add_view_functions(functions);
+  simulated::add_time_functions(functions);
   const auto found = functions.find(name);
   *function = found == functions.end() ? nullptr : found->second;
   return *function ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;
@@ -41,6 +48,8 @@ extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRunt
   const bool known = loader && request && loader->type == loader_info && request->type == runtime_request &&
                      loader->least_interface <= 1 && loader->most_interface >= 1;
   if (!known) return XR_ERROR_INITIALIZATION_FAILED;
+  const std::lock_guard held(simulated::lock());
+  simulated::restart();
   request->interface = 1;
   request->api = XR_CURRENT_API_VERSION;
   request->get = get_function;

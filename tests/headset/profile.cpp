@@ -1,13 +1,19 @@
+#include "tests/headset/profile.hpp"
+
 #include <cstdlib>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/openxr.hpp"
 
 namespace simulated {
 
 namespace {
+
+[[noreturn]] void unknown(const std::string& text) {
+  throw std::invalid_argument("VIP_XR_PROFILE: " + text + " is not known");
+}
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> out;
@@ -19,54 +25,137 @@ std::vector<std::string> split(const std::string& text, char at) {
 }
 
 bool yes(const std::string& value) {
-  if (value != "0" && value != "1")
-    throw std::invalid_argument("VIP_XR_PROFILE: " + value + " is not 0 or 1");
+  if (value != "0" && value != "1") unknown(value);
   return value == "1";
 }
 
-const std::map<std::string, std::vector<std::int64_t>> format_lists{
-    {"srgb_first", {GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA8, GL_DEPTH_COMPONENT32F}},
-    {"linear_first", {GL_RGBA16F, GL_RGBA8, GL_SRGB8_ALPHA8}},
-    {"srgb_only", {GL_SRGB8_ALPHA8}},
+std::string one_of(const std::string& value, const std::vector<std::string>& choices) {
+  for (const std::string& choice : choices) {
+    if (choice == value) return value;
+  }
+  unknown(value);
+}
+
+const std::map<std::string, std::int64_t> format_names{{"srgb8_alpha8", GL_SRGB8_ALPHA8},
+                                                       {"rgba16f", GL_RGBA16F},
+                                                       {"rgba8", GL_RGBA8},
+                                                       {"rgb10_a2", GL_RGB10_A2},
+                                                       {"depth32f", GL_DEPTH_COMPONENT32F}};
+const std::map<std::string, std::string> format_lists{{"srgb_first", "srgb8_alpha8,rgba16f,rgba8,depth32f"},
+                                                      {"linear_first", "rgba16f,rgba8,srgb8_alpha8"},
+                                                      {"srgb_only", "srgb8_alpha8"}};
+
+std::vector<std::int64_t> read_formats(const std::string& text) {
+  const auto list = format_lists.find(text);
+  std::vector<std::int64_t> out;
+  for (const std::string& name : split(list == format_lists.end() ? text : list->second, ','))
+    out.push_back(format_names.at(name));
+  return out;
+}
+
+template <class T>
+std::vector<T> read_numbers(const std::string& text) {
+  std::vector<T> out;
+  for (const std::string& number : split(text, ',')) out.push_back(static_cast<T>(std::stod(number)));
+  return out;
+}
+
+/// "100:focus/0,160:focus/1"
+std::vector<ScriptedEvent> read_script(const std::string& text) {
+  std::vector<ScriptedEvent> out;
+  for (const std::string& entry : split(text, ',')) {
+    const std::size_t colon = entry.find(':'), slash = entry.find('/');
+    if (colon == std::string::npos) unknown(entry);
+    ScriptedEvent event{std::stol(entry), entry.substr(colon + 1, slash - colon - 1), 1};
+    if (slash != std::string::npos) event.value = std::stod(entry.substr(slash + 1));
+    out.push_back(event);
+  }
+  return out;
+}
+
+using Text = const std::string&;
+const std::map<std::string, std::function<void(Profile&, Text)>> keys{
+    {"name", [](Profile& p, Text value) { p.runtime_name = value; }},
+    {"headset",
+     [](Profile& p, Text value) {
+       p.headset = one_of(value, {"connected", "unavailable", "unsupported"});
+     }},
+    {"clock",
+     [](Profile& p, Text value) {
+       p.clock = one_of(value, {"virtual", "real"});
+     }},
+    {"head",
+     [](Profile& p, Text value) {
+       p.head = one_of(value, {"still", "turn", "walk"});
+     }},
+    {"leave_context",
+     [](Profile& p, Text value) {
+       p.leave_context = one_of(value, {"kept", "none", "other"});
+     }},
+    {"without",
+     [](Profile& p, Text value) {
+       for (Text name : split(value, ',')) std::erase(p.extensions, name);
+     }},
+    {"size",
+     [](Profile& p, Text value) {
+       p.width = static_cast<std::uint32_t>(std::stoul(value));
+       p.height = static_cast<std::uint32_t>(std::stoul(value.substr(value.find('x') + 1)));
+     }},
+    {"rates", [](Profile& p, Text value) { p.rates = read_numbers<float>(value); }},
+    {"rate", [](Profile& p, Text value) { p.rate = std::stof(value); }},
+    {"formats", [](Profile& p, Text value) { p.formats = read_formats(value); }},
+    {"broken", [](Profile& p, Text value) { p.broken_format = format_names.at(value); }},
+    {"fov", [](Profile& p, Text value) { p.fov = read_numbers<double>(value); }},
+    {"dump", [](Profile& p, Text value) { p.dumps = read_numbers<long>(value); }},
+    {"at", [](Profile& p, Text value) { p.script = read_script(value); }},
+    {"gaze", [](Profile& p, Text value) { p.gaze = yes(value); }},
+    {"opaque", [](Profile& p, Text value) { p.opaque = yes(value); }},
+    {"stereo", [](Profile& p, Text value) { p.stereo = yes(value); }},
+    {"positive", [](Profile& p, Text value) { p.positive = yes(value); }},
+    {"leave_error", [](Profile& p, Text value) { p.leave_error = yes(value); }},
+    {"hash", [](Profile& p, Text value) { p.hash = yes(value); }},
 };
 
-const std::map<std::string, std::function<void(Profile&, const std::string&)>> keys{
-    {"name", [](Profile& p, const std::string& value) { p.runtime_name = value; }},
-    {"headset", [](Profile& p, const std::string& value) { p.headset = value; }},
-    {"without",  // extensions that are not offered, with commas between
-     [](Profile& p, const std::string& value) {
-       for (const std::string& name : split(value, ',')) std::erase(p.extensions, name);
-     }},
-    {"rates",
-     [](Profile& p, const std::string& value) {
-       p.rates.clear();
-       for (const std::string& rate : split(value, ',')) p.rates.push_back(std::stof(rate));
-     }},
-    {"rate", [](Profile& p, const std::string& value) { p.rate = std::stof(value); }},
-    {"formats", [](Profile& p, const std::string& value) { p.formats = format_lists.at(value); }},
-    {"gaze", [](Profile& p, const std::string& value) { p.gaze = yes(value); }},
-    {"position", [](Profile& p, const std::string& value) { p.position = yes(value); }},
-    {"opaque", [](Profile& p, const std::string& value) { p.opaque = yes(value); }},
-    {"stereo", [](Profile& p, const std::string& value) { p.stereo = yes(value); }},
-    {"positive", [](Profile& p, const std::string& value) { p.positive = yes(value); }},
+/// What the script may change, and what holds before it does. README.md says what each means.
+const std::map<std::string, double> knobs{
+    {"position", 1}, {"orientation", 1},   {"ipd", 0.063},        {"x", 0},          {"y", 1.6},
+    {"z", 0},        {"yaw", 0},           {"pitch", 0},          {"roll", 0},       {"render", 1},
+    {"jitter", 0},   {"wrong_periods", 0}, {"image_timeouts", 0}, {"worn_after", 0}, {"patience", 10},
 };
+/// What else the script may say.
+const std::vector<std::string> happenings{"focus",         "shown",  "off",     "lost",       "lost_now",
+                                          "instance_lost", "exit",   "unknown", "recentre",   "rate",
+                                          "drop",          "repeat", "hang",    "events_lost"};
+
+void check_script(const Profile& profile) {
+  for (const ScriptedEvent& event : profile.script) {
+    if (!profile.knobs.contains(event.name)) one_of(event.name, happenings);
+  }
+}
 
 }  // namespace
 
 Profile read_profile() {
   Profile out;
-  out.formats = format_lists.at("srgb_first");
+  out.formats = read_formats("srgb_first");
+  out.knobs = knobs;
   out.extensions = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,         XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
                     XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
                     XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,   "XR_EXTX_made_up"};
   const char* text = std::getenv("VIP_XR_PROFILE");
   for (const std::string& entry : split(text ? text : "", ';')) {
     const std::size_t at = entry.find('=');
-    const auto key = keys.find(entry.substr(0, at));
-    if (key == keys.end() || at == std::string::npos)
-      throw std::invalid_argument("VIP_XR_PROFILE: " + entry + " is not known");
-    key->second(out, entry.substr(at + 1));
+    if (at == std::string::npos) unknown(entry);
+    const std::string name = entry.substr(0, at), value = entry.substr(at + 1);
+    if (const auto knob = out.knobs.find(name); knob != out.knobs.end()) {
+      knob->second = std::stod(value);
+      continue;
+    }
+    const auto key = keys.find(name);
+    if (key == keys.end()) unknown(entry);
+    key->second(out, value);
   }
+  check_script(out);
   return out;
 }
 

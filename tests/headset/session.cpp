@@ -1,99 +1,134 @@
-/// Sessions, as far as they are asked before they begin.
+/// Sessions: their graphics binding, their beginning and end.
 
-#include <algorithm>
-
+#include "tests/headset/gl.hpp"
 #include "tests/headset/state.hpp"
 
 namespace simulated {
 
-XrResult check_session(XrSession session, const char* call) {
-  log_line(call);
-  if (runtime().sessions.contains(number_of(session))) return XR_SUCCESS;
-  breach(std::string(call) + ": the session is not alive");
-  return XR_ERROR_HANDLE_INVALID;
-}
-
 namespace {
 
-/// A runtime that is about to go says so with a success.
-XrResult done() { return runtime().profile.positive ? XR_SESSION_LOSS_PENDING : XR_SUCCESS; }
-
-const XrGraphicsBindingEGLMNDX* egl_binding(const void* next) {
-  for (auto* one = static_cast<const XrBaseInStructure*>(next); one; one = one->next) {
-    if (one->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX)
-      return reinterpret_cast<const XrGraphicsBindingEGLMNDX*>(one);
-  }
-  return nullptr;
+Graphics read_egl(const XrGraphicsBindingEGLMNDX& binding) {
+  need(binding.getProcAddress && binding.display && binding.context, XR_ERROR_GRAPHICS_DEVICE_INVALID,
+       "a binding without display, context or functions");
+  Graphics out;
+  out.egl_display = binding.display;
+  out.egl_config = binding.config;
+  out.egl_context = binding.context;
+  return out;
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL create_session(XrInstance instance, const XrSessionCreateInfo* info,
-                                              XrSession* session) {
-  constexpr const char* call = "xrCreateSession";
-  if (const XrResult result = check_instance(instance, call); result != XR_SUCCESS) return result;
-  if (const XrResult result = check_type(info, XR_TYPE_SESSION_CREATE_INFO, call); result != XR_SUCCESS)
-    return result;
-  if (const XrResult result = check_system(instance, info->systemId, call); result != XR_SUCCESS)
-    return result;
+Graphics read_xlib(const XrGraphicsBindingOpenGLXlibKHR& binding) {
+  need(binding.xDisplay && binding.glxContext, XR_ERROR_GRAPHICS_DEVICE_INVALID,
+       "a binding without display or context");
+  Graphics out;
+  out.x_display = binding.xDisplay;
+  out.drawable = binding.glxDrawable;
+  out.glx_context = binding.glxContext;
+  return out;
+}
+
+Graphics read_binding(const void* next) {
+  need_chain(next);
+  if (const auto* egl = find_chained<const XrGraphicsBindingEGLMNDX>(next, XR_TYPE_GRAPHICS_BINDING_EGL_MNDX))
+    return read_egl(*egl);
+  if (const auto* xlib =
+          find_chained<const XrGraphicsBindingOpenGLXlibKHR>(next, XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR))
+    return read_xlib(*xlib);
+  refuse(XR_ERROR_GRAPHICS_DEVICE_INVALID, "no graphics binding of an enabled extension");
+}
+
+XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSession* session) {
+  need_instance(instance);
+  need_type(info, XR_TYPE_SESSION_CREATE_INFO);
+  need_system(instance, info->systemId);
   Runtime& all = runtime();
-  if (!all.asked_graphics) {
-    breach("xrCreateSession: the graphics requirements were not asked for");
-    return XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING;
-  }
-  const auto* binding = egl_binding(info->next);
-  if (!binding || !all.enabled.contains(XR_MNDX_EGL_ENABLE_EXTENSION_NAME)) {
-    breach("xrCreateSession: no graphics binding of an enabled extension");
-    return XR_ERROR_GRAPHICS_DEVICE_INVALID;
-  }
-  if (!binding->getProcAddress || !binding->display || !binding->context) {
-    breach("xrCreateSession: a binding without display, context or functions");
-    return XR_ERROR_GRAPHICS_DEVICE_INVALID;
-  }
-  if (!all.sessions.empty()) {
-    breach("xrCreateSession: there is a session already");
-    return XR_ERROR_LIMIT_REACHED;
-  }
-  *session = new_handle<XrSession>(all.sessions);
+  need(all.asked_graphics, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
+       "the graphics requirements were not asked for");
+  Session fresh;
+  fresh.graphics = read_binding(info->next);
+  need(all.sessions.empty(), XR_ERROR_LIMIT_REACHED, "there is a session already");
+  make_other_context(fresh.graphics);
+  *session = new_handle<XrSession>(all.sessions, fresh);
+  enter(*session, XR_SESSION_STATE_IDLE);
+  offer_ready();
   return XR_SUCCESS;
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL destroy_session(XrSession session) {
-  if (const XrResult result = check_session(session, "xrDestroySession"); result != XR_SUCCESS) return result;
-  runtime().sessions.erase(number_of(session));
+XrResult destroy_session(XrSession session) {
+  find(runtime().sessions, session, "session");
+  end_session_objects(number_of(session));
   return XR_SUCCESS;
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL enumerate_formats(XrSession session, std::uint32_t capacity,
-                                                 std::uint32_t* count, std::int64_t* out) {
-  constexpr const char* call = "xrEnumerateSwapchainFormats";
-  if (const XrResult result = check_session(session, call); result != XR_SUCCESS) return result;
-  const XrResult result = give_values(runtime().profile.formats, capacity, count, out, call);
-  return result == XR_SUCCESS ? done() : result;
+XrResult begin_session(XrSession session, const XrSessionBeginInfo* info) {
+  Session& found = need_session(session);
+  need_type(info, XR_TYPE_SESSION_BEGIN_INFO);
+  need(!found.running, XR_ERROR_SESSION_RUNNING, "the session runs already");
+  need(found.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not ready");
+  need_views(info->primaryViewConfigurationType);
+  found.running = true;
+  found.frames = 0;
+  found.waited = found.begun = false;
+  runtime().clock.last_end = 0;
+  return success(found);
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL enumerate_rates(XrSession session, std::uint32_t capacity,
-                                               std::uint32_t* count, float* out) {
-  constexpr const char* call = "xrEnumerateDisplayRefreshRatesFB";
-  if (const XrResult result = check_session(session, call); result != XR_SUCCESS) return result;
-  const XrResult result = give_values(runtime().profile.rates, capacity, count, out, call);
-  return result == XR_SUCCESS ? done() : result;
+XrResult end_session(XrSession session) {
+  Session& found = need_session(session);
+  need(found.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+  need(found.state == XR_SESSION_STATE_STOPPING, XR_ERROR_SESSION_NOT_STOPPING,
+       "the session is not stopping");
+  found.running = false;
+  frame_begun().notify_all();
+  enter(session, XR_SESSION_STATE_IDLE);
+  if (found.exiting) enter(session, XR_SESSION_STATE_EXITING);
+  offer_ready();
+  return success(found);
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL get_rate(XrSession session, float* out) {
-  if (const XrResult result = check_session(session, "xrGetDisplayRefreshRateFB"); result != XR_SUCCESS)
-    return result;
+XrResult request_exit(XrSession session) {
+  Session& found = need_session(session);
+  need(found.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+  found.exiting = true;
+  runtime().aim = XR_SESSION_STATE_STOPPING;
+  step_state(session);
+  return success(found);
+}
+
+XrResult enumerate_rates(XrSession session, std::uint32_t capacity, std::uint32_t* count, float* out) {
+  const Session& found = need_session(session);
+  const XrResult result = give_values(runtime().profile.rates, capacity, count, out);
+  return result == XR_SUCCESS ? success(found) : result;
+}
+
+XrResult get_rate(XrSession session, float* out) {
+  const Session& found = need_session(session);
   *out = runtime().profile.rate;
-  return done();
+  return success(found);
 }
 
 }  // namespace
 
+void end_session_objects(std::uint64_t session) {
+  Runtime& all = runtime();
+  destroy_other_context(all.sessions.at(session).graphics);
+  const auto is_its = [&](const auto& object) { return object.second.session == session; };
+  std::erase_if(all.swapchains, is_its);
+  std::erase_if(all.spaces, is_its);
+  all.sessions.erase(session);
+  all.aim = XR_SESSION_STATE_FOCUSED;
+  frame_begun().notify_all();
+}
+
 void add_session_functions(Functions& functions) {
-  functions["xrCreateSession"] = as_void(create_session);
-  functions["xrDestroySession"] = as_void(destroy_session);
-  functions["xrEnumerateSwapchainFormats"] = as_void(enumerate_formats);
+  add<"xrCreateSession", create_session>(functions);
+  add<"xrDestroySession", destroy_session>(functions);
+  add<"xrBeginSession", begin_session>(functions);
+  add<"xrEndSession", end_session>(functions);
+  add<"xrRequestExitSession", request_exit>(functions);
   if (!runtime().enabled.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
-  functions["xrEnumerateDisplayRefreshRatesFB"] = as_void(enumerate_rates);
-  functions["xrGetDisplayRefreshRateFB"] = as_void(get_rate);
+  add<"xrEnumerateDisplayRefreshRatesFB", enumerate_rates>(functions);
+  add<"xrGetDisplayRefreshRateFB", get_rate>(functions);
 }
 
 }  // namespace simulated

@@ -1,119 +1,215 @@
 #pragma once
-/// A simulated OpenXR runtime for tests, loaded by the real loader through XR_RUNTIME_JSON.
-///
-/// VIP_XR_PROFILE says what it offers, as "key=value;key=value" (profile.cpp lists the keys). VIP_XR_LOG
-/// names a file to which each call is appended, and each breach of the specification by its caller as a line
-/// "BREACH ...".
+/// Everything that the simulated runtime knows.
 
-#include <cstdint>
-#include <map>
+#include <array>
+#include <condition_variable>
+#include <deque>
 #include <set>
-#include <string>
 #include <vector>
 
-#include "apps/common/headset/openxr.hpp"
+#include "tests/headset/calls.hpp"
+#include "tests/headset/pose.hpp"
+#include "tests/headset/profile.hpp"
 
 namespace simulated {
 
-/// What the headset and the runtime are like.
-struct Profile {
-  std::string runtime_name = "Simulated runtime";
-  std::string headset_name = "Simulated headset";
-  std::string headset = "connected";  ///< "connected", "unavailable" or "unsupported"
-  std::uint32_t width = 2064, height = 2208;
-  std::vector<std::string> extensions;
-  std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are told
-  float rate = 90;                            ///< Hz, now
-  std::vector<std::int64_t> formats;          ///< GL internal formats, the preferred one first
-  bool gaze = true;                           ///< supportsEyeGazeInteraction
-  bool position = true;                       ///< positionTracking
-  bool opaque = true;                         ///< blend mode offered beside additive
-  bool stereo = true;
-  bool positive = false;  ///< calls that may succeed with a positive code do
+/// The session's OpenGL context, by either binding.
+struct Graphics {
+  EGLDisplay egl_display = EGL_NO_DISPLAY;
+  EGLConfig egl_config = nullptr;
+  EGLContext egl_context = EGL_NO_CONTEXT, other_context = EGL_NO_CONTEXT;
+  Display* x_display = nullptr;
+  GLXDrawable drawable = 0;
+  GLXContext glx_context = nullptr;
 };
 
-/// Reads VIP_XR_PROFILE; std::invalid_argument for a key or value that is not known.
-Profile read_profile();
+/// Both eyes as xrLocateViews gave them once.
+struct Located {
+  XrSpace space = XR_NULL_HANDLE;
+  std::array<XrPosef, 2> poses;
+  std::array<XrFovf, 2> fovs;
+};
+
+struct Frame {
+  long index = -1;
+  XrTime predicted = 0;
+  bool should_render = false;
+};
+
+struct Session {
+  Graphics graphics;
+  XrSessionState state = XR_SESSION_STATE_UNKNOWN;
+  bool running = false;
+  bool exiting = false;  ///< goes on to EXITING when it has ended
+  long lost_at = -1;     ///< frame from which every call fails
+  long frames = 0;       ///< ended since xrBeginSession
+  bool waited = false;   ///< a frame was waited for and not begun
+  bool begun = false;    ///< a frame was begun and not ended
+  Frame waiting, drawing;
+  std::deque<Located> located;  ///< the newest last
+};
+
+struct Swapchain {
+  std::uint64_t session = 0;
+  XrSwapchainCreateInfo info;
+  std::vector<GLuint> images;
+  std::deque<std::uint32_t> acquired;  ///< the oldest first
+  bool waited = false;                 ///< for the oldest
+  std::uint32_t next = 0;
+  long shown = -1;  ///< the image that was released last
+};
+
+struct Space {
+  std::uint64_t session = 0;
+  XrReferenceSpaceType type = XR_REFERENCE_SPACE_TYPE_LOCAL;
+  Pose offset;
+};
+
+/// Time as the runtime tells it. It is no clock of the system: XrTime less `ahead_of_monotonic` is.
+struct Clock {
+  bool real = false;
+  XrTime start = 0;
+  XrTime now = 0;             ///< on the virtual clock
+  XrTime last_slot = 0;       ///< the newest one that was given out
+  XrTime last_predicted = 0;  ///< the same as it was told
+  XrTime last_end = 0;        ///< when the newest frame of a running session ended
+};
+constexpr XrTime ahead_of_monotonic = 1'000'000'000'000;
 
 /// Everything of one process.
 struct Runtime {
   Profile profile;
-  std::set<std::string> enabled;  ///< extensions of the instance
-  std::set<std::uint64_t> instances, sessions;
+  std::map<std::string, double> knobs;  ///< what the script has changed
+  std::set<std::string> enabled;        ///< extensions of the instance
+  std::map<std::uint64_t, bool> instances;
+  std::map<std::uint64_t, Session> sessions;
+  std::map<std::uint64_t, Swapchain> swapchains;
+  std::map<std::uint64_t, Space> spaces;
+  std::deque<XrEventDataBuffer> events;
+  Clock clock;
   std::uint64_t next_handle = 1;
+  long frames = 0;              ///< waited for in this process
+  long instance_lost_at = -1;   ///< frame from which every call fails
   bool asked_graphics = false;  ///< xrGetOpenGLGraphicsRequirementsKHR was called
   bool asked_system = false;
+  XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state that a running session goes to
+  XrTime worn_from = 0;                           ///< the headset is off until then
+  int dropped = 0;                                ///< slots that the next wait leaves out
+  bool repeats = false;                           ///< the next wait predicts the last time again
+  double hang_seconds = 0;                        ///< for which the next wait does not return
+  double local_yaw = 0;                           ///< degrees by which recentring turned LOCAL
 };
 Runtime& runtime();
-
-/// Appends a line to the log.
-void log_line(const std::string& text);
-/// The caller broke the specification.
-void breach(const std::string& text);
+/// Forgets everything if the profile or the log is another one than before.
+void restart();
+/// Woken when a frame begins or a session ends.
+std::condition_variable_any& frame_begun();
 
 constexpr XrSystemId the_system = 7;
+constexpr XrViewConfigurationType stereo_views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+constexpr XrViewConfigurationType mono_views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
+inline XrViewConfigurationType offered_views() {
+  return runtime().profile.stereo ? stereo_views : mono_views;
+}
 
 template <class Handle>
 std::uint64_t number_of(Handle handle) {
   return reinterpret_cast<std::uint64_t>(handle);
 }
-/// A handle that was never given before.
 template <class Handle>
-Handle new_handle(std::set<std::uint64_t>& living) {
-  const std::uint64_t number = runtime().next_handle++ << 4;
-  living.insert(number);
+Handle as_handle(std::uint64_t number) {
   return reinterpret_cast<Handle>(number);
 }
+/// A handle that was never given before.
+template <class Handle, class T>
+Handle new_handle(std::map<std::uint64_t, T>& living, T object) {
+  const std::uint64_t number = runtime().next_handle++ << 4;
+  living.emplace(number, std::move(object));
+  return as_handle<Handle>(number);
+}
+template <class Handle, class T>
+T& find(std::map<std::uint64_t, T>& living, Handle handle, const char* what) {
+  const auto found = living.find(number_of(handle));
+  need(found != living.end(), XR_ERROR_HANDLE_INVALID, std::string("the ") + what + " is not alive");
+  return found->second;
+}
 
-/// XR_SUCCESS when a call's handle lives.
-XrResult check_instance(XrInstance instance, const char* call);
-XrResult check_session(XrSession session, const char* call);
-XrResult check_system(XrInstance instance, XrSystemId system, const char* call);
-/// XR_SUCCESS when a structure says that it is what it should be.
+/// Each refuses what is not alive, and fails when it is lost.
+void need_instance(XrInstance instance);
+void need_system(XrInstance instance, XrSystemId system);
+Session& need_session(XrSession session);
+void need_session_number(std::uint64_t session);
+/// Refuses views that are not listed.
+void need_views(XrViewConfigurationType kind);
+/// Refuses while the extension is not enabled.
+void need_enabled(const char* extension);
+/// XR_SUCCESS, or what else the runtime says when it succeeds.
+XrResult success(const Session& session);
+
+/// Forgets a session and what belongs to it.
+void end_session_objects(std::uint64_t session);
+
+// events.cpp
 template <class T>
-XrResult check_type(const T* structure, XrStructureType type, const char* call) {
-  if (structure && structure->type == type) return XR_SUCCESS;
-  breach(std::string(call) + ": a structure of another type, or none");
-  return XR_ERROR_VALIDATION_FAILURE;
+void queue_event(T event, XrStructureType type) {
+  static_assert(sizeof(T) <= sizeof(XrEventDataBuffer));
+  XrEventDataBuffer buffer{};
+  event.type = type;
+  std::copy_n(reinterpret_cast<const char*>(&event), sizeof event, reinterpret_cast<char*>(&buffer));
+  runtime().events.push_back(buffer);
 }
-/// The same for an extension's function.
-XrResult check_enabled(const char* extension, const char* call);
+const char* name_of(XrSessionState state);
+void enter(XrSession session, XrSessionState state);
+/// One step towards the state that the script wants; down all at once.
+void step_state(XrSession session);
+/// READY, when the headset is on the head and the session waits for it.
+void offer_ready();
 
-/// Gives an array by OpenXR's two calls.
-template <class T, class Write>
-XrResult give_array(const std::vector<T>& values, std::uint32_t capacity, std::uint32_t* count, Write write,
-                    const char* call) {
-  if (!count) {
-    breach(std::string(call) + ": no place for the count");
-    return XR_ERROR_VALIDATION_FAILURE;
-  }
-  *count = static_cast<std::uint32_t>(values.size());
-  if (capacity == 0) return XR_SUCCESS;
-  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (const XrResult result = write(i, values[i]); result != XR_SUCCESS) return result;
-  }
-  return XR_SUCCESS;
-}
-template <class T>
-XrResult give_values(const std::vector<T>& values, std::uint32_t capacity, std::uint32_t* count, T* out,
-                     const char* call) {
-  return give_array(
-      values, capacity, count,
-      [&](std::size_t i, const T& value) {
-        out[i] = value;
-        return XR_SUCCESS;
-      },
-      call);
-}
+// script.cpp
+/// What the profile says happens at this frame.
+void play_script(XrSession session, long frame);
 
-/// The functions of the tables below by name.
-using Functions = std::map<std::string, PFN_xrVoidFunction>;
-template <class F>
-PFN_xrVoidFunction as_void(F function) {
-  return reinterpret_cast<PFN_xrVoidFunction>(function);
-}
+// time.cpp
+XrTime now();
+XrDuration period();
+/// Waits until then: at once on the virtual clock. Gives up the lock meanwhile.
+void wait_until(XrTime time);
+
+// layers.cpp
+/// An image that a frame shows.
+struct Shown {
+  const XrSwapchainSubImage* part;
+  std::string name;  ///< "left", "right" or "quad", with the layer's number unless that is 0
+};
+/// Refuses a frame that breaks the specification; gives the images it shows, and `text` for the log.
+std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& info, std::string& text);
+
+// images.cpp
+/// Writes the frame's images where the profile asks for it, and gives what they hold for the log.
+/// The session's context is current.
+std::string look_at(const std::vector<Shown>& images, long frame);
+
+// motion.cpp
+Pose head_at(XrTime time);
+Pose eye_at(XrTime time, int eye);
+XrFovf fov_of(int eye);
+
+// spaces.cpp
+struct Placed {
+  XrSpaceLocationFlags flags;
+  XrPosef pose;
+};
+Placed locate(const Space& what, const Space& from, XrTime time);
+Placed locate_eye(int eye, const Space& from, XrTime time);
+
+// The functions of each file.
 void add_instance_functions(Functions& functions);
 void add_session_functions(Functions& functions);
+void add_event_functions(Functions& functions);
+void add_frame_functions(Functions& functions);
+void add_swapchain_functions(Functions& functions);
+void add_space_functions(Functions& functions);
+void add_view_functions(Functions& functions);
+void add_time_functions(Functions& functions);
 
 }  // namespace simulated

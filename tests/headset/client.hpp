@@ -1,0 +1,96 @@
+#pragma once
+/// A program that uses the headset as the specification wants it, on the simulated runtime through the real
+/// loader. Tests spoil one thing of it at a time.
+
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libsim/render/gl_context.hpp"
+#include "tests/common/temporary_folder.hpp"
+#include "tests/headset/openxr.hpp"
+
+namespace simulated {
+
+/// What a frame is ended with.
+struct Drawing {
+  XrFrameEndInfo end{};
+  XrCompositionLayerProjection projection{};
+  std::array<XrCompositionLayerProjectionView, 2> views{};
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+};
+using Spoil = std::function<void(Drawing&)>;
+
+/// A structure of OpenXR with its type.
+template <class T>
+T blank(XrStructureType type) {
+  T out{};
+  out.type = type;
+  return out;
+}
+
+class Client {
+ public:
+  /// Connects and makes a session with two swapchains. `profile`: VIP_XR_PROFILE; small images unless it says
+  /// otherwise.
+  explicit Client(const std::string& profile = "");
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void make_session();
+  void make_swapchains(std::int64_t format = GL_SRGB8_ALPHA8, std::uint32_t array = 1);
+
+  /// All events that are there, and what a program does about them: begins, ends, destroys.
+  void poll();
+  /// One frame, after its events. The result of xrEndFrame, or of the first call that failed.
+  XrResult frame(const Spoil& spoil = {});
+  /// Frames until the session has that state; at most 100.
+  void frames_until(XrSessionState state);
+
+  XrResult wait() { return call<PFN_xrWaitFrame>("xrWaitFrame")(session, nullptr, &state); }
+  XrResult begin() { return call<PFN_xrBeginFrame>("xrBeginFrame")(session, nullptr); }
+  /// Draws both eyes where the frame asks for it, and ends the frame.
+  XrResult end(const Spoil& spoil = {});
+  /// Acquires, waits for and releases the eye's image, which is filled with a colour.
+  void draw(int eye, const std::array<float, 4>& colour = {0.25f, 0.5f, 0.75f, 1});
+  XrResult locate(std::array<XrView, 2>& views, XrViewState& view_state);
+  XrSpaceLocation locate(XrSpace what, XrSpace from, XrTime time, void* next = nullptr);
+  XrSpace make_space(XrReferenceSpaceType type);
+
+  /// A function of the runtime; null where it has none of that name.
+  template <class F>
+  F call(const char* name) const {
+    return reinterpret_cast<F>(find(name));
+  }
+
+  std::string log() const;
+  /// The lines that begin like this, in order.
+  std::vector<std::string> lines(const std::string& start) const;
+  std::filesystem::path folder() const { return folder_.path(); }
+
+  sim::GlContext gl;
+  XrInstance instance = XR_NULL_HANDLE;
+  XrSystemId system = XR_NULL_SYSTEM_ID;
+  XrSession session = XR_NULL_HANDLE;
+  XrSpace local = XR_NULL_HANDLE;
+  std::array<XrSwapchain, 2> swapchains{};
+  std::array<std::vector<XrSwapchainImageOpenGLKHR>, 2> images;
+  std::uint32_t width = 0, height = 0;
+  XrFrameState state = blank<XrFrameState>(XR_TYPE_FRAME_STATE);
+  XrSessionState session_state = XR_SESSION_STATE_UNKNOWN;
+  std::vector<XrSessionState> states;     ///< all that were told
+  std::vector<XrEventDataBuffer> events;  ///< all others
+  bool running = false;
+
+ private:
+  PFN_xrVoidFunction find(const char* name) const;
+  void make_instance();
+
+  const test::TemporaryFolder folder_;
+  std::string log_;
+};
+
+}  // namespace simulated

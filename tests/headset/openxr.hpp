@@ -1,0 +1,15 @@
+#pragma once
+/// OpenXR's declarations as the project sees them, and those of the binding to Xlib.
+
+// epoxy first: it replaces the headers of EGL, GL and GLX.
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <epoxy/glx.h>
+
+#define XR_USE_PLATFORM_XLIB
+#include "apps/common/headset/openxr.hpp"
+#undef Always
+#undef Bool
+#undef None
+#undef Status
+#undef Success

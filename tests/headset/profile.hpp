@@ -1,0 +1,48 @@
+#pragma once
+/// What a test says about the simulated headset: VIP_XR_PROFILE, "key=value;key=value". README.md lists the
+/// keys.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace simulated {
+
+/// Something that happens when a frame is waited for.
+struct ScriptedEvent {
+  long frame = 0;  ///< counted over the whole process, the first is 0
+  std::string name;
+  double value = 1;
+};
+
+/// What the headset and the runtime are like.
+struct Profile {
+  std::string runtime_name = "Simulated runtime";
+  std::string headset_name = "Simulated headset";
+  std::string headset = "connected";          ///< "connected", "unavailable" or "unsupported"
+  std::string clock = "virtual";              ///< "virtual" or "real"
+  std::string head = "still";                 ///< "still", "turn" or "walk"
+  std::string leave_context = "kept";         ///< after calls that may use GL: "kept", "none" or "other"
+  std::uint32_t width = 2064, height = 2208;  ///< px, recommended for each eye
+  std::vector<std::string> extensions;
+  std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are told
+  float rate = 90;                            ///< Hz, now
+  std::vector<std::int64_t> formats;          ///< GL internal formats, the preferred one first
+  std::int64_t broken_format = 0;             ///< listed, and cannot be made
+  std::vector<double> fov{-52, 42, 46, -50};  ///< degrees left, right, up, down of the left eye
+  std::vector<long> dumps;                    ///< frames whose images are written
+  std::map<std::string, double> knobs;        ///< what the script may change, by name
+  std::vector<ScriptedEvent> script;
+  bool gaze = true;    ///< supportsEyeGazeInteraction
+  bool opaque = true;  ///< blend mode offered beside additive
+  bool stereo = true;
+  bool positive = false;     ///< calls that may succeed with a positive code do
+  bool leave_error = false;  ///< calls that may use GL leave a GL error behind
+  bool hash = false;         ///< the frame log tells what images hold
+};
+
+/// Reads VIP_XR_PROFILE; std::invalid_argument for a key or value that is not known.
+Profile read_profile();
+
+}  // namespace simulated

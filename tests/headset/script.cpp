@@ -1,0 +1,75 @@
+/// What the profile says happens at stated frames.
+
+#include "tests/headset/state.hpp"
+
+namespace simulated {
+
+namespace {
+
+Session& session_of(XrSession session) { return runtime().sessions.at(number_of(session)); }
+
+void change_rate(double hertz) {
+  Runtime& all = runtime();
+  XrEventDataDisplayRefreshRateChangedFB event{};
+  event.fromDisplayRefreshRate = all.profile.rate;
+  event.toDisplayRefreshRate = all.profile.rate = static_cast<float>(hertz);
+  if (all.enabled.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME))
+    queue_event(event, XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
+}
+
+void recentre(XrSession session, double degrees) {
+  XrEventDataReferenceSpaceChangePending event{};
+  event.session = session;
+  event.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+  event.changeTime = now();
+  event.poseValid = XR_TRUE;
+  event.poseInPreviousSpace = to_xr({turned(degrees, 0, 0), {}});
+  runtime().local_yaw += degrees;
+  queue_event(event, XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING);
+}
+
+void lose_instance(long frame, double frames) {
+  XrEventDataInstanceLossPending event{};
+  event.lossTime = now() + static_cast<XrDuration>(frames) * period();
+  runtime().instance_lost_at = frame + static_cast<long>(frames);
+  queue_event(event, XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING);
+}
+
+void lose_events(double events) {
+  XrEventDataEventsLost event{};
+  event.lostEventCount = static_cast<std::uint32_t>(events);
+  queue_event(event, XR_TYPE_EVENT_DATA_EVENTS_LOST);
+}
+
+void play(XrSession session, const ScriptedEvent& event) {
+  Runtime& all = runtime();
+  const auto& [frame, name, value] = event;
+  log_line("script " + name + " " + std::to_string(value));
+  if (all.knobs.contains(name)) all.knobs[name] = value;
+  if (name == "focus") all.aim = value != 0 ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_VISIBLE;
+  if (name == "shown") all.aim = value != 0 ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_SYNCHRONIZED;
+  if (name == "off" || name == "exit") all.aim = XR_SESSION_STATE_STOPPING;
+  if (name == "off") all.worn_from = now() + static_cast<XrDuration>(1e9 * value);
+  if (name == "exit") session_of(session).exiting = true;
+  if (name == "lost") enter(session, XR_SESSION_STATE_LOSS_PENDING);
+  if (name == "lost") session_of(session).lost_at = frame + static_cast<long>(value);
+  if (name == "lost_now") session_of(session).lost_at = frame;
+  if (name == "instance_lost") lose_instance(frame, value);
+  if (name == "unknown") queue_event(XrEventDataBaseHeader{}, static_cast<XrStructureType>(1'999'999'999));
+  if (name == "events_lost") lose_events(value);
+  if (name == "recentre") recentre(session, value);
+  if (name == "rate") change_rate(value);
+  if (name == "drop") all.dropped = static_cast<int>(value);
+  if (name == "repeat") all.repeats = true;
+  if (name == "hang") all.hang_seconds = value;
+}
+
+}  // namespace
+
+void play_script(XrSession session, long frame) {
+  for (const ScriptedEvent& event : runtime().profile.script) {
+    if (event.frame == frame) play(session, event);
+  }
+}
+
+}  // namespace simulated
