@@ -87,7 +87,9 @@ void print_report(const ShowReport& report) {
 class Show {
  public:
   Show(const sim::GlContext& gl, const TestScene& scene, const ShowChoice& choice, ShowReport& report)
-      : session_(gl, {.eye_gaze = true, .patience_s = choice.patience_s}), scene_(scene), report_(report) {
+      : session_(gl, {.inputs = false, .eye_gaze = true, .patience_s = choice.patience_s}),
+        scene_(scene),
+        report_(report) {
     report.headset = session_.description();
     report.times_convert = session_.times_convert();
     report.has_gaze = session_.has_eye_gaze();
@@ -108,7 +110,7 @@ class Show {
     while (true) {
       for (const HeadsetEvent& event : session_.poll()) note(event);
       if (session_.state() == HeadsetState::Exiting) return true;
-      if (session_.state() == HeadsetState::LossPending) return false;
+      if (session_.state() == HeadsetState::LossPending || runtime_ends_) return false;
       if (session_.running()) {
         frame(seconds_left);
         if (seconds_left <= 0 && !asked_to_exit_) ask_to_exit();
@@ -137,7 +139,7 @@ class Show {
       report_.notes.push_back(
           fmt::format("refresh went from {:.4g} to {:.4g} Hz", event.from_hz, event.to_hz));
     if (event.kind == Kind::Recentred) report_.notes.push_back("the world was recentred");
-    if (event.kind == Kind::RuntimeEnds) report_.notes.push_back("the runtime is about to end");
+    runtime_ends_ |= event.kind == Kind::RuntimeEnds;
     if (event.kind == Kind::EventsLost) report_.notes.push_back("the runtime lost events");
   }
 
@@ -164,7 +166,7 @@ class Show {
   const TestScene& scene_;
   ShowReport& report_;
   std::optional<std::int64_t> last_ns_;
-  bool asked_to_exit_ = false;
+  bool asked_to_exit_ = false, runtime_ends_ = false;
 };
 
 void show_sessions(const ShowChoice& choice, ShowReport& report) {

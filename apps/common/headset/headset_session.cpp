@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "apps/common/headset/actions.hpp"
 #include "apps/common/headset/lifecycle.hpp"
 #include "apps/common/headset/refresh.hpp"
@@ -13,6 +15,8 @@ namespace apps {
 namespace {
 
 constexpr XrEnvironmentBlendMode opaque = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+/// Share of a rate within which a measured one is the one that an event told.
+constexpr double told_well = 0.04;
 
 HeadsetSystem read_opaque_system(const XrConnection& xr) {
   HeadsetSystem system = read_system(xr);
@@ -44,7 +48,7 @@ struct HeadsetSession::Parts {
         refresh(session),
         world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
         head(session, XR_REFERENCE_SPACE_TYPE_VIEW),
-        actions(session, clock, system.eye_gaze) {
+        actions(choice.inputs ? std::make_unique<Actions>(session, clock, system.eye_gaze) : nullptr) {
     const std::vector<PictureSize> sizes = picture_sizes(system, choice);
     swapchains = make_swapchains(session, sizes);
     for (const PictureSize& size : sizes)
@@ -59,11 +63,12 @@ struct HeadsetSession::Parts {
   Lifecycle lifecycle;
   RefreshControl refresh;
   Space world, head;
-  Actions actions;
+  std::unique_ptr<Actions> actions;
   std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< left, right and, where one is asked for, the page
   std::vector<std::unique_ptr<sim::Offscreen>> pictures;  ///< the same
   RateMeter meter;
-  std::vector<HeadsetEvent> measured;  ///< changes of the rate that no event told
+  double told_hz = 0;                    ///< by the last event; 0: none came
+  std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event told
   std::int64_t next_index = 0;
   WatchedThread watched;
 
@@ -127,8 +132,12 @@ void HeadsetSession::request_exit() { parts_->lifecycle.request_exit(); }
 
 std::vector<HeadsetEvent> HeadsetSession::poll() {
   std::vector<HeadsetEvent> events = parts_->lifecycle.poll();
-  events.insert(events.end(), parts_->measured.begin(), parts_->measured.end());
-  parts_->measured.clear();
+  for (const HeadsetEvent& event : events) {
+    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->told_hz = event.to_hz;
+    if (event.state == HeadsetState::Stopping) parts_->meter.interrupt();
+  }
+  if (parts_->measured) events.push_back(*parts_->measured);
+  parts_->measured.reset();
   return events;
 }
 
@@ -137,11 +146,12 @@ HeadsetSlot HeadsetSession::wait() {
   const XrFrameState frame = parts.wait_frame();
   HeadsetSlot slot{parts.next_index++, parts.clock.to_ns(frame.predictedDisplayTime),
                    frame.predictedDisplayPeriod, frame.shouldRender == XR_TRUE, frame.predictedDisplayTime};
-  if (const auto change = parts.meter.add(slot.predicted_ns)) {
-    parts.measured.push_back({.kind = HeadsetEvent::Kind::Refresh,
-                              .from_hz = change->from_hz,
-                              .to_hz = change->to_hz,
-                              .at_ns = slot.predicted_ns});
+  const auto change = parts.meter.add(slot.predicted_ns);
+  if (change && std::abs(change->to_hz - parts.told_hz) > told_well * change->to_hz) {
+    parts.measured = {.kind = HeadsetEvent::Kind::Refresh,
+                      .from_hz = change->from_hz,
+                      .to_hz = change->to_hz,
+                      .at_ns = slot.predicted_ns};
   }
   return slot;
 }
@@ -179,7 +189,8 @@ EyeViews HeadsetSession::views(const HeadsetSlot& slot) {
 HeadsetInput HeadsetSession::input(const HeadsetSlot& slot) {
   HeadsetInput out;
   out.head = parts_->head.locate(parts_->world, slot.runtime_time);
-  if (state() == HeadsetState::Focused) parts_->actions.read(parts_->world, slot.runtime_time, out);
+  if (state() == HeadsetState::Focused && parts_->actions)
+    parts_->actions->read(parts_->world, slot.runtime_time, out);
   return out;
 }
 
