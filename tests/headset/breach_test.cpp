@@ -183,7 +183,6 @@ TEST_F(BreachGl, FrameThatWasNotWaitedFor) {
 TEST_F(BreachGl, ContextThatIsCurrentOnAnotherThread) {
   client.wait();
   client.begin();
-  client.state.shouldRender = XR_FALSE;  // draws nothing
   client.gl->release();
   std::promise<void> taken, done;
   std::thread holder([&] {
@@ -193,10 +192,14 @@ TEST_F(BreachGl, ContextThatIsCurrentOnAnotherThread) {
     client.gl->release();
   });
   taken.get_future().wait();
-  EXPECT_EQ(client.end(), XR_ERROR_RUNTIME_FAILURE);
+  std::uint32_t index = 0;
+  const auto acquire = client.call<PFN_xrAcquireSwapchainImage>("xrAcquireSwapchainImage");
+  EXPECT_EQ(acquire(client.swapchains[0], nullptr, &index), XR_ERROR_RUNTIME_FAILURE);
   done.set_value();
   holder.join();
-  expected = "xrEndFrame: the session's context cannot be made current: another thread holds it";
+  expected =
+      "xrAcquireSwapchainImage: the session's context cannot be made current: another thread holds it, "
+      "or it is gone";
 }
 
 TEST_F(BreachGl, SessionThatRunsIsBegun) {

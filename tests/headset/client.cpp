@@ -171,6 +171,7 @@ void Client::draw(int eye, const std::array<float, 4>& colour) {
   while (result == XR_TIMEOUT_EXPIRED)
     result = call<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage")(swapchains[at], &info);
   expect(result, "xrWaitSwapchainImage");
+  if (gl) gl->make_current();
   glClearTexSubImage(images[at][index].image, 0, 0, 0, 0, static_cast<GLsizei>(width),
                      static_cast<GLsizei>(height), 1, GL_RGBA, GL_FLOAT, colour.data());
   expect(call<PFN_xrReleaseSwapchainImage>("xrReleaseSwapchainImage")(swapchains[at], nullptr),

@@ -90,6 +90,7 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
 
 XrResult begin_frame(XrSession session, const XrFrameBeginInfo* info) {
   Session& found = need_running(session);
+  const SessionContext taken(found.graphics);
   need_type_or_null(info, XR_TYPE_FRAME_BEGIN_INFO);
   need(found.waited, XR_ERROR_CALL_ORDER_INVALID, "no frame was waited for");
   const bool discarded = found.begun;
@@ -120,8 +121,9 @@ void check_end(const Session& session, const XrFrameEndInfo* info) {
 void note_starving() {
   Clock& clock = runtime().clock;
   const XrTime time = now();
+  const auto tenths = (time - clock.last_end) * 10 / period();
   if (clock.last_end > 0 && time - clock.last_end > 2 * period())
-    note("starved for " + std::to_string((time - clock.last_end) / period()) + " periods");
+    note("starved for " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " periods");
   clock.last_end = time;
 }
 
