@@ -2,6 +2,9 @@
 /// specification names.
 #include <gmock/gmock.h>
 
+#include <future>
+#include <thread>
+
 #include "tests/headset/client.hpp"
 
 namespace simulated {
@@ -175,6 +178,28 @@ TEST_F(BreachGl, SecondWaitBeforeTheFrameBegan) {
 TEST_F(BreachGl, FrameThatWasNotWaitedFor) {
   EXPECT_EQ(client.begin(), XR_ERROR_CALL_ORDER_INVALID);
   expected = "xrBeginFrame: no frame was waited for";
+}
+
+TEST_F(BreachGl, ContextThatIsCurrentOnAnotherThread) {
+  client.wait();
+  client.begin();
+  client.gl->release();
+  std::promise<void> taken, done;
+  std::thread holder([&] {
+    client.gl->make_current();
+    taken.set_value();
+    done.get_future().wait();
+    client.gl->release();
+  });
+  taken.get_future().wait();
+  std::uint32_t index = 0;
+  const auto acquire = client.call<PFN_xrAcquireSwapchainImage>("xrAcquireSwapchainImage");
+  EXPECT_EQ(acquire(client.swapchains[0], nullptr, &index), XR_ERROR_RUNTIME_FAILURE);
+  done.set_value();
+  holder.join();
+  expected =
+      "xrAcquireSwapchainImage: the session's context cannot be made current: another thread holds it, "
+      "or it is gone";
 }
 
 TEST_F(BreachGl, SessionThatRunsIsBegun) {

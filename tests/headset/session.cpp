@@ -48,6 +48,7 @@ XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, Xr
   fresh.graphics = read_binding(info->next);
   need(all.sessions.empty(), XR_ERROR_LIMIT_REACHED, "there is a session already");
   make_other_context(fresh.graphics);
+  const SessionContext taken(fresh.graphics);
   *session = new_handle<XrSession>(all.sessions, fresh);
   enter(*session, XR_SESSION_STATE_IDLE);
   offer_ready();
@@ -55,7 +56,11 @@ XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, Xr
 }
 
 XrResult destroy_session(XrSession session) {
-  find(runtime().sessions, session, "session");
+  {
+    const SessionContext taken(find(runtime().sessions, session, "session").graphics);
+    for (auto& [number, swapchain] : runtime().swapchains)
+      glDeleteTextures(static_cast<GLsizei>(swapchain.images.size()), swapchain.images.data());
+  }
   end_session_objects(number_of(session));
   return XR_SUCCESS;
 }

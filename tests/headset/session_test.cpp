@@ -1,6 +1,9 @@
 /// Whole sessions on the simulated runtime, through the real loader.
 #include <gmock/gmock.h>
 
+#include <thread>
+#include <utility>
+
 #include "libsim/render/png.hpp"
 #include "tests/headset/client.hpp"
 
@@ -64,6 +67,53 @@ TEST(SimulatedSessionGl, TheHeadsetIsTakenOffAndPutOnAgain) {
   client.frames_until(focused);
   EXPECT_THAT(client.states, ElementsAre(synchronized, visible, focused));
   EXPECT_THAT(client.lines("BREACH"), IsEmpty());
+}
+
+TEST(SimulatedSessionGl, FramesAreWaitedForOnAThreadOfTheirOwn) {
+  Client client;
+  client.frames_until(focused);
+  for (int i = 0; i < 20; ++i) {
+    std::thread waits([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });
+    waits.join();
+    EXPECT_EQ(client.begin(), XR_SUCCESS);
+    XrFrameState state = client.state;
+    std::thread ahead([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });  // while this one is drawn
+    ahead.join();
+    std::swap(state, client.state);
+    EXPECT_EQ(client.end(), XR_SUCCESS);
+    std::swap(state, client.state);
+    EXPECT_EQ(client.begin(), XR_SUCCESS);
+    EXPECT_EQ(client.end(), XR_SUCCESS);
+  }
+  EXPECT_THAT(client.lines("BREACH"), IsEmpty());
+  EXPECT_THAT(client.lines("note"), IsEmpty());
+}
+
+TEST(SimulatedSessionGl, APositiveCodeIsASuccess) {
+  Client client("positive=1");
+  client.frames_until(focused);
+  EXPECT_EQ(client.frame(), XR_SESSION_LOSS_PENDING);
+  EXPECT_THAT(client.lines("BREACH"), IsEmpty());
+}
+
+TEST(SimulatedSessionGl, AStarvedLoopIsNoted) {
+  Client client("clock=real");
+  client.frames_until(focused);
+  const std::size_t before = client.lines("note").size();  // a slow machine starves too
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  client.frame();
+  ASSERT_GT(client.lines("note").size(), before);
+  EXPECT_THAT(client.lines("note").back(), HasSubstr("starved for "));
+}
+
+TEST(SimulatedSessionGl, ResultsAndTypesHaveNames) {
+  Client client;
+  char text[XR_MAX_RESULT_STRING_SIZE];
+  const auto name = client.call<PFN_xrResultToString>("xrResultToString");
+  EXPECT_EQ(name(client.instance, XR_ERROR_POSE_INVALID, text), XR_SUCCESS);
+  EXPECT_STREQ(text, "XR_ERROR_POSE_INVALID");
+  name(client.instance, static_cast<XrResult>(-77), text);
+  EXPECT_STREQ(text, "XR_UNKNOWN_FAILURE_-77");
 }
 
 TEST(SimulatedSessionGl, ImagesAreWrittenAsTheyAreShown) {

@@ -176,8 +176,8 @@ TEST_F(TroubleGl, TheContextIsChangedAndAnErrorLeft) {
   Client client("leave_context=other;leave_error=1");
   frames(client, 1);
   EXPECT_NE(eglGetCurrentContext(), EGL_NO_CONTEXT);
-  EXPECT_NE(eglGetCurrentContext(), client.gl.egl().context);
-  client.gl.make_current();
+  EXPECT_NE(eglGetCurrentContext(), client.gl->egl().context);
+  client.gl->make_current();
   EXPECT_NE(glGetError(), GLenum{GL_NO_ERROR});
 }
 
