@@ -136,20 +136,17 @@ TEST(HeadsetWatch, ACallThatComesBackIsDone) {
 TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
   std::promise<void> freed;
   const auto wait = freed.get_future().share();
-  const auto ended = std::make_shared<std::promise<void>>();
+  // Told when the thread lets go of the call, whether or not it had begun it by then.
+  auto held = std::make_shared<std::promise<void>>();
+  const auto let_go = held->get_future();
   {
     WatchedThread watched;
-    EXPECT_FALSE(watched.run(
-        [wait, ended] {
-          wait.wait();
-          ended->set_value();
-        },
-        std::chrono::milliseconds(1)));
+    EXPECT_FALSE(watched.run([wait, held = std::move(held)] { wait.wait(); }, std::chrono::milliseconds(1)));
     EXPECT_TRUE(watched.hangs());
     EXPECT_FALSE(watched.run([] {}, std::chrono::hours(1)));
   }
   freed.set_value();
-  ended->get_future().wait();
+  let_go.wait();
 }
 
 }  // namespace

@@ -28,12 +28,11 @@ class HeadsetShowE2e : public test::HeadsetRuns {
 };
 
 TEST_F(HeadsetShowE2e, ASessionGoesThroughItsStates) {
+  const std::string to_focused = "states      idle, ready, synchronized, visible, focused, ";
   expect_says(
       "",
       {"shown in    Simulated headset, 64 x 64 px an eye, GL_SRGB8_ALPHA8\n",
-       "states      idle, ready, synchronized, visible, focused, visible, synchronized, stopping, "
-       "idle, exiting\n",
-       "frames      47, 46 with pictures\n",
+       to_focused + "visible, synchronized, stopping, idle, exiting\n", "frames      47, 46 with pictures\n",
        "rate        90.00 Hz by settled steps of predicted times; 90 Hz by the runtime's word\n",
        "dropped     0 slots; 0 predicted times repeated, 0 off the grid\n", "ended       after its time\n"});
   EXPECT_THAT(calls(), Not(HasSubstr("\nnote")));
@@ -55,7 +54,12 @@ TEST_F(HeadsetShowE2e, AChangeOfTheRateIsTold) {
     expect_says(profile, {"note        refresh went from 90 to 72 Hz\n", "rate        72.00 Hz"});
 }
 
-TEST_F(HeadsetShowE2e, ARateThatIsNotListedIsNotAskedFor) {
+TEST_F(HeadsetShowE2e, ARateIsAskedForAndConfirmed) {
+  const char* runs =
+      "rate        120.00 Hz by settled steps of predicted times; 120 Hz by the runtime's word\n";
+  expect_says("", {runs}, {"--refresh", "120"});
+  expect_says("ignores_rate=1", {"rate        90.00 Hz", "note        the display did not go to 120 Hz\n"},
+              {"--refresh", "120"});
   const auto ended = show("", {"--refresh", "75"});
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("75 Hz is not one of its refresh rates"));
@@ -70,6 +74,32 @@ TEST_F(HeadsetShowE2e, PositiveCodesUnknownEventsAndLateImagesAreNoFailures) {
 TEST_F(HeadsetShowE2e, NothingIsShownThatNobodySeesOrNobodyKnowsFromWhere) {
   expect_says("at=20:orientation/0", {"frames      47, 19 with pictures\n"});
   expect_says("at=20:shown/0,30:shown/1", {"frames      47, 36 with pictures\n"});
+}
+
+TEST_F(HeadsetShowE2e, TheEyesAreFollowedAtTheirOwnRate) {
+  seconds_ = "1";
+  expect_says("look_yaw=-10;look_pitch=5;yaw=30;pitch=-8;x=1",
+              {"100.0 % valid, 100.0 % tracked; on average 10.0 degrees right, 5.0 up\n"});
+  expect_says("gaze_rate=30", {"gaze        31 samples, 100.0 % valid"});
+  expect_says("gaze_tracked=0", {" samples, 100.0 % valid, 0.0 % tracked"});
+  expect_says("gaze_valid=0", {" samples, 0.0 % valid, 0.0 % tracked\n"});
+}
+
+TEST_F(HeadsetShowE2e, EyesThatAreNotFollowedAreNotAskedFor) {
+  for (const char* profile : {"gaze=0", "without=XR_EXT_eye_gaze_interaction"}) {
+    expect_says(profile, {"gaze        none\n"});
+    EXPECT_THAT(calls(), Not(HasSubstr("gaze_ext")));
+  }
+}
+
+TEST_F(HeadsetShowE2e, HandsAnswerWhileTheSessionIsFocused) {
+  const std::string presses =
+      "at=10:select/1,14:select/0,18:select/1,22:select/0,24:thumb_x/0.9,28:thumb_x/0";
+  expect_says(presses, {"hands       pressed 2 times, stick pushed 0 times\n"});
+  expect_says("controller=oculus/touch_controller;" + presses,
+              {"hands       pressed 2 times, stick pushed 1 times\n"});
+  expect_says("controller=none;" + presses, {"hands       pressed 0 times, stick pushed 0 times\n"});
+  expect_says("at=8:focus/0,10:select/1,14:select/0,16:focus/1", {"hands       pressed 0 times"});
 }
 
 TEST_F(HeadsetShowE2e, TheHeadsetIsTakenOffAndPutOnAgain) {

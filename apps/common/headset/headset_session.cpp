@@ -48,7 +48,7 @@ struct HeadsetSession::Parts {
         refresh(session),
         world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
         head(session, XR_REFERENCE_SPACE_TYPE_VIEW),
-        actions(choice.inputs ? std::make_unique<Actions>(session, clock, system.eye_gaze) : nullptr) {
+        actions(session, clock, system.eye_gaze) {
     const std::vector<PictureSize> sizes = picture_sizes(system, choice);
     swapchains = make_swapchains(session, sizes);
     for (const PictureSize& size : sizes)
@@ -63,7 +63,7 @@ struct HeadsetSession::Parts {
   Lifecycle lifecycle;
   RefreshControl refresh;
   Space world, head;
-  std::unique_ptr<Actions> actions;
+  Actions actions;
   std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< left, right and, where one is asked for, the page
   std::vector<std::unique_ptr<sim::Offscreen>> pictures;  ///< the same
   RateMeter meter;
@@ -189,8 +189,7 @@ EyeViews HeadsetSession::views(const HeadsetSlot& slot) {
 HeadsetInput HeadsetSession::input(const HeadsetSlot& slot) {
   HeadsetInput out;
   out.head = parts_->head.locate(parts_->world, slot.runtime_time);
-  if (state() == HeadsetState::Focused && parts_->actions)
-    parts_->actions->read(parts_->world, slot.runtime_time, out);
+  if (state() == HeadsetState::Focused) parts_->actions.read(parts_->world, slot.runtime_time, out);
   return out;
 }
 

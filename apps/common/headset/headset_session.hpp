@@ -17,7 +17,6 @@
 namespace apps {
 
 struct HeadsetChoice {
-  bool inputs = true;                         ///< hands, and eyes where asked for
   bool eye_gaze = false;                      ///< asks for eye tracking; only with the participant's consent
   double patience_s = 10;                     ///< a wait of the runtime that lasts longer ends the session
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
