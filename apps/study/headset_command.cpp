@@ -8,10 +8,12 @@
 #include <string>
 
 #include "apps/common/headset/offer.hpp"
+#include "apps/common/headset/picture_copy.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/headset_show.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -21,6 +23,7 @@ namespace {
 
 struct HeadsetOptions {
   std::string protocol, json;
+  ShowChoice show;
 };
 
 /// "72, 80, 90".
@@ -89,7 +92,7 @@ nlohmann::ordered_json offer_json(const HeadsetOffer& offer) {
   return out;
 }
 
-void show_headset(const HeadsetOptions& options) {
+void print_headset(const HeadsetOptions& options) {
   std::optional<study::Protocol> protocol;
   if (!options.protocol.empty()) protocol = study::read_protocol(base::find_input(options.protocol));
   const HeadsetOffer offer = read_headset_offer();
@@ -124,7 +127,20 @@ void add_headset_command(CLI::App& app) {
   auto* command = app.add_subcommand("headset", "Say what the OpenXR headset on this machine offers");
   command->add_option("protocol", options->protocol, "Protocol file: which of its settings are exact on it");
   command->add_option("--json", options->json, "File for the same as JSON")->check(output_file());
-  command->callback([options] { show_headset(*options); });
+  auto* show = command->add_option("--show", options->show.seconds,
+                                   "Show a test scene in it for so many seconds, and say what happened");
+  show->check(CLI::Range(0.1, 3600.0));
+  command->add_option("--refresh", options->show.refresh_hz, "Refresh rate to ask for meanwhile, Hz")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->needs(show);
+  command
+      ->add_option("--patience", options->show.patience_s, "Most seconds that the runtime may hold a frame")
+      ->check(CLI::Range(0.1, 600.0))
+      ->needs(show);
+  command->callback([options] {
+    print_headset(*options);
+    if (options->show.seconds > 0) show_in_headset(options->show);
+  });
 }
 
 }  // namespace apps

@@ -2,49 +2,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "stats/base/file.hpp"
-#include "tests/apps/process.hpp"
-#include "tests/common/temporary_folder.hpp"
+#include "tests/apps/headset_runs.hpp"
 
 namespace apps {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-using Environment = std::vector<std::pair<std::string, std::string>>;
 
-const std::string bin = VIP_BIN_DIR;
-
-class HeadsetE2e : public ::testing::Test {
- protected:
-  test::Ended run(const std::vector<std::string>& arguments, const Environment& environment) {
-    std::vector<std::string> all{bin + "/vip-study", "headset"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    test::Process program(all, [&] {
-      for (const char* name :
-           {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS"})
-        ::unsetenv(name);
-      ::setenv("VIP_XR_LOG", log().c_str(), 1);
-      ::setenv("XR_LOADER_DEBUG", "none", 1);
-      for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-    });
-    return program.wait();
-  }
-  /// On the simulated runtime, whose caller must keep the specification.
-  test::Ended on(const std::string& profile, const std::vector<std::string>& arguments = {}) {
-    const test::Ended ended =
-        run(arguments, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
-    EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
-    return ended;
-  }
-  std::string log() const { return folder_ / "calls.log"; }
-  std::string calls() const { return std::filesystem::exists(log()) ? base::read_file(log(), 1 << 20) : ""; }
-
-  const ::test::TemporaryFolder folder_;
-};
+using HeadsetE2e = test::HeadsetRuns;
 
 TEST_F(HeadsetE2e, SaysWhatTheRuntimeOffers) {
   const auto ended = on("name=Monado(XRT)");

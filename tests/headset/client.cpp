@@ -25,20 +25,29 @@ void expect(XrResult result, const char* what) {
 
 }  // namespace
 
-Client::Client(const std::string& profile) : gl(sim::GlContext::make_headless()) {
+Client::Client(const std::string& profile, const void* binding) : binding_(binding) {
   log_ = folder_ / "xr.log";
   ::setenv("XR_RUNTIME_JSON", VIP_BIN_DIR "/simulated_headset.json", 1);
   ::setenv("XR_LOADER_DEBUG", "none", 1);
   ::setenv("VIP_XR_PROFILE", ("size=64x48;" + profile).c_str(), 1);
   ::setenv("VIP_XR_LOG", log_.c_str(), 1);
   ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
+  if (!binding_) {
+    gl = sim::GlContext::make_headless();
+    const sim::EglHandles made = gl->egl();
+    egl_.getProcAddress = reinterpret_cast<PFNEGLGETPROCADDRESSPROC>(eglGetProcAddress);
+    egl_.display = made.display;
+    egl_.config = made.config;
+    egl_.context = made.context;
+    binding_ = &egl_;
+  }
   make_instance();
   make_session();
   make_swapchains();
 }
 
 Client::~Client() {
-  gl.make_current();
+  if (gl) gl->make_current();
   if (session) call<PFN_xrDestroySession>("xrDestroySession")(session);
   if (instance) call<PFN_xrDestroyInstance>("xrDestroyInstance")(instance);
 }
@@ -70,14 +79,8 @@ void Client::make_session() {
   expect(call<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR")(instance, system,
                                                                                             &requirements),
          "xrGetOpenGLGraphicsRequirementsKHR");
-  const sim::EglHandles egl = gl.egl();
-  auto binding = blank<XrGraphicsBindingEGLMNDX>(XR_TYPE_GRAPHICS_BINDING_EGL_MNDX);
-  binding.getProcAddress = reinterpret_cast<PFNEGLGETPROCADDRESSPROC>(eglGetProcAddress);
-  binding.display = egl.display;
-  binding.config = egl.config;
-  binding.context = egl.context;
   auto info = blank<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
-  info.next = &binding;
+  info.next = binding_;
   info.systemId = system;
   expect(call<PFN_xrCreateSession>("xrCreateSession")(instance, &info, &session), "xrCreateSession");
   local = make_space(XR_REFERENCE_SPACE_TYPE_LOCAL);
@@ -168,7 +171,9 @@ void Client::draw(int eye, const std::array<float, 4>& colour) {
   while (result == XR_TIMEOUT_EXPIRED)
     result = call<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage")(swapchains[at], &info);
   expect(result, "xrWaitSwapchainImage");
-  glClearTexImage(images[at][index].image, 0, GL_RGBA, GL_FLOAT, colour.data());
+  if (gl) gl->make_current();
+  glClearTexSubImage(images[at][index].image, 0, 0, 0, 0, static_cast<GLsizei>(width),
+                     static_cast<GLsizei>(height), 1, GL_RGBA, GL_FLOAT, colour.data());
   expect(call<PFN_xrReleaseSwapchainImage>("xrReleaseSwapchainImage")(swapchains[at], nullptr),
          "xrReleaseSwapchainImage");
 }
@@ -223,11 +228,13 @@ XrResult Client::end(const Spoil& spoil) {
   return call<PFN_xrEndFrame>("xrEndFrame")(session, &drawing.end);
 }
 
-std::string Client::log() const {
+std::string read_text(const std::filesystem::path& path) {
   std::ostringstream out;
-  out << std::ifstream(log_).rdbuf();
+  out << std::ifstream(path).rdbuf();
   return out.str();
 }
+
+std::string Client::log() const { return read_text(log_); }
 
 std::vector<std::string> Client::lines(const std::string& start) const {
   std::vector<std::string> out;

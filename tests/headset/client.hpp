@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,8 @@ T blank(XrStructureType type) {
 class Client {
  public:
   /// Connects and makes a session with two swapchains. `profile`: VIP_XR_PROFILE; small images unless it says
-  /// otherwise.
-  explicit Client(const std::string& profile = "");
+  /// otherwise. `binding`: of a context of OpenGL that is current; null makes one with EGL.
+  explicit Client(const std::string& profile = "", const void* binding = nullptr);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -71,7 +72,7 @@ class Client {
   std::vector<std::string> lines(const std::string& start) const;
   std::filesystem::path folder() const { return folder_.path(); }
 
-  sim::GlContext gl;
+  std::optional<sim::GlContext> gl;
   XrInstance instance = XR_NULL_HANDLE;
   XrSystemId system = XR_NULL_SYSTEM_ID;
   XrSession session = XR_NULL_HANDLE;
@@ -91,6 +92,10 @@ class Client {
 
   const test::TemporaryFolder folder_;
   std::string log_;
+  const void* binding_;
+  XrGraphicsBindingEGLMNDX egl_ = blank<XrGraphicsBindingEGLMNDX>(XR_TYPE_GRAPHICS_BINDING_EGL_MNDX);
 };
+
+std::string read_text(const std::filesystem::path& path);
 
 }  // namespace simulated

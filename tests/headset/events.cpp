@@ -1,6 +1,6 @@
 /// The session's states and the queue of events.
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tests/headset/gl.hpp"
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -70,10 +70,12 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
   Runtime& all = runtime();
   const long index = all.frames++;
   play_script(session, index);
+  const bool held_up = all.dropped > 0 || all.hang_seconds > 0;
   if (const double seconds = std::exchange(all.hang_seconds, 0); seconds > 0) hang(seconds);
   need_running(session);
   Frame frame = next_frame(index);
   Session& found = need_running(session);  // again: it may have ended meanwhile
+  if (held_up) all.clock.last_end = now();
   step_state(session);
   const bool seen = found.state == XR_SESSION_STATE_VISIBLE || found.state == XR_SESSION_STATE_FOCUSED;
   frame.should_render = seen && all.knobs.at("render") != 0;
@@ -88,6 +90,7 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
 
 XrResult begin_frame(XrSession session, const XrFrameBeginInfo* info) {
   Session& found = need_running(session);
+  const SessionContext taken(found.graphics);
   need_type_or_null(info, XR_TYPE_FRAME_BEGIN_INFO);
   need(found.waited, XR_ERROR_CALL_ORDER_INVALID, "no frame was waited for");
   const bool discarded = found.begun;
@@ -114,12 +117,13 @@ void check_end(const Session& session, const XrFrameEndInfo* info) {
     note("layers although shouldRender was false (allowed)");
 }
 
-/// Frames of a running session come at every period.
+/// Frames of a running session come at every period, unless the script held the program up.
 void note_starving() {
   Clock& clock = runtime().clock;
   const XrTime time = now();
+  const auto tenths = (time - clock.last_end) * 10 / period();
   if (clock.last_end > 0 && time - clock.last_end > 2 * period())
-    note("starved for " + std::to_string((time - clock.last_end) / period()) + " periods");
+    note("starved for " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " periods");
   clock.last_end = time;
 }
 

@@ -4,7 +4,8 @@ namespace simulated {
 
 namespace {
 
-constexpr const char* elsewhere = "the session's context cannot be made current: another thread holds it";
+constexpr const char* elsewhere =
+    "the session's context cannot be made current: another thread holds it, or it is gone";
 
 void leave_error() {
   if (runtime().profile.leave_error) glEnable(GL_TEXTURE_2D + 0x7000);  // no such capability
@@ -61,7 +62,6 @@ void make_other_context(Graphics& graphics) {
   graphics.other_context =
       eglCreateContext(graphics.egl_display, graphics.egl_config, EGL_NO_CONTEXT, nullptr);
   if (graphics.other_context == EGL_NO_CONTEXT) fail(XR_ERROR_RUNTIME_FAILURE);
-  const SessionContext taken(graphics);
 }
 
 void destroy_other_context(Graphics& graphics) {

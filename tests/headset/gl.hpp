@@ -1,6 +1,7 @@
 #pragma once
-/// The session's context on the calling thread. The specification lets a runtime take it in xrCreateSession,
-/// xrDestroySession, xrBeginFrame, xrEndFrame and the functions of swapchains, and in no other.
+/// The session's context on the calling thread. The specification (XR_KHR_opengl_enable, on threads) lets a
+/// runtime take it in xrCreateSession, xrDestroySession, xrBeginFrame, xrEndFrame and the functions of
+/// swapchains, and in no other.
 
 #include "tests/headset/state.hpp"
 

@@ -1,8 +1,10 @@
 /// Instance and system: what can be asked before there is a picture.
 
+#include <openxr/openxr_reflection.h>
+
 #include <cstring>
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -49,6 +51,10 @@ XrResult destroy_instance(XrInstance instance) {
   if (!all.sessions.empty()) note("the instance takes a session with it");
   while (!all.sessions.empty()) end_session_objects(all.sessions.begin()->first);
   all.events.clear();
+  all.action_sets.clear();
+  all.actions.clear();
+  all.suggested.clear();
+  all.paths.clear();
   all.instances.erase(number_of(instance));
   all.instance_lost_at = -1;
   return XR_SUCCESS;
@@ -61,6 +67,28 @@ XrResult get_instance_properties(XrInstance instance, XrInstanceProperties* out)
   copy_text(out->runtimeName, sizeof out->runtimeName, runtime().profile.runtime_name);
   return XR_SUCCESS;
 }
+
+/// "XR_SUCCESS" and so on, or the number.
+std::string name_of(const std::map<int, std::string>& names, int value, const std::string& unknown) {
+  const auto found = names.find(value);
+  return found == names.end() ? unknown + std::to_string(value) : found->second;
+}
+
+#define SIMULATED_NAME(name, value) {value, #name},
+XrResult name_result(XrInstance instance, XrResult value, char* out) {
+  static const std::map<int, std::string> names{XR_LIST_ENUM_XrResult(SIMULATED_NAME)};
+  need_instance(instance);
+  copy_text(out, XR_MAX_RESULT_STRING_SIZE,
+            name_of(names, value, value < 0 ? "XR_UNKNOWN_FAILURE_" : "XR_UNKNOWN_SUCCESS_"));
+  return XR_SUCCESS;
+}
+XrResult name_type(XrInstance instance, XrStructureType value, char* out) {
+  static const std::map<int, std::string> names{XR_LIST_ENUM_XrStructureType(SIMULATED_NAME)};
+  need_instance(instance);
+  copy_text(out, XR_MAX_STRUCTURE_NAME_SIZE, name_of(names, value, "XR_UNKNOWN_STRUCTURE_TYPE_"));
+  return XR_SUCCESS;
+}
+#undef SIMULATED_NAME
 
 XrResult get_system(XrInstance instance, const XrSystemGetInfo* info, XrSystemId* system) {
   need_instance(instance);
@@ -150,6 +178,8 @@ void add_instance_functions(Functions& functions) {
   add<"xrCreateInstance", create_instance>(functions);
   add<"xrDestroyInstance", destroy_instance>(functions);
   add<"xrGetInstanceProperties", get_instance_properties>(functions);
+  add<"xrResultToString", name_result>(functions);
+  add<"xrStructureTypeToString", name_type>(functions);
   add<"xrGetSystem", get_system>(functions);
   add<"xrGetSystemProperties", get_system_properties>(functions);
   add<"xrEnumerateViewConfigurations", enumerate_view_configurations>(functions);

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -119,6 +119,7 @@ std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& in
   need(info.layerCount <= XR_MIN_COMPOSITION_LAYERS_SUPPORTED, XR_ERROR_LAYER_LIMIT_EXCEEDED,
        "more layers than the system takes");
   std::vector<Shown> images;
+  std::vector<const XrCompositionLayerQuad*> quads;
   for (std::uint32_t i = 0; i < info.layerCount; ++i) {
     const XrCompositionLayerBaseHeader* layer = info.layers[i];
     need(layer, XR_ERROR_LAYER_INVALID, "a layer that is none");
@@ -127,7 +128,8 @@ std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& in
     if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
       check_projection(session, *reinterpret_cast<const XrCompositionLayerProjection*>(layer), images, text);
     } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
-      check_quad(*reinterpret_cast<const XrCompositionLayerQuad*>(layer), images, text);
+      quads.push_back(reinterpret_cast<const XrCompositionLayerQuad*>(layer));
+      check_quad(*quads.back(), images, text);
     } else {
       refuse(XR_ERROR_LAYER_INVALID, "a layer of a kind that is not offered");
     }
@@ -135,6 +137,7 @@ std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& in
     if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION && i > 0)
       images[images.size() - 2].name += std::to_string(i);
   }
+  see_page(quads);
   return images;
 }
 

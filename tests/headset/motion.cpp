@@ -1,6 +1,6 @@
 /// The scripted head.
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 

@@ -1,7 +1,7 @@
 /// How the loader finds the runtime's functions. Debian's headers lack the structures of the negotiation;
 /// they are those of the loader's specification ("Loader Design", runtime interface version 1).
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace {
 
@@ -36,6 +36,10 @@ XRAPI_ATTR XrResult XRAPI_CALL get_function(XrInstance, const char* name, PFN_xr
   simulated::add_space_functions(functions);
   simulated::add_view_functions(functions);
   simulated::add_time_functions(functions);
+  simulated::add_rate_functions(functions);
+  simulated::add_path_functions(functions);
+  simulated::add_action_functions(functions);
+  simulated::add_input_functions(functions);
   const auto found = functions.find(name);
   *function = found == functions.end() ? nullptr : found->second;
   return *function ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;

@@ -60,6 +60,14 @@ std::vector<T> read_numbers(const std::string& text) {
   return out;
 }
 
+/// "0.5:0.4,0.5:0.9"
+std::vector<std::pair<double, double>> read_targets(const std::string& text) {
+  std::vector<std::pair<double, double>> out;
+  for (const std::string& entry : split(text, ','))
+    out.emplace_back(std::stod(entry), std::stod(entry.substr(entry.find(':') + 1)));
+  return out;
+}
+
 /// "100:focus/0,160:focus/1"
 std::vector<ScriptedEvent> read_script(const std::string& text) {
   std::vector<ScriptedEvent> out;
@@ -88,6 +96,16 @@ const std::map<std::string, std::function<void(Profile&, Text)>> keys{
      [](Profile& p, Text value) {
        p.head = one_of(value, {"still", "turn", "walk"});
      }},
+    {"look",
+     [](Profile& p, Text value) {
+       p.look = one_of(value, {"fixed", "sweep", "page"});
+     }},
+    {"point",
+     [](Profile& p, Text value) {
+       p.point = one_of(value, {"fixed", "page"});
+     }},
+    {"controller", [](Profile& p, Text value) { p.controller = value; }},
+    {"targets", [](Profile& p, Text value) { p.targets = read_targets(value); }},
     {"leave_context",
      [](Profile& p, Text value) {
        p.leave_context = one_of(value, {"kept", "none", "other"});
@@ -118,9 +136,36 @@ const std::map<std::string, std::function<void(Profile&, Text)>> keys{
 
 /// What the script may change, and what holds before it does. README.md says what each means.
 const std::map<std::string, double> knobs{
-    {"position", 1}, {"orientation", 1},   {"ipd", 0.063},        {"x", 0},          {"y", 1.6},
-    {"z", 0},        {"yaw", 0},           {"pitch", 0},          {"roll", 0},       {"render", 1},
-    {"jitter", 0},   {"wrong_periods", 0}, {"image_timeouts", 0}, {"worn_after", 0}, {"patience", 10},
+    {"x", 0},
+    {"y", 1.6},
+    {"z", 0},
+    {"yaw", 0},
+    {"pitch", 0},
+    {"roll", 0},
+    {"ipd", 0.063},
+    {"position", 1},
+    {"orientation", 1},
+    {"render", 1},
+    {"jitter", 0},
+    {"wrong_periods", 0},
+    {"ignores_rate", 0},
+    {"image_timeouts", 0},
+    {"worn_after", 0},
+    {"patience", 10},
+    {"select", 0},
+    {"menu", 0},
+    {"thumb_x", 0},
+    {"thumb_y", 0},
+    {"aim_yaw", 0},
+    {"aim_pitch", 0},
+    {"look_yaw", 0},
+    {"look_pitch", 0},
+    {"hold", 1},
+    {"gaze_rate", 120},
+    {"gaze_valid", 1},
+    {"gaze_tracked", 1},
+    {"blink_every", 0},
+    {"blink_length", 0.15},
 };
 /// What else the script may say.
 const std::vector<std::string> happenings{"focus",         "shown",  "off",     "lost",       "lost_now",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace simulated {
@@ -20,11 +21,15 @@ struct ScriptedEvent {
 struct Profile {
   std::string runtime_name = "Simulated runtime";
   std::string headset_name = "Simulated headset";
-  std::string headset = "connected";          ///< "connected", "unavailable" or "unsupported"
-  std::string clock = "virtual";              ///< "virtual" or "real"
-  std::string head = "still";                 ///< "still", "turn" or "walk"
-  std::string leave_context = "kept";         ///< after calls that may use GL: "kept", "none" or "other"
-  std::uint32_t width = 2064, height = 2208;  ///< px, recommended for each eye
+  std::string headset = "connected";   ///< "connected", "unavailable" or "unsupported"
+  std::string clock = "virtual";       ///< "virtual" or "real"
+  std::string head = "still";          ///< "still", "turn" or "walk"
+  std::string leave_context = "kept";  ///< after calls that may use GL: "kept", "none" or "other"
+  std::string look = "fixed";          ///< the eyes: "fixed", "sweep" or "page"
+  std::string point = "fixed";         ///< the hand: "fixed" or "page"
+  std::string controller = "khr/simple_controller";
+  std::vector<std::pair<double, double>> targets;  ///< on a page, from its left and its top, in parts of it
+  std::uint32_t width = 2064, height = 2208;       ///< px, recommended for each eye
   std::vector<std::string> extensions;
   std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are told
   float rate = 90;                            ///< Hz, now

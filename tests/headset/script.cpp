@@ -1,21 +1,12 @@
 /// What the profile says happens at stated frames.
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
 namespace {
 
 Session& session_of(XrSession session) { return runtime().sessions.at(number_of(session)); }
-
-void change_rate(double hertz) {
-  Runtime& all = runtime();
-  XrEventDataDisplayRefreshRateChangedFB event{};
-  event.fromDisplayRefreshRate = all.profile.rate;
-  event.toDisplayRefreshRate = all.profile.rate = static_cast<float>(hertz);
-  if (all.enabled.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME))
-    queue_event(event, XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
-}
 
 void recentre(XrSession session, double degrees) {
   XrEventDataReferenceSpaceChangePending event{};
@@ -58,7 +49,7 @@ void play(XrSession session, const ScriptedEvent& event) {
   if (name == "unknown") queue_event(XrEventDataBaseHeader{}, static_cast<XrStructureType>(1'999'999'999));
   if (name == "events_lost") lose_events(value);
   if (name == "recentre") recentre(session, value);
-  if (name == "rate") change_rate(value);
+  if (name == "rate") change_rate(static_cast<float>(value));
   if (name == "drop") all.dropped = static_cast<int>(value);
   if (name == "repeat") all.repeats = true;
   if (name == "hang") all.hang_seconds = value;
@@ -67,6 +58,7 @@ void play(XrSession session, const ScriptedEvent& event) {
 }  // namespace
 
 void play_script(XrSession session, long frame) {
+  take_wanted_rate();
   for (const ScriptedEvent& event : runtime().profile.script) {
     if (event.frame == frame) play(session, event);
   }

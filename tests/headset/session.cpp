@@ -1,7 +1,7 @@
 /// Sessions: their graphics binding, their beginning and end.
 
 #include "tests/headset/gl.hpp"
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -48,6 +48,7 @@ XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, Xr
   fresh.graphics = read_binding(info->next);
   need(all.sessions.empty(), XR_ERROR_LIMIT_REACHED, "there is a session already");
   make_other_context(fresh.graphics);
+  const SessionContext taken(fresh.graphics);
   *session = new_handle<XrSession>(all.sessions, fresh);
   enter(*session, XR_SESSION_STATE_IDLE);
   offer_ready();
@@ -55,7 +56,11 @@ XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, Xr
 }
 
 XrResult destroy_session(XrSession session) {
-  find(runtime().sessions, session, "session");
+  {
+    const SessionContext taken(find(runtime().sessions, session, "session").graphics);
+    for (auto& [number, swapchain] : runtime().swapchains)
+      glDeleteTextures(static_cast<GLsizei>(swapchain.images.size()), swapchain.images.data());
+  }
   end_session_objects(number_of(session));
   return XR_SUCCESS;
 }
@@ -95,23 +100,13 @@ XrResult request_exit(XrSession session) {
   return success(found);
 }
 
-XrResult enumerate_rates(XrSession session, std::uint32_t capacity, std::uint32_t* count, float* out) {
-  const Session& found = need_session(session);
-  const XrResult result = give_values(runtime().profile.rates, capacity, count, out);
-  return result == XR_SUCCESS ? success(found) : result;
-}
-
-XrResult get_rate(XrSession session, float* out) {
-  const Session& found = need_session(session);
-  *out = runtime().profile.rate;
-  return success(found);
-}
-
 }  // namespace
 
 void end_session_objects(std::uint64_t session) {
   Runtime& all = runtime();
   destroy_other_context(all.sessions.at(session).graphics);
+  for (auto& [number, set] : all.action_sets) set.attached = false;
+  all.page.reset();
   const auto is_its = [&](const auto& object) { return object.second.session == session; };
   std::erase_if(all.swapchains, is_its);
   std::erase_if(all.spaces, is_its);
@@ -126,9 +121,6 @@ void add_session_functions(Functions& functions) {
   add<"xrBeginSession", begin_session>(functions);
   add<"xrEndSession", end_session>(functions);
   add<"xrRequestExitSession", request_exit>(functions);
-  if (!runtime().enabled.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
-  add<"xrEnumerateDisplayRefreshRatesFB", enumerate_rates>(functions);
-  add<"xrGetDisplayRefreshRateFB", get_rate>(functions);
 }
 
 }  // namespace simulated

@@ -1,6 +1,6 @@
 /// Spaces, and where they are. The runtime's own frame is STAGE: its origin lies on the floor.
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -32,7 +32,7 @@ XrResult create_space(XrSession session, const XrReferenceSpaceCreateInfo* info,
   need(std::find(offered.begin(), offered.end(), info->referenceSpaceType) != offered.end(),
        XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "a space that is not listed");
   need(is_valid(info->poseInReferenceSpace), XR_ERROR_POSE_INVALID, "a pose that is none");
-  const Space fresh{number_of(session), info->referenceSpaceType, from_xr(info->poseInReferenceSpace)};
+  const Space fresh{number_of(session), info->referenceSpaceType, from_xr(info->poseInReferenceSpace), 0, ""};
   *space = new_handle<XrSpace>(runtime().spaces, fresh);
   return success(found);
 }
@@ -50,11 +50,18 @@ XrResult get_bounds(XrSession session, XrReferenceSpaceType type, XrExtent2Df* b
   return stage ? success(found) : XR_SPACE_BOUNDS_UNAVAILABLE;
 }
 
-/// Where a space is in the runtime's own frame.
-Pose place_of(const Space& space, XrTime time) {
-  if (space.type == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
-  if (space.type == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
-  return Pose{turned(runtime().local_yaw, 0, 0), {0, eye_height, 0}} * space.offset;
+constexpr XrSpaceLocationFlags valid_bits =
+    XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+constexpr XrSpaceLocationFlags tracked_bits =
+    XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+
+std::vector<std::string> sources(const Space& space) {
+  if (!space.action) return {};
+  return sources_of(runtime().sessions.at(space.session), space.action, space.subaction);
+}
+bool is_gaze(const Space& space) {
+  const auto found = sources(space);
+  return !found.empty() && found.front() == gaze_source;
 }
 
 Placed to_placed(const Pose& pose, bool moves) {
@@ -76,6 +83,8 @@ XrResult locate_space(XrSpace space, XrSpace base, XrTime time, XrSpaceLocation*
   if (auto* velocity = find_chained<XrSpaceVelocity>(out->next, XR_TYPE_SPACE_VELOCITY))
     velocity->velocityFlags = 0;
   const Placed place = locate(what, from, time);
+  if (auto* sample = find_chained<XrEyeGazeSampleTimeEXT>(out->next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT))
+    sample->time = is_gaze(what) && place.flags ? gaze_at(time).time : 0;
   out->locationFlags = place.flags;
   out->pose = place.pose;
   return success(runtime().sessions.at(what.session));
@@ -83,8 +92,23 @@ XrResult locate_space(XrSpace space, XrSpace base, XrTime time, XrSpaceLocation*
 
 }  // namespace
 
+Pose place_of(const Space& space, XrTime time) {
+  if (space.action) return (is_gaze(space) ? gaze_at(time).pose : hand_at(time)) * space.offset;
+  if (space.type == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
+  if (space.type == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
+  return Pose{turned(runtime().local_yaw, 0, 0), {0, eye_height, 0}} * space.offset;
+}
+
 Placed locate(const Space& what, const Space& from, XrTime time) {
-  return to_placed(inverse(place_of(from, time)) * place_of(what, time), what.type != from.type);
+  for (const Space* space : {&what, &from}) {
+    if (space->action && sources(*space).empty()) return {0, {}};
+  }
+  const Pose pose = inverse(place_of(from, time)) * place_of(what, time);
+  if (!is_gaze(what)) return to_placed(pose, what.action || from.action || what.type != from.type);
+  const Gaze gaze = gaze_at(time);
+  if (!gaze.valid) return {0, {}};
+  // VALID without TRACKED is how a runtime tells a sample of less than its usual quality.
+  return {valid_bits | (gaze.tracked ? tracked_bits : 0), to_xr(pose)};
 }
 
 Placed locate_eye(int eye, const Space& from, XrTime time) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <condition_variable>
 #include <deque>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct Frame {
   bool should_render = false;
 };
 
+/// A part of a controller, as the last xrSyncActions found it.
+struct Input {
+  using Value = std::array<double, 2>;
+  Value value{}, before{};
+  XrTime changed = 0;
+};
+
 struct Session {
   Graphics graphics;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
@@ -46,6 +54,9 @@ struct Session {
   bool waited = false;   ///< a frame was waited for and not begun
   bool begun = false;    ///< a frame was begun and not ended
   Frame waiting, drawing;
+  std::set<std::uint64_t> attached, synced;  ///< action sets
+  std::map<std::string, Input> inputs;
+  bool told_profiles = false;   ///< interaction profiles are current
   std::deque<Located> located;  ///< the newest last
 };
 
@@ -63,6 +74,31 @@ struct Space {
   std::uint64_t session = 0;
   XrReferenceSpaceType type = XR_REFERENCE_SPACE_TYPE_LOCAL;
   Pose offset;
+  std::uint64_t action = 0;  ///< of a space of an action
+  std::string subaction;
+};
+
+struct ActionSet {
+  std::string name, localized;
+  bool attached = false;
+};
+struct Action {
+  std::uint64_t set;
+  std::string name;
+  XrActionType type;
+  std::set<std::string> subactions;
+};
+struct Binding {
+  std::uint64_t action;
+  std::string source;
+};
+
+/// The quad that lies on top.
+struct Page {
+  Space space;
+  Pose pose;
+  double width, height;  ///< m
+  XrTime since;
 };
 
 /// Time as the runtime tells it. It is no clock of the system: XrTime less `ahead_of_monotonic` is.
@@ -85,6 +121,12 @@ struct Runtime {
   std::map<std::uint64_t, Session> sessions;
   std::map<std::uint64_t, Swapchain> swapchains;
   std::map<std::uint64_t, Space> spaces;
+  std::map<std::uint64_t, ActionSet> action_sets;
+  std::map<std::uint64_t, Action> actions;
+  std::map<std::string, std::vector<Binding>> suggested;  ///< by interaction profile
+  std::vector<std::string> paths;                         ///< an XrPath is the place in it, plus 1
+  std::optional<Page> page;
+  float wanted_rate = 0;  ///< Hz, asked for and not yet there
   std::deque<XrEventDataBuffer> events;
   Clock clock;
   std::uint64_t next_handle = 1;
@@ -148,68 +190,5 @@ XrResult success(const Session& session);
 
 /// Forgets a session and what belongs to it.
 void end_session_objects(std::uint64_t session);
-
-// events.cpp
-template <class T>
-void queue_event(T event, XrStructureType type) {
-  static_assert(sizeof(T) <= sizeof(XrEventDataBuffer));
-  XrEventDataBuffer buffer{};
-  event.type = type;
-  std::copy_n(reinterpret_cast<const char*>(&event), sizeof event, reinterpret_cast<char*>(&buffer));
-  runtime().events.push_back(buffer);
-}
-const char* name_of(XrSessionState state);
-void enter(XrSession session, XrSessionState state);
-/// One step towards the state that the script wants; down all at once.
-void step_state(XrSession session);
-/// READY, when the headset is on the head and the session waits for it.
-void offer_ready();
-
-// script.cpp
-/// What the profile says happens at this frame.
-void play_script(XrSession session, long frame);
-
-// time.cpp
-XrTime now();
-XrDuration period();
-/// Waits until then: at once on the virtual clock. Gives up the lock meanwhile.
-void wait_until(XrTime time);
-
-// layers.cpp
-/// An image that a frame shows.
-struct Shown {
-  const XrSwapchainSubImage* part;
-  std::string name;  ///< "left", "right" or "quad", with the layer's number unless that is 0
-};
-/// Refuses a frame that breaks the specification; gives the images it shows, and `text` for the log.
-std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& info, std::string& text);
-
-// images.cpp
-/// Writes the frame's images where the profile asks for it, and gives what they hold for the log.
-/// The session's context is current.
-std::string look_at(const std::vector<Shown>& images, long frame);
-
-// motion.cpp
-Pose head_at(XrTime time);
-Pose eye_at(XrTime time, int eye);
-XrFovf fov_of(int eye);
-
-// spaces.cpp
-struct Placed {
-  XrSpaceLocationFlags flags;
-  XrPosef pose;
-};
-Placed locate(const Space& what, const Space& from, XrTime time);
-Placed locate_eye(int eye, const Space& from, XrTime time);
-
-// The functions of each file.
-void add_instance_functions(Functions& functions);
-void add_session_functions(Functions& functions);
-void add_event_functions(Functions& functions);
-void add_frame_functions(Functions& functions);
-void add_swapchain_functions(Functions& functions);
-void add_space_functions(Functions& functions);
-void add_view_functions(Functions& functions);
-void add_time_functions(Functions& functions);
 
 }  // namespace simulated

@@ -1,7 +1,7 @@
 /// Swapchains: textures of the session's context, taken and given back in the specification's order.
 
 #include "tests/headset/gl.hpp"
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 
@@ -13,6 +13,9 @@ Swapchain& need_swapchain(XrSwapchain swapchain) {
   Swapchain& found = find(runtime().swapchains, swapchain, "swapchain");
   need_session(as_handle<XrSession>(found.session));
   return found;
+}
+const Graphics& graphics_of(const Swapchain& swapchain) {
+  return runtime().sessions.at(swapchain.session).graphics;
 }
 XrResult success(const Swapchain& swapchain) { return success(runtime().sessions.at(swapchain.session)); }
 
@@ -70,7 +73,7 @@ XrResult create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, 
 XrResult destroy_swapchain(XrSwapchain swapchain) {
   Runtime& all = runtime();
   Swapchain& found = find(all.swapchains, swapchain, "swapchain");
-  const SessionContext taken(all.sessions.at(found.session).graphics);
+  const SessionContext taken(graphics_of(found));
   glDeleteTextures(images_of_each, found.images.data());
   all.swapchains.erase(number_of(swapchain));
   return XR_SUCCESS;
@@ -79,6 +82,7 @@ XrResult destroy_swapchain(XrSwapchain swapchain) {
 XrResult enumerate_images(XrSwapchain swapchain, std::uint32_t capacity, std::uint32_t* count,
                           XrSwapchainImageBaseHeader* out) {
   const Swapchain& found = need_swapchain(swapchain);
+  const SessionContext taken(graphics_of(found));
   auto* images = reinterpret_cast<XrSwapchainImageOpenGLKHR*>(out);
   const XrResult result = give_array(found.images, capacity, count, [&](std::size_t i, GLuint image) {
     need_type(&images[i], XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR);
@@ -89,6 +93,7 @@ XrResult enumerate_images(XrSwapchain swapchain, std::uint32_t capacity, std::ui
 
 XrResult acquire_image(XrSwapchain swapchain, const XrSwapchainImageAcquireInfo* info, std::uint32_t* index) {
   Swapchain& found = need_swapchain(swapchain);
+  const SessionContext taken(graphics_of(found));
   need_type_or_null(info, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
   need(found.acquired.size() < images_of_each, XR_ERROR_CALL_ORDER_INVALID,
        "every image is acquired and none released");
@@ -100,6 +105,7 @@ XrResult acquire_image(XrSwapchain swapchain, const XrSwapchainImageAcquireInfo*
 
 XrResult wait_image(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* info) {
   Swapchain& found = need_swapchain(swapchain);
+  const SessionContext taken(graphics_of(found));
   need_type(info, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
   need(!found.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
   need(!found.waited, XR_ERROR_CALL_ORDER_INVALID, "the image before was waited for and not released");
@@ -113,6 +119,7 @@ XrResult wait_image(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* info)
 
 XrResult release_image(XrSwapchain swapchain, const XrSwapchainImageReleaseInfo* info) {
   Swapchain& found = need_swapchain(swapchain);
+  const SessionContext taken(graphics_of(found));
   need_type_or_null(info, XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
   need(found.waited, XR_ERROR_CALL_ORDER_INVALID, "no image was waited for");
   found.shown = found.acquired.front();

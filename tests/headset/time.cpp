@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 

@@ -1,6 +1,6 @@
 /// Where the eyes are.
 
-#include "tests/headset/state.hpp"
+#include "tests/headset/parts.hpp"
 
 namespace simulated {
 

@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "stats/base/error.hpp"
-
 namespace apps {
 
 namespace {
@@ -54,6 +52,10 @@ bool holds(const std::vector<std::string>& list, const std::string& word) {
 }  // namespace
 
 void check_xr(XrResult result, const std::string& call, const std::string& mend) {
+  if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) {
+    throw HeadsetLost("OpenXR, " + call, name_of(result),
+                      "see that the headset and its software run, and start again");
+  }
   if (XR_FAILED(result)) throw base::Error("OpenXR, " + call, name_of(result), mend);
 }
 
@@ -92,7 +94,8 @@ XrConnection::XrConnection(const std::vector<std::string>& needed, const std::ve
 }
 
 XrConnection::~XrConnection() {
-  if (instance_ != XR_NULL_HANDLE) function<PFN_xrDestroyInstance>("xrDestroyInstance")(instance_);
+  if (instance_ != XR_NULL_HANDLE && !left_behind_)
+    function<PFN_xrDestroyInstance>("xrDestroyInstance")(instance_);
 }
 
 bool XrConnection::has(const std::string& extension) const { return holds(enabled_, extension); }

@@ -5,11 +5,18 @@
 #include <vector>
 
 #include "apps/common/headset/openxr.hpp"
+#include "stats/base/error.hpp"
 
 namespace apps {
 
+/// The session or the whole runtime is gone; what was made of it can only be destroyed.
+class HeadsetLost final : public base::Error {
+ public:
+  using base::Error::Error;
+};
+
 /// base::Error that names the call and the result, unless the result is a success: positive codes are none of
-/// failures.
+/// failures. HeadsetLost for a session or an instance that is lost.
 void check_xr(XrResult result, const std::string& call, const std::string& mend = "");
 
 /// An array by OpenXR's two calls, the first of which asks for its length. `fill`: (capacity, count, values)
@@ -40,6 +47,8 @@ class XrConnection {
   XrConnection& operator=(const XrConnection&) = delete;
 
   XrInstance instance() const { return instance_; }
+  /// A call never came back: the instance stays until the process ends.
+  void leave_behind() { left_behind_ = true; }
   /// Everything that the runtime offers, by name.
   const std::vector<std::string>& offered() const { return offered_; }
   /// Whether an extension was asked for and offered.
@@ -57,6 +66,7 @@ class XrConnection {
   PFN_xrGetInstanceProcAddr get_ = nullptr;
   XrInstance instance_ = XR_NULL_HANDLE;
   std::vector<std::string> offered_, enabled_;
+  bool left_behind_ = false;
 };
 
 }  // namespace apps

@@ -37,7 +37,4 @@ struct HeadsetOffer {
 /// that fail.
 HeadsetOffer read_headset_offer();
 
-/// "GL_SRGB8_ALPHA8" or the number in hex.
-std::string gl_format_name(std::int64_t format);
-
 }  // namespace apps

@@ -1,0 +1,241 @@
+#include "apps/common/headset/headset_session.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/common/headset/actions.hpp"
+#include "apps/common/headset/lifecycle.hpp"
+#include "apps/common/headset/refresh.hpp"
+#include "apps/common/headset/swapchain.hpp"
+#include "apps/common/headset/watched_thread.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr XrEnvironmentBlendMode opaque = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+/// Share of a rate within which a measured one is the one that an event told.
+constexpr double told_well = 0.04;
+
+HeadsetSystem read_opaque_system(const XrConnection& xr) {
+  HeadsetSystem system = read_system(xr);
+  if (system.opaque) return system;
+  throw base::Error("headset", system.name + " shows the world through the picture",
+                    "use a headset that hides the world");
+}
+
+std::vector<PictureSize> picture_sizes(const HeadsetSystem& system, const HeadsetChoice& choice) {
+  std::vector<PictureSize> sizes;
+  for (const auto& view : system.views)
+    sizes.push_back({static_cast<int>(view.recommendedImageRectWidth),
+                     static_cast<int>(view.recommendedImageRectHeight)});
+  if (choice.page_width_px > 0) sizes.push_back({choice.page_width_px, choice.page_height_px});
+  return sizes;
+}
+
+}  // namespace
+
+/// In the order in which they are made; they go in the opposite one.
+struct HeadsetSession::Parts {
+  Parts(const sim::GlContext& gl, const HeadsetChoice& choice)
+      : patience(static_cast<std::int64_t>(choice.patience_s * 1e9)),
+        xr(connect_to_headset(choice.eye_gaze)),
+        system(read_opaque_system(xr)),
+        session(xr, system.id, gl),
+        clock(xr),
+        lifecycle(session, clock),
+        refresh(session),
+        world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
+        head(session, XR_REFERENCE_SPACE_TYPE_VIEW),
+        actions(session, clock, system.eye_gaze) {
+    const std::vector<PictureSize> sizes = picture_sizes(system, choice);
+    swapchains = make_swapchains(session, sizes);
+    for (const PictureSize& size : sizes)
+      pictures.push_back(std::make_unique<sim::Offscreen>(size.width_px, size.height_px));
+  }
+
+  std::chrono::nanoseconds patience;
+  XrConnection xr;
+  HeadsetSystem system;
+  SessionHandle session;
+  RuntimeClock clock;
+  Lifecycle lifecycle;
+  RefreshControl refresh;
+  Space world, head;
+  Actions actions;
+  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< left, right and, where one is asked for, the page
+  std::vector<std::unique_ptr<sim::Offscreen>> pictures;  ///< the same
+  RateMeter meter;
+  double told_hz = 0;                    ///< by the last event; 0: none came
+  std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event told
+  std::int64_t next_index = 0;
+  WatchedThread watched;
+
+  XrFrameState wait_frame();
+  XrCompositionLayerProjectionView layer_view(const EyeView& eye, const Swapchain& swapchain) const;
+};
+
+XrFrameState HeadsetSession::Parts::wait_frame() {
+  struct Answer {
+    XrResult result = XR_SUCCESS;
+    XrFrameState frame{};
+  };
+  const auto answer = std::make_shared<Answer>();
+  answer->frame.type = XR_TYPE_FRAME_STATE;
+  const auto call = xr.function<PFN_xrWaitFrame>("xrWaitFrame");
+  // The runtime touches no GL context in this call, so that it may come from another thread.
+  const bool back = watched.run(
+      [answer, call, handle = session.get()] {
+        XrFrameWaitInfo info{};
+        info.type = XR_TYPE_FRAME_WAIT_INFO;
+        answer->result = call(handle, &info, &answer->frame);
+      },
+      patience);
+  if (!back) {
+    session.leave_behind();
+    xr.leave_behind();
+    throw base::Error("headset",
+                      fmt::format("the runtime has held a frame for {:g} s",
+                                  std::chrono::duration<double>(patience).count()),
+                      "start the headset's software anew");
+  }
+  check_xr(answer->result, "xrWaitFrame");
+  return answer->frame;
+}
+
+XrCompositionLayerProjectionView HeadsetSession::Parts::layer_view(const EyeView& eye,
+                                                                   const Swapchain& swapchain) const {
+  XrCompositionLayerProjectionView view{};
+  view.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
+  view.pose = pose_of(eye.pose);
+  view.fov = {eye.fov.left, eye.fov.right, eye.fov.up, eye.fov.down};
+  view.subImage = swapchain.image();
+  return view;
+}
+
+HeadsetSession::HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& choice)
+    : parts_(std::make_unique<Parts>(gl, choice)) {}
+HeadsetSession::~HeadsetSession() = default;
+
+std::string HeadsetSession::description() const {
+  return fmt::format("{}, {} x {} px an eye, {}", parts_->system.name, picture(0).width(),
+                     picture(0).height(), gl_format_name(parts_->swapchains[0]->format()));
+}
+
+bool HeadsetSession::keeps_levels() const { return apps::keeps_levels(parts_->swapchains[0]->format()); }
+bool HeadsetSession::times_convert() const { return parts_->clock.converts(); }
+bool HeadsetSession::has_eye_gaze() const { return parts_->system.eye_gaze; }
+HeadsetState HeadsetSession::state() const { return parts_->lifecycle.state(); }
+bool HeadsetSession::running() const { return parts_->lifecycle.running(); }
+void HeadsetSession::request_exit() { parts_->lifecycle.request_exit(); }
+
+std::vector<HeadsetEvent> HeadsetSession::poll() {
+  std::vector<HeadsetEvent> events = parts_->lifecycle.poll();
+  for (const HeadsetEvent& event : events) {
+    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->told_hz = event.to_hz;
+    if (event.state == HeadsetState::Stopping) parts_->meter.interrupt();
+  }
+  if (parts_->measured) events.push_back(*parts_->measured);
+  parts_->measured.reset();
+  return events;
+}
+
+HeadsetSlot HeadsetSession::wait() {
+  Parts& parts = *parts_;
+  const XrFrameState frame = parts.wait_frame();
+  HeadsetSlot slot{parts.next_index++, parts.clock.to_ns(frame.predictedDisplayTime),
+                   frame.predictedDisplayPeriod, frame.shouldRender == XR_TRUE, frame.predictedDisplayTime};
+  const auto change = parts.meter.add(slot.predicted_ns);
+  if (change && std::abs(change->to_hz - parts.told_hz) > told_well * change->to_hz) {
+    parts.measured = {.kind = HeadsetEvent::Kind::Refresh,
+                      .from_hz = change->from_hz,
+                      .to_hz = change->to_hz,
+                      .at_ns = slot.predicted_ns};
+  }
+  return slot;
+}
+
+void HeadsetSession::begin(const HeadsetSlot&) {
+  XrFrameBeginInfo info{};
+  info.type = XR_TYPE_FRAME_BEGIN_INFO;
+  parts_->session.call<PFN_xrBeginFrame>("xrBeginFrame", parts_->session.get(), &info);
+}
+
+EyeViews HeadsetSession::views(const HeadsetSlot& slot) {
+  XrViewLocateInfo info{};
+  info.type = XR_TYPE_VIEW_LOCATE_INFO;
+  info.viewConfigurationType = stereo_views;
+  info.displayTime = slot.runtime_time;
+  info.space = parts_->world.get();
+  XrViewState state{};
+  state.type = XR_TYPE_VIEW_STATE;
+  std::array<XrView, 2> found{};
+  for (XrView& view : found) view.type = XR_TYPE_VIEW;
+  std::uint32_t count = 0;
+  parts_->session.call<PFN_xrLocateViews>("xrLocateViews", parts_->session.get(), &info, &state, 2u, &count,
+                                          found.data());
+  EyeViews out;
+  for (std::size_t eye = 0; eye < out.size(); ++eye) {
+    const XrFovf& fov = found[eye].fov;
+    out[eye] = {pose_of(found[eye].pose, state.viewStateFlags),
+                {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown},
+                picture(eye).width(),
+                picture(eye).height()};
+  }
+  return out;
+}
+
+HeadsetInput HeadsetSession::input(const HeadsetSlot& slot) {
+  HeadsetInput out;
+  out.head = parts_->head.locate(parts_->world, slot.runtime_time);
+  if (state() == HeadsetState::Focused) parts_->actions.read(parts_->world, slot.runtime_time, out);
+  return out;
+}
+
+const sim::Offscreen& HeadsetSession::picture(std::size_t eye) const { return *parts_->pictures.at(eye); }
+const sim::Offscreen& HeadsetSession::page() const { return *parts_->pictures.at(2); }
+
+void HeadsetSession::end(const HeadsetSlot& slot, const std::optional<EyeViews>& shown,
+                         const std::optional<HeadsetPage>& page) {
+  Parts& parts = *parts_;
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+  std::array<XrCompositionLayerProjectionView, 2> views{};
+  XrCompositionLayerProjection projection{};
+  XrCompositionLayerQuad quad{};
+  if (slot.should_render && shown && can_be_shown(*shown)) {
+    for (std::size_t eye = 0; eye < views.size(); ++eye) {
+      parts.swapchains[eye]->write(picture(eye), parts.patience);
+      views[eye] = parts.layer_view((*shown)[eye], *parts.swapchains[eye]);
+    }
+    projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
+    projection.space = parts.world.get();
+    projection.viewCount = static_cast<std::uint32_t>(views.size());
+    projection.views = views.data();
+    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
+  }
+  if (slot.should_render && page) {
+    Swapchain& swapchain = *parts.swapchains.at(2);
+    swapchain.write(this->page(), parts.patience);
+    quad.type = XR_TYPE_COMPOSITION_LAYER_QUAD;
+    quad.space = parts.world.get();
+    quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
+    quad.subImage = swapchain.image();
+    quad.pose = pose_of(page->pose);
+    quad.size = {page->width_m, page->height_m};
+    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
+  }
+  XrFrameEndInfo info{};
+  info.type = XR_TYPE_FRAME_END_INFO;
+  info.displayTime = slot.runtime_time;
+  info.environmentBlendMode = opaque;
+  info.layerCount = static_cast<std::uint32_t>(layers.size());
+  info.layers = layers.data();
+  parts.session.call<PFN_xrEndFrame>("xrEndFrame", parts.session.get(), &info);
+}
+
+HeadsetRate HeadsetSession::rate() const { return {parts_->refresh.told_hz(), parts_->meter.hz()}; }
+const RateMeter& HeadsetSession::meter() const { return parts_->meter; }
+void HeadsetSession::request_rate(double hz) { parts_->refresh.request(hz); }
+
+}  // namespace apps

@@ -1,0 +1,24 @@
+#pragma once
+/// The GL context of the calling thread, as it was before a call into the runtime.
+
+#include "apps/common/headset/openxr.hpp"
+
+namespace apps {
+
+/// Runtimes make contexts of their own current and leave GL errors behind. When this object goes, the context
+/// that was current when it came is current again and its errors are forgotten.
+class KeptContext {
+ public:
+  KeptContext();
+  ~KeptContext();
+  KeptContext(const KeptContext&) = delete;
+  KeptContext& operator=(const KeptContext&) = delete;
+
+ private:
+  EGLenum api_;
+  EGLDisplay display_;
+  EGLContext context_;
+  EGLSurface draw_, read_;
+};
+
+}  // namespace apps

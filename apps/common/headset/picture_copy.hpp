@@ -1,0 +1,37 @@
+#pragma once
+/// Our pictures, which hold sRGB values, into images of whatever format a runtime offers.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libsim/render/gl_program.hpp"
+#include "libsim/render/offscreen.hpp"
+
+namespace apps {
+
+/// The formats of a list that can take a picture, the best first: 8-bit sRGB, then linear ones fine enough
+/// for all 256 levels, then the others. Depths are left out.
+std::vector<std::int64_t> picture_formats(const std::vector<std::int64_t>& offered);
+/// Each of the 256 levels of an sRGB picture arrives within one.
+bool keeps_levels(std::int64_t format);
+/// "GL_SRGB8_ALPHA8" or the number in hex.
+std::string gl_format_name(std::int64_t format);
+
+/// Copies pictures into framebuffers whose colour has one format. Needs a current context always.
+class PictureCopy {
+ public:
+  explicit PictureCopy(std::int64_t format);
+  ~PictureCopy();
+  PictureCopy(const PictureCopy&) = delete;
+  PictureCopy& operator=(const PictureCopy&) = delete;
+  /// The framebuffer is as large as the picture. Its values arrive as they are when the image is shown as
+  /// what its format says.
+  void copy(const sim::Offscreen& picture, unsigned framebuffer) const;
+
+ private:
+  sim::GlProgram program_;
+  unsigned vertices_ = 0;
+};
+
+}  // namespace apps

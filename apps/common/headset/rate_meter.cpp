@@ -1,0 +1,86 @@
+#include "apps/common/headset/rate_meter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace apps {
+
+namespace {
+
+constexpr int first_steps = 8;
+constexpr std::size_t window = 16;
+constexpr double same_rate = 0.04;  // share of a period within which two measures are of one rate
+constexpr double on_grid = 0.1;     // periods
+
+std::int64_t median(std::vector<std::int64_t> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double whole_periods(std::int64_t step_ns, double period_ns) {
+  return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));
+}
+
+bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate * b_ns; }
+
+}  // namespace
+
+double RateMeter::period_of_latest() const {
+  const auto typical = static_cast<double>(median(latest_));
+  double periods = 0;
+  for (const std::int64_t step : latest_) periods += whole_periods(step, typical);
+  return static_cast<double>(std::accumulate(latest_.begin(), latest_.end(), std::int64_t{0})) / periods;
+}
+
+void RateMeter::count(std::int64_t step_ns) {
+  const double whole = whole_periods(step_ns, period_ns_);
+  counted_ns_ += step_ns;
+  counted_periods_ += static_cast<std::int64_t>(whole);
+  dropped_ += static_cast<std::int64_t>(whole) - 1;
+  off_grid_ += std::abs(static_cast<double>(step_ns) / period_ns_ - whole) > on_grid;
+}
+
+std::optional<RateChange> RateMeter::settle() {
+  const double period_ns = period_of_latest();
+  if (period_ns_ != 0) {
+    if (same(period_ns, period_ns_)) return {};
+    // Old and new steps are mixed: the new rate is told when it has settled.
+    period_ns_ = 0;
+    latest_.clear();
+    return {};
+  }
+  period_ns_ = period_ns;
+  counted_ns_ = counted_periods_ = 0;
+  for (const std::int64_t step : latest_) count(step);
+  const double before_ns = std::exchange(before_ns_, period_ns);
+  if (before_ns == 0 || same(period_ns, before_ns)) return {};
+  return RateChange{1e9 / before_ns, 1e9 / period_ns};
+}
+
+std::optional<RateChange> RateMeter::add(std::int64_t predicted_ns) {
+  const std::optional<std::int64_t> before = std::exchange(last_ns_, predicted_ns);
+  if (!before) return {};
+  const std::int64_t step_ns = predicted_ns - *before;
+  repeated_ += step_ns <= 0;
+  if (++steps_ <= first_steps || step_ns <= 0) return {};
+  if (period_ns_ != 0) count(step_ns);
+  if (latest_.size() == window) latest_.erase(latest_.begin());
+  latest_.push_back(step_ns);
+  return latest_.size() == window ? settle() : std::nullopt;
+}
+
+void RateMeter::interrupt() {
+  last_ns_.reset();
+  steps_ = 0;
+  latest_.clear();
+}
+
+std::optional<double> RateMeter::hz() const {
+  if (period_ns_ == 0) return {};
+  return 1e9 * static_cast<double>(counted_periods_) / static_cast<double>(counted_ns_);
+}
+
+}  // namespace apps

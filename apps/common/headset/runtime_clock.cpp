@@ -1,0 +1,25 @@
+#include "apps/common/headset/runtime_clock.hpp"
+
+#include "libstudy/base/clock.hpp"
+
+namespace apps {
+
+RuntimeClock::RuntimeClock(const XrConnection& xr)
+    : xr_(xr), converts_(xr.has(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)) {}
+
+std::int64_t RuntimeClock::to_ns(XrTime time) {
+  if (time <= 0) return -1;
+  if (converts_) {
+    timespec found{};
+    const XrResult result = xr_.function<PFN_xrConvertTimeToTimespecTimeKHR>(
+        "xrConvertTimeToTimespecTimeKHR")(xr_.instance(), time, &found);
+    if (result == XR_ERROR_TIME_INVALID) return -1;
+    check_xr(result, "xrConvertTimeToTimespecTimeKHR");
+    return found.tv_sec * 1'000'000'000 + found.tv_nsec;
+  }
+  if (!guessed_) ahead_ns_ = time - study::RealClock().now_ns();
+  guessed_ = true;
+  return time - ahead_ns_;
+}
+
+}  // namespace apps

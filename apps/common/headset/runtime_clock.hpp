@@ -1,0 +1,26 @@
+#pragma once
+/// The runtime's times on the session's clock.
+
+#include <cstdint>
+
+#include "apps/common/headset/loader.hpp"
+
+namespace apps {
+
+/// Nanoseconds of CLOCK_MONOTONIC, by XR_KHR_convert_timespec_time. Where that is not offered, the relation
+/// between the clocks is guessed once: the first time asked for is now.
+class RuntimeClock {
+ public:
+  explicit RuntimeClock(const XrConnection& xr);
+  bool converts() const { return converts_; }
+  /// -1 for a time that the runtime itself does not know.
+  std::int64_t to_ns(XrTime time);
+
+ private:
+  const XrConnection& xr_;
+  bool converts_;
+  bool guessed_ = false;
+  std::int64_t ahead_ns_ = 0;
+};
+
+}  // namespace apps

@@ -1,0 +1,82 @@
+#pragma once
+/// OpenXR's session on a GL context, and calls into it that leave the caller's GL as it was.
+
+#include <string>
+#include <vector>
+
+#include "apps/common/headset/kept_context.hpp"
+#include "apps/common/headset/system.hpp"
+#include "apps/common/headset/views.hpp"
+#include "libsim/render/gl_context.hpp"
+
+namespace apps {
+
+/// Destroyed with the object, after everything that was made of it.
+class SessionHandle {
+ public:
+  /// base::Error when the runtime does not take EGL contexts or this one. `gl` is current on the calling
+  /// thread and outlives the session.
+  SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
+  ~SessionHandle();
+  SessionHandle(const SessionHandle&) = delete;
+  SessionHandle& operator=(const SessionHandle&) = delete;
+
+  XrSession get() const { return session_; }
+  const XrConnection& xr() const { return xr_; }
+
+  /// call<PFN_xrEndSession>("xrEndSession", session): base::Error for a failure; returns the success.
+  template <class F, class... Arguments>
+  XrResult call(const char* name, Arguments... arguments) const {
+    const XrResult result = attempt<F>(name, arguments...);
+    check_xr(result, name);
+    return result;
+  }
+  /// The same, and failures are returned too.
+  template <class F, class... Arguments>
+  XrResult attempt(const char* name, Arguments... arguments) const {
+    const F function = xr_.function<F>(name);
+    const KeptContext kept;
+    return function(arguments...);
+  }
+  /// Destroys what was made of the session, unless the session was left behind.
+  template <class F, class Handle>
+  void destroy(const char* name, Handle handle) const {
+    if (handle != XR_NULL_HANDLE && !left_behind_) attempt<F>(name, handle);
+  }
+  /// A call never came back: nothing more of the session may be touched. It stays until the process ends.
+  void leave_behind() { left_behind_ = true; }
+
+  /// GL internal formats of pictures in the runtime's order of preference.
+  std::vector<std::int64_t> formats() const;
+
+ private:
+  const XrConnection& xr_;
+  XrSession session_ = XR_NULL_HANDLE;
+  bool left_behind_ = false;
+};
+
+/// A space of the session; destroyed with the object.
+class Space {
+ public:
+  Space(const SessionHandle& session, XrReferenceSpaceType kind);
+  Space(const SessionHandle& session, XrAction pose, XrPath hand = XR_NULL_PATH);
+  ~Space();
+  Space(Space&& other) noexcept;
+  Space(const Space&) = delete;
+  Space& operator=(const Space&) = delete;
+  Space& operator=(Space&&) = delete;
+
+  XrSpace get() const { return space_; }
+  /// Its pose in `base`; `next` is chained to the answer.
+  HeadsetPose locate(const Space& base, XrTime time, void* next = nullptr) const;
+
+ private:
+  const SessionHandle& session_;
+  XrSpace space_ = XR_NULL_HANDLE;
+};
+
+/// Between OpenXR's poses and ours.
+HeadsetPose pose_of(const XrPosef& pose, XrFlags64 flags);
+XrPosef pose_of(const HeadsetPose& pose);
+
+}  // namespace apps

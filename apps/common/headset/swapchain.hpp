@@ -1,0 +1,50 @@
+#pragma once
+/// The runtime's images of one picture.
+
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "apps/common/headset/picture_copy.hpp"
+#include "apps/common/headset/session_handle.hpp"
+
+namespace apps {
+
+/// Destroyed with the object; needs the session's context then.
+class Swapchain {
+ public:
+  /// base::Error when the runtime does not make such images, or OpenGL cannot draw into them.
+  Swapchain(const SessionHandle& session, std::int64_t format, int width_px, int height_px);
+  ~Swapchain();
+  Swapchain(const Swapchain&) = delete;
+  Swapchain& operator=(const Swapchain&) = delete;
+
+  std::int64_t format() const { return format_; }
+  /// Copies a picture of its size into the next image and hands that over. base::Error when the runtime holds
+  /// all images for longer than `limit`.
+  void write(const sim::Offscreen& picture, std::chrono::nanoseconds limit);
+  /// The whole picture, for a layer.
+  XrSwapchainSubImage image() const;
+
+ private:
+  void make_framebuffers();
+  void clear();
+  std::uint32_t acquire(std::chrono::nanoseconds limit) const;
+
+  const SessionHandle& session_;
+  std::int64_t format_;
+  int width_px_, height_px_;
+  XrSwapchain swapchain_ = XR_NULL_HANDLE;
+  std::vector<unsigned> framebuffers_;  ///< one an image
+  std::unique_ptr<PictureCopy> copy_;
+};
+
+/// Swapchains of the best offered format that can really be made, one a size; they all have the same.
+/// base::Error when there is none.
+struct PictureSize {
+  int width_px = 0, height_px = 0;
+};
+std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& session,
+                                                        const std::vector<PictureSize>& sizes);
+
+}  // namespace apps

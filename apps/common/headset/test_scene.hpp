@@ -1,0 +1,40 @@
+#pragma once
+/// A scene that shows whether a headset shows what it should.
+
+#include <array>
+
+#include "apps/common/headset/views.hpp"
+#include "libsim/render/gl_program.hpp"
+
+namespace apps {
+
+/// A disc that faces +z, in the headset's world.
+struct TestDisc {
+  std::array<float, 3> middle_m;
+  float radius_m;
+  std::array<float, 3> paint;  ///< sRGB, [0, 1]
+};
+/// At .5, 1 and 2 m, each four degrees wide: red left, green in the middle, blue right.
+const std::array<TestDisc, 3>& test_discs();
+
+/// An upright strip of 256 greys, level 0 on the left.
+struct TestRamp {
+  float left_m = -0.6f, right_m = 0.6f, down_m = -0.6f, up_m = -0.3f, z_m = -1.5f;
+};
+
+/// The discs, the ramp, and a yellow line at eye level that is infinitely far. Needs a current context.
+class TestScene {
+ public:
+  TestScene();
+  ~TestScene();
+  TestScene(const TestScene&) = delete;
+  TestScene& operator=(const TestScene&) = delete;
+  /// As the eye sees it, into a framebuffer of the eye's size; sRGB values.
+  void draw(const EyeView& eye, unsigned framebuffer) const;
+
+ private:
+  sim::GlProgram program_;
+  unsigned vertices_ = 0;
+};
+
+}  // namespace apps

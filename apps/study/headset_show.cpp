@@ -1,0 +1,240 @@
+#include "apps/study/headset_show.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/common/headset/headset_session.hpp"
+#include "apps/common/headset/loader.hpp"
+#include "apps/common/headset/test_scene.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// For READY, and for the farewell of a runtime.
+constexpr Seconds most_idle{30};
+constexpr int most_sessions = 3;
+
+/// Degrees to the right of and above straight ahead of a head.
+std::array<double, 2> angles_in_head(const HeadsetPose& head, const HeadsetPose& ray) {
+  const auto axes = axes_of(head);
+  const auto direction = direction_of(ray);
+  std::array<double, 3> along{};
+  for (std::size_t i = 0; i < 9; ++i)
+    along[i / 3] += static_cast<double>(axes[i]) * static_cast<double>(direction[i % 3]);
+  const double degree = std::numbers::pi / 180;
+  return {std::atan2(along[0], -along[2]) / degree, std::asin(std::clamp(along[1], -1.0, 1.0)) / degree};
+}
+
+struct GazeCount {
+  std::int64_t samples = 0, valid = 0, tracked = 0, last_ns = -1;
+  std::array<double, 2> sum_deg{};
+
+  void add(const HeadsetGaze& gaze, const HeadsetPose& head) {
+    if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // the tracker is slower than the display
+    last_ns = gaze.sampled_ns.value_or(-1);
+    ++samples;
+    if (!gaze.ray.turn_valid || !head.turn_valid) return;
+    ++valid;
+    tracked += gaze.ray.turn_tracked;
+    const auto angles = angles_in_head(head, gaze.ray);
+    for (std::size_t i = 0; i < angles.size(); ++i) sum_deg[i] += angles[i];
+  }
+};
+
+struct ShowReport {
+  std::string headset, ended;
+  std::vector<std::string> states, notes;
+  std::int64_t frames = 0, shown = 0, dropped = 0, repeated = 0, off_grid = 0, selected = 0, pushed = 0;
+  HeadsetRate rate;
+  bool times_convert = false, has_gaze = false;
+  GazeCount gaze;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+std::string rate_text(const HeadsetRate& rate) {
+  std::string out = rate.measured_hz
+                        ? fmt::format("{:.2f} Hz by settled steps of predicted times", *rate.measured_hz)
+                        : "not known: too few steps between predicted times";
+  if (rate.told_hz) out += fmt::format("; {:g} Hz by the runtime's word", *rate.told_hz);
+  return out;
+}
+
+std::string gaze_text(const ShowReport& report) {
+  if (!report.has_gaze) return "none";
+  const GazeCount& gaze = report.gaze;
+  if (gaze.samples == 0) return "no sample";
+  const auto share = [&](std::int64_t part) {
+    return 100 * static_cast<double>(part) / static_cast<double>(gaze.samples);
+  };
+  std::string out = fmt::format("{} samples, {:.1f} % valid, {:.1f} % tracked", gaze.samples,
+                                share(gaze.valid), share(gaze.tracked));
+  if (gaze.valid > 0)
+    out += fmt::format("; on average {:.1f} degrees right, {:.1f} up",
+                       gaze.sum_deg[0] / static_cast<double>(gaze.valid),
+                       gaze.sum_deg[1] / static_cast<double>(gaze.valid));
+  return out;
+}
+
+void print_report(const ShowReport& report) {
+  const auto row = [](const char* name, const std::string& text) { fmt::print("{:<12}{}\n", name, text); };
+  row("shown in", report.headset);
+  row("states", joined(report.states));
+  row("frames", fmt::format("{}, {} with pictures", report.frames, report.shown));
+  row("rate", rate_text(report.rate));
+  row("dropped", fmt::format("{} slots; {} predicted times repeated, {} off the grid", report.dropped,
+                             report.repeated, report.off_grid));
+  row("times", report.times_convert ? "on the system's clock" : "not told on the system's clock");
+  row("gaze", gaze_text(report));
+  row("hands", fmt::format("pressed {} times, stick pushed {} times", report.selected, report.pushed));
+  for (const std::string& note : report.notes) row("note", note);
+  row("ended", report.ended);
+}
+
+/// One session of the show, and maybe not the last.
+class Show {
+ public:
+  Show(const sim::GlContext& gl, const TestScene& scene, const ShowChoice& choice, ShowReport& report)
+      : session_(gl, {.eye_gaze = true, .patience_s = choice.patience_s}),
+        scene_(scene),
+        report_(report),
+        asked_hz_(choice.refresh_hz) {
+    report.headset = session_.description();
+    report.times_convert = session_.times_convert();
+    report.has_gaze = session_.has_eye_gaze();
+    if (!session_.keeps_levels()) report.notes.emplace_back("the format of pictures loses dark levels");
+    if (choice.refresh_hz > 0) session_.request_rate(choice.refresh_hz);
+  }
+  ~Show() {
+    report_.dropped += session_.meter().dropped();
+    report_.repeated += session_.meter().repeated();
+    report_.off_grid += session_.meter().off_grid();
+  }
+  Show(const Show&) = delete;
+  Show& operator=(const Show&) = delete;
+
+  /// False: the session is lost, and another may be made.
+  bool run(double& seconds_left) {
+    auto idle_since = std::chrono::steady_clock::now();
+    while (true) {
+      for (const HeadsetEvent& event : session_.poll()) note(event);
+      if (session_.state() == HeadsetState::Exiting) return true;
+      if (session_.state() == HeadsetState::LossPending || runtime_ends_) return false;
+      if (session_.running()) {
+        frame(seconds_left);
+        if (seconds_left <= 0 && !asked_to_exit_) ask_to_exit();
+        idle_since = std::chrono::steady_clock::now();
+        continue;
+      }
+      if (std::chrono::steady_clock::now() - idle_since > most_idle) {
+        throw base::Error("headset", "the runtime lets no session begin", "put the headset on");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+ private:
+  void ask_to_exit() {
+    asked_to_exit_ = true;
+    report_.ended = "after its time";
+    report_.rate = session_.rate();
+    const double shown_hz = report_.rate.measured_hz.value_or(report_.rate.told_hz.value_or(0));
+    if (asked_hz_ > 0 && std::abs(shown_hz - asked_hz_) > 0.02 * asked_hz_)
+      report_.notes.push_back(fmt::format("the display did not go to {:g} Hz", asked_hz_));
+    session_.request_exit();
+  }
+
+  void note(const HeadsetEvent& event) {
+    using Kind = HeadsetEvent::Kind;
+    if (event.kind == Kind::State) report_.states.emplace_back(name_of(event.state));
+    if (event.kind == Kind::Refresh)
+      report_.notes.push_back(
+          fmt::format("refresh went from {:.4g} to {:.4g} Hz", event.from_hz, event.to_hz));
+    if (event.kind == Kind::Recentred) report_.notes.emplace_back("the world was recentred");
+    runtime_ends_ |= event.kind == Kind::RuntimeEnds;
+    if (event.kind == Kind::EventsLost) report_.notes.emplace_back("the runtime lost events");
+  }
+
+  void frame(double& seconds_left) {
+    const HeadsetSlot slot = session_.wait();
+    if (last_ns_) seconds_left -= static_cast<double>(slot.predicted_ns - *last_ns_) * 1e-9;
+    last_ns_ = slot.predicted_ns;
+    session_.begin(slot);
+    take(session_.input(slot));
+    const EyeViews views = session_.views(slot);
+    const bool shows = slot.should_render && can_be_shown(views);
+    if (shows) {
+      for (std::size_t eye = 0; eye < views.size(); ++eye)
+        scene_.draw(views[eye], session_.picture(eye).framebuffer());
+    }
+    session_.end(slot, shows ? std::optional(views) : std::nullopt);
+    ++report_.frames;
+    report_.shown += shows;
+  }
+
+  void take(const HeadsetInput& input) {
+    if (input.gaze) report_.gaze.add(*input.gaze, input.head);
+    report_.selected += input.hands.select_began;
+    const bool pushed = std::hypot(input.hands.stick[0], input.hands.stick[1]) > 0.5f;
+    report_.pushed += pushed && !pushed_;
+    pushed_ = pushed;
+  }
+
+  HeadsetSession session_;
+  const TestScene& scene_;
+  ShowReport& report_;
+  double asked_hz_;  ///< 0: none
+  std::optional<std::int64_t> last_ns_;
+  bool asked_to_exit_ = false, runtime_ends_ = false, pushed_ = false;
+};
+
+void show_sessions(const ShowChoice& choice, ShowReport& report) {
+  const sim::GlContext gl = sim::GlContext::make_headless();
+  const TestScene scene;
+  double seconds_left = choice.seconds;
+  for (int session = 1;; ++session) {
+    try {
+      Show show(gl, scene, choice, report);
+      if (show.run(seconds_left)) return;
+    } catch (const HeadsetLost&) {
+      if (session == most_sessions) throw;
+    }
+    if (session == most_sessions) {
+      throw base::Error("headset", "session after session is lost", "see the log of the headset's software");
+    }
+    report.notes.emplace_back("a session was lost and made anew");
+  }
+}
+
+}  // namespace
+
+void show_in_headset(const ShowChoice& choice) {
+  ShowReport report;
+  report.ended = "the runtime asked to leave";
+  try {
+    show_sessions(choice, report);
+  } catch (...) {
+    report.ended = "by an error";
+    if (!report.headset.empty()) print_report(report);
+    throw;
+  }
+  print_report(report);
+}
+
+}  // namespace apps

@@ -1,0 +1,35 @@
+// What a headset's test scene shows along each ray: sky and ground with the horizon between them, a ramp of 256 greys, and discs.
+layout(location = 0) out vec4 colour;
+
+uniform vec3 eye;       // m
+uniform mat3 turn;      // the eye's axes: right, up, back
+uniform vec4 tangents;  // of the field of view: left, right, down, up
+uniform vec2 size;      // px
+uniform vec4 ramp;      // left, right, down, up, m
+uniform float ramp_z;
+uniform vec4 discs[3];  // middle and radius, m; they face +z
+uniform vec3 paints[3];
+
+// Where the ray goes through the plane of one z, before the eye.
+bool reach(vec3 ray, float z, out vec2 at) {
+  const float way = (z - eye.z) / ray.z;
+  at = eye.xy + way * ray.xy;
+  return way > 0.0;
+}
+
+void main() {
+  const vec2 share = gl_FragCoord.xy / size;
+  const vec3 ray =
+      turn * vec3(mix(tangents.x, tangents.y, share.x), mix(tangents.z, tangents.w, share.y), -1.0);
+  colour = vec4(ray.y > 0.0 ? vec3(0.25, 0.25, 0.4) : vec3(0.2, 0.25, 0.2), 1.0);
+  if (abs(ray.y) < 0.003 * length(ray.xz)) colour.rgb = vec3(1.0, 1.0, 0.0);
+  vec2 at;
+  if (reach(ray, ramp_z, at)) {
+    const vec2 along = (at - ramp.xz) / (ramp.yw - ramp.xz);
+    if (all(greaterThanEqual(along, vec2(0.0))) && all(lessThan(along, vec2(1.0))))
+      colour.rgb = vec3(floor(256.0 * along.x) / 255.0);
+  }
+  for (int i = 2; i >= 0; --i) {  // the nearest last
+    if (reach(ray, discs[i].z, at) && distance(at, discs[i].xy) < discs[i].w) colour.rgb = paints[i];
+  }
+}

@@ -1,0 +1,153 @@
+/// Parts of the headset's session that need no runtime.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <future>
+
+#include "apps/common/headset/rate_meter.hpp"
+#include "apps/common/headset/views.hpp"
+#include "apps/common/headset/watched_thread.hpp"
+
+namespace apps {
+namespace {
+
+constexpr double degree = 3.14159265358979 / 180;
+
+/// Adds `count` slots `step_ns` apart; the changes that were told.
+std::vector<RateChange> add_slots(RateMeter& meter, std::int64_t& now_ns, int count, std::int64_t step_ns,
+                                  std::int64_t jitter_ns = 0) {
+  std::vector<RateChange> changes;
+  for (int i = 0; i < count; ++i) {
+    now_ns += step_ns;
+    const std::int64_t beside_ns = jitter_ns * (i % 5 - 2) / 2;
+    if (const auto change = meter.add(now_ns + beside_ns)) changes.push_back(*change);
+  }
+  return changes;
+}
+
+constexpr std::int64_t at_90_hz = 11'111'111, at_72_hz = 13'888'889, at_45_hz = 22'222'222;
+
+TEST(HeadsetRate, IsTheSettledStepAndNeverTheFirst) {
+  RateMeter meter;
+  std::int64_t now_ns = 5;
+  EXPECT_TRUE(add_slots(meter, now_ns, 8, 3 * at_90_hz).empty());
+  EXPECT_FALSE(meter.hz());
+  EXPECT_TRUE(add_slots(meter, now_ns, 40, at_90_hz).empty());
+  ASSERT_TRUE(meter.hz());
+  EXPECT_NEAR(*meter.hz(), 90, 1e-3);
+  EXPECT_EQ(meter.dropped(), 0);
+}
+
+TEST(HeadsetRate, JitterMovesItLittleAndIsOffTheGrid) {
+  RateMeter meter;
+  std::int64_t now_ns = 0;
+  EXPECT_TRUE(add_slots(meter, now_ns, 500, at_90_hz, 2'000'000).empty());
+  EXPECT_NEAR(*meter.hz(), 90, 0.1);  // 2 ms of jitter at both ends of some 490 periods
+  EXPECT_GT(meter.off_grid(), 90);    // each fifth step: 4 ms too short
+  EXPECT_EQ(meter.dropped(), 0);
+}
+
+TEST(HeadsetRate, SlotsThatAreLeftOutOrToldTwiceAreCounted) {
+  RateMeter meter;
+  std::int64_t now_ns = 0;
+  add_slots(meter, now_ns, 30, at_90_hz);
+  EXPECT_TRUE(add_slots(meter, now_ns, 1, 4 * at_90_hz).empty());
+  add_slots(meter, now_ns, 2, 0);
+  add_slots(meter, now_ns, 30, at_90_hz);
+  EXPECT_EQ(meter.dropped(), 3);
+  EXPECT_EQ(meter.repeated(), 2);
+  EXPECT_EQ(meter.off_grid(), 0);
+  EXPECT_NEAR(*meter.hz(), 90, 1e-3);
+}
+
+TEST(HeadsetRate, AChangeIsToldOnceWhenItHasSettled) {
+  for (const std::int64_t step_ns : {at_72_hz, at_45_hz}) {
+    RateMeter meter;
+    std::int64_t now_ns = 0;
+    add_slots(meter, now_ns, 50, at_90_hz);
+    const auto changes = add_slots(meter, now_ns, 60, step_ns);
+    ASSERT_EQ(changes.size(), 1u);
+    EXPECT_NEAR(changes[0].from_hz, 90, 1e-3);
+    EXPECT_NEAR(changes[0].to_hz, 1e9 / static_cast<double>(step_ns), 0.5);
+    EXPECT_NEAR(*meter.hz(), 1e9 / static_cast<double>(step_ns), 0.5);
+  }
+}
+
+TEST(HeadsetRate, APauseIsNoDroppedSlot) {
+  RateMeter meter;
+  std::int64_t now_ns = 0;
+  add_slots(meter, now_ns, 50, at_90_hz);
+  meter.interrupt();
+  now_ns += 100 * at_90_hz;
+  EXPECT_TRUE(add_slots(meter, now_ns, 50, at_90_hz).empty());
+  EXPECT_EQ(meter.dropped(), 0);
+}
+
+TEST(HeadsetViews, LookAlongTheirPose) {
+  HeadsetPose pose;
+  EXPECT_EQ(direction_of(pose), (std::array<float, 3>{0, 0, -1}));
+  const auto half = static_cast<float>(std::sqrt(0.5));
+  pose.turn = {0, half, 0, half};  // a quarter to the left
+  const auto left = direction_of(pose);
+  EXPECT_NEAR(left[0], -1, 1e-6);
+  EXPECT_NEAR(left[2], 0, 1e-6);
+}
+
+TEST(HeadsetViews, AFieldOfViewFillsItsPicture) {
+  EyeView eye;
+  eye.pose.place_m = {0.5f, 1, 2};
+  eye.fov = {-0.9f, 0.7f, 0.8f, -0.85f};
+  eye.width_px = 200;
+  eye.height_px = 100;
+  const sim::PixelRays rays = sim::pixel_rays(view_of(eye, 0.1, 50));
+  EXPECT_NEAR(rays.offset_x, std::tan(-0.9), 1e-5);
+  EXPECT_NEAR(200 * rays.scale_x + rays.offset_x, std::tan(0.7), 1e-5);
+  EXPECT_NEAR(rays.offset_y, std::tan(-0.85), 1e-5);
+  EXPECT_NEAR(100 * rays.scale_y + rays.offset_y, std::tan(0.8), 1e-5);
+}
+
+TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
+  EyeView eye;
+  eye.pose.place_m = {0.5f, 1, 2};
+  const auto half = static_cast<float>(std::sin(15 * degree));
+  eye.pose.turn = {0, 0, half, static_cast<float>(std::cos(15 * degree))};  // leans to the left by 30 degrees
+  eye.fov = {-0.8f, 0.8f, 0.8f, -0.8f};
+  const sim::Mat4 view = view_of(eye, 0.1, 50).view;
+  // A point 1 m to the right of the eye and 3 m ahead, in the eye's own axes.
+  const std::array<double, 3> point{1.5, 1, -1};
+  std::array<double, 3> seen{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    seen[row] = static_cast<double>(view[12 + row]);
+    for (std::size_t column = 0; column < 3; ++column)
+      seen[row] += static_cast<double>(view[4 * column + row]) * point[column];
+  }
+  EXPECT_NEAR(seen[0], std::cos(30 * degree), 1e-5);
+  EXPECT_NEAR(seen[1], -std::sin(30 * degree), 1e-5);
+  EXPECT_NEAR(seen[2], -3, 1e-5);
+}
+
+TEST(HeadsetWatch, ACallThatComesBackIsDone) {
+  WatchedThread watched;
+  int calls = 0;
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(watched.run([&] { ++calls; }, std::chrono::hours(1)));
+  EXPECT_EQ(calls, 3);
+}
+
+TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
+  std::promise<void> freed;
+  const auto wait = freed.get_future().share();
+  // Told when the thread lets go of the call, whether or not it had begun it by then.
+  auto held = std::make_shared<std::promise<void>>();
+  const auto let_go = held->get_future();
+  {
+    WatchedThread watched;
+    EXPECT_FALSE(watched.run([wait, held = std::move(held)] { wait.wait(); }, std::chrono::milliseconds(1)));
+    EXPECT_TRUE(watched.hangs());
+    EXPECT_FALSE(watched.run([] {}, std::chrono::hours(1)));
+  }
+  freed.set_value();
+  let_go.wait();
+}
+
+}  // namespace
+}  // namespace apps

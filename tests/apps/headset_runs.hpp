@@ -1,0 +1,57 @@
+#pragma once
+/// vip-study headset on the simulated runtime of tests/headset, through the real loader.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libsim/render/png.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace apps::test {
+
+class HeadsetRuns : public ::testing::Test {
+ protected:
+  using Environment = std::vector<std::pair<std::string, std::string>>;
+
+  Ended run(const std::vector<std::string>& arguments, const Environment& environment) {
+    std::vector<std::string> all{bin + "/vip-study", "headset"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run_program(all, [&] {
+      for (const char* name :
+           {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS"})
+        ::unsetenv(name);
+      ::setenv("VIP_XR_LOG", log().c_str(), 1);
+      ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
+      ::setenv("XR_LOADER_DEBUG", "none", 1);
+      for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+    });
+  }
+  /// On a runtime whose caller must keep the specification.
+  Ended on(const std::string& profile, const std::vector<std::string>& arguments = {}) {
+    std::filesystem::remove(log());
+    Ended ended =
+        run(arguments, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
+    EXPECT_THAT(calls(), ::testing::Not(::testing::HasSubstr("BREACH")));
+    return ended;
+  }
+  std::string log() const { return folder_ / "calls.log"; }
+  std::string calls() const { return std::filesystem::exists(log()) ? base::read_file(log(), 1 << 24) : ""; }
+  /// What a frame that the profile dumps showed to an eye, "left" or "right".
+  sim::Image picture(long frame, const std::string& eye) const {
+    std::string number = std::to_string(frame);
+    number.insert(0, 6 - number.size(), '0');
+    return sim::read_png(folder_ / (number + "_" + eye + ".png"));
+  }
+
+  const std::string bin = VIP_BIN_DIR;
+  const ::test::TemporaryFolder folder_;
+};
+
+}  // namespace apps::test

@@ -1,0 +1,92 @@
+/// The scripted hand and eyes: where they point, and what they point at on a page.
+
+#include "tests/headset/parts.hpp"
+
+namespace simulated {
+
+namespace {
+
+double knob(const char* name) { return runtime().knobs.at(name); }
+double seconds(XrDuration duration) { return 1e-9 * static_cast<double>(duration); }
+
+/// Turned so that -z, forwards, goes from one place to another.
+Pose aimed(Vector from, Vector to) {
+  const Vector way = to + -1.0 * from;
+  const double level = std::sqrt(way.x * way.x + way.z * way.z);
+  const double yaw = std::atan2(-way.x, -way.z), pitch = std::atan2(way.y, level);
+  return {turned(yaw / radians_per_degree, pitch / radians_per_degree, 0), from};
+}
+
+/// How many targets the page has seen before, and how much of the present one's time is over.
+struct Turn {
+  std::size_t target;
+  double part;
+};
+Turn turn_at(XrTime time) {
+  const Runtime& all = runtime();
+  const double turns = std::fmax(0, seconds(time - all.page->since) / knob("hold"));
+  const double whole = std::floor(turns);
+  return {static_cast<std::size_t>(whole) % all.profile.targets.size(), turns - whole};
+}
+
+/// The present target on the page that is shown, in the runtime's own frame.
+Vector target_at(XrTime time) {
+  const Runtime& all = runtime();
+  const auto [u, v] = all.profile.targets[turn_at(time).target];
+  const Page& page = *all.page;
+  return (place_of(page.space, time) * page.pose *
+          Pose{{}, {(u - 0.5) * page.width, (0.5 - v) * page.height, 0}})
+      .p;
+}
+
+bool shows_targets() { return runtime().page && !runtime().profile.targets.empty(); }
+
+}  // namespace
+
+Pose hand_at(XrTime time) {
+  const Vector hand{0.2, 1.2, -0.2};
+  if (runtime().profile.point == "page" && shows_targets()) return aimed(hand, target_at(time));
+  return {turned(knob("aim_yaw"), knob("aim_pitch"), 0), hand};
+}
+
+bool presses_page() {
+  if (runtime().profile.point != "page" || !shows_targets()) return false;
+  const double part = turn_at(now()).part;
+  return part >= 0.7 && part < 0.9;
+}
+
+Gaze gaze_at(XrTime time) {
+  const Runtime& all = runtime();
+  // The newest sample of a grid of its own that can have been taken.
+  const double rate = knob("gaze_rate");
+  const XrDuration since = std::min(time, now()) - all.clock.start - 3'100'000;
+  const auto number = static_cast<std::int64_t>(std::floor(seconds(since) * rate));
+  Gaze out;
+  out.time = all.clock.start + 3'100'000 +
+             static_cast<XrDuration>(std::floor(1e9 * static_cast<double>(number) / rate));
+  const double every = knob("blink_every");
+  const bool blinks =
+      every > 0 && std::fmod(seconds(out.time - all.clock.start), every) < knob("blink_length");
+  out.valid = number >= 0 && !blinks && knob("gaze_valid") != 0 && knob("orientation") != 0;
+  out.tracked = knob("gaze_tracked") != 0;
+  const Pose head = head_at(out.time);
+  double yaw = knob("look_yaw");
+  if (all.profile.look == "sweep") yaw += 15 * std::sin(1.9 * seconds(out.time - all.clock.start));
+  out.pose = head * Pose{turned(yaw, knob("look_pitch"), 0), {}};
+  if (all.profile.look == "page" && shows_targets()) out.pose = aimed(head.p, target_at(out.time));
+  return out;
+}
+
+void see_page(const std::vector<const XrCompositionLayerQuad*>& quads) {
+  auto& page = runtime().page;
+  if (quads.empty()) {
+    page.reset();
+    return;
+  }
+  const XrCompositionLayerQuad& quad = *quads.back();
+  const XrTime since = page ? page->since : now();
+  page = Page{runtime().spaces.at(number_of(quad.space)), from_xr(quad.pose),
+              static_cast<double>(quad.size.width), static_cast<double>(quad.size.height), since};
+}
+
+}  // namespace simulated

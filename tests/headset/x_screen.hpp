@@ -1,0 +1,30 @@
+#pragma once
+/// A screen of X without a monitor, and an OpenGL context on it.
+
+#include <string>
+
+#include "tests/headset/openxr.hpp"
+
+namespace simulated {
+
+/// Xvfb while the object lives; its context is current on the thread that made it.
+class XScreen {
+ public:
+  /// std::runtime_error when there is no Xvfb, or no OpenGL 4.5 on it.
+  XScreen();
+  ~XScreen();
+  XScreen(const XScreen&) = delete;
+  XScreen& operator=(const XScreen&) = delete;
+
+  const XrGraphicsBindingOpenGLXlibKHR& binding() const { return binding_; }
+
+ private:
+  void start();
+  void make_context();
+
+  int server_ = 0;
+  std::string name_;
+  XrGraphicsBindingOpenGLXlibKHR binding_{};
+};
+
+}  // namespace simulated
