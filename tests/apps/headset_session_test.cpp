@@ -5,8 +5,8 @@
 #include <epoxy/gl.h>
 
 #include <functional>
+#include <future>
 #include <regex>
-#include <thread>
 
 #include "tests/apps/headset_runs.hpp"
 
@@ -117,10 +117,21 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
             (std::vector<std::uint8_t>{255, 128, 64, 255}));
 }
 
+TEST_F(HeadsetSessionGl, NothingIsHandedOverForASlotThatNobodySees) {
+  start("at=4:render/0", {.page_width_px = 40, .page_height_px = 20});
+  begin_running();
+  HeadsetPage page;
+  page.pose.place_m = {0, 0, -1};
+  page.width_m = page.height_m = 0.5f;
+  run_frames(7, [&](const HeadsetSlot& slot) -> Content { return {session_->views(slot), page}; });
+  EXPECT_EQ(logged(3, "render 1 layers [0-9]+"), "render 1 layers 2");
+  EXPECT_EQ(logged(6, "render 0 layers [0-9]+"), "render 0 layers 0");
+}
+
 TEST_F(HeadsetSessionGl, FramesMayComeFromAThreadOfTheirOwn) {
   start("");
   gl_.release();
-  std::thread frames([&] {
+  auto frames = std::async(std::launch::async, [&] {
     gl_.make_current();
     begin_running();
     run_frames(20, [&](const HeadsetSlot& slot) -> Content {
@@ -129,7 +140,7 @@ TEST_F(HeadsetSessionGl, FramesMayComeFromAThreadOfTheirOwn) {
     });
     gl_.release();
   });
-  frames.join();
+  frames.get();
   gl_.make_current();
   EXPECT_EQ(session_->state(), HeadsetState::Focused);
   session_.reset();
