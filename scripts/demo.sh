@@ -27,7 +27,7 @@ phase "Set up"
 run ./scripts/setup.sh
 phase "Build"
 run cmake --preset release
-run cmake --build --preset release --target vip-study vip-stats vip-bench vip-view
+run cmake --build --preset release --target vip-study vip-stats vip-view
 built=$SECONDS
 
 mkdir -p "$out"

@@ -2,7 +2,7 @@
 
 namespace apps {
 
-void FluidPicture::draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer) {
+void FluidPicture::draw(sim::Simulation& fluid, std::span<const sim::View> views, unsigned framebuffer) {
   buffer_.reserve(fluid.particle_capacity());
   uploaded_ = !fluid.copy_to_gl(buffer_.gl());
   if (uploaded_) {
@@ -11,7 +11,7 @@ void FluidPicture::draw(sim::Simulation& fluid, const sim::View& view, unsigned 
   } else {
     buffer_.set_count(fluid.particle_count());
   }
-  renderer_.draw(buffer_, {&view, 1}, framebuffer);
+  renderer_.draw(buffer_, views, framebuffer);
   drawn_frame_ = fluid.frame();
 }
 

@@ -2,6 +2,7 @@
 /// The present state of a simulation, drawn, and what its viewer tells it before the next frame.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,10 @@ class FluidPicture {
   /// until the first draw.
   void begin(const sim::GBuffer* seen);
   /// Takes the particles, on the device where the back end shares memory with GL, and draws them.
-  void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer);
+  void draw(sim::Simulation& fluid, std::span<const sim::View> views, unsigned framebuffer);
+  void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer) {
+    draw(fluid, std::span(&view, 1), framebuffer);
+  }
   /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
   /// the last one. The picture stays on the device where the back end shares memory with GL, otherwise it
   /// takes a way through the host; it is the last one drawn either way.

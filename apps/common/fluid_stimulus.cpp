@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/base/error.hpp"
+
 namespace apps {
 
 namespace {
@@ -13,6 +15,13 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
+}
+
+/// Where the axis of an eye meets its picture, px from the lower left: a headset's frusta are off-centre.
+std::pair<double, double> straight_ahead(const sim::View& view) {
+  const sim::PixelRays rays = sim::pixel_rays(view);
+  return {static_cast<double>(-rays.offset_x / rays.scale_x),
+          static_cast<double>(-rays.offset_y / rays.scale_y)};
 }
 
 }  // namespace
@@ -66,7 +75,11 @@ study::FrameFacts BakedPictures::prepare(std::int64_t step) {
   return to_facts(picture_->facts.time_s, picture_->facts.account);
 }
 
-void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
+void BakedPictures::draw(const study::Canvas& canvas) {
+  if (!canvas.eyes.empty()) {
+    throw base::Error(description(), "is one picture, which two eyes would see flat",
+                      "show a bake of particles in a headset");
+  }
   if (!picture_) throw std::logic_error("BakedPictures: draw before prepare");
   const int width = bake_->header().picture_width_px, height = bake_->header().picture_height_px;
   if (!texture_) {
@@ -77,13 +90,13 @@ void BakedPictures::draw(unsigned framebuffer, int width_px, int height_px) {
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(texture_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, picture_->rgba.data());
-  const Rectangle to = fit_picture(width, height, width_px, height_px);
+  const Rectangle to = fit_picture(width, height, canvas.width_px, canvas.height_px);
   if (to.x0 > 0 || to.y0 > 0) {
     const float black[4] = {0, 0, 0, 1};
-    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, black);
+    glClearNamedFramebufferfv(canvas.framebuffer, GL_COLOR, 0, black);
   }
   const bool same = to.x1 - to.x0 == width && to.y1 - to.y0 == height;
-  glBlitNamedFramebuffer(source_, framebuffer, 0, 0, width, height, to.x0, to.y0, to.x1, to.y1,
+  glBlitNamedFramebuffer(source_, canvas.framebuffer, 0, 0, width, height, to.x0, to.y0, to.x1, to.y1,
                          GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
@@ -101,11 +114,10 @@ study::FrameFacts BakedParticles::prepare(std::int64_t step) {
   return to_facts(frame_.facts.time_s, frame_.facts.account);
 }
 
-void BakedParticles::draw(unsigned framebuffer, int width_px, int height_px) {
+void BakedParticles::draw(const study::Canvas& canvas) {
   particles_.upload(frame_.particles);
   if (!renderer_) renderer_ = std::make_unique<sim::FluidRenderer>(scene_, options_);
-  const sim::View view = framed_view(scene_.view, viewing_, width_px, height_px);
-  renderer_->draw(particles_, {&view, 1}, framebuffer);
+  renderer_->draw(particles_, views_on(scene_.view, viewing_, canvas), canvas.framebuffer);
 }
 
 LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
@@ -153,17 +165,24 @@ void LiveFluid::look() {
   if (!picture_ || !view_) return;
   const int width = view_->viewport.width, height = view_->viewport.height;
   std::optional<std::pair<double, double>> point{{0.5 * width, 0.5 * height}};
-  if (viewing_.gaze) point = viewing_.gaze(width, height);
+  if (stereo_) {
+    point = straight_ahead(*view_);
+  } else if (viewing_.gaze) {
+    point = viewing_.gaze(width, height);
+  }
   sim::Gaze gaze;
   if (point) gaze = gaze_through(*view_, point->first, point->second);
   picture_->look(*simulation_, *view_, gaze, visual_scale_);
 }
 
-void LiveFluid::draw(unsigned framebuffer, int width_px, int height_px) {
+void LiveFluid::draw(const study::Canvas& canvas) {
   if (!picture_) picture_ = std::make_unique<FluidPicture>(scene_, options_);
-  view_ = framed_view(scene_.view, viewing_, width_px, height_px);
-  visual_scale_ = frame_picture(scene_.view, viewing_, width_px, height_px).visual_scale();
-  picture_->draw(*simulation_, *view_, framebuffer);
+  const std::vector<sim::View> views = views_on(scene_.view, viewing_, canvas);
+  view_ = views.front();
+  stereo_ = views.size() > 1;
+  visual_scale_ =
+      stereo_ ? 1 : frame_picture(scene_.view, viewing_, canvas.width_px, canvas.height_px).visual_scale();
+  picture_->draw(*simulation_, views, canvas.framebuffer);
 }
 
 }  // namespace apps

@@ -34,7 +34,7 @@ class BakedPictures final : public study::Stimulus {
   /// Returns when pictures are decoded ahead; at once when this is where they loop to.
   void start(std::int64_t start_step) override;
   study::FrameFacts prepare(std::int64_t step) override;
-  void draw(unsigned framebuffer, int width_px, int height_px) override;
+  void draw(const study::Canvas& canvas) override;
   /// How often a picture was not decoded in time since start().
   std::int64_t waits() const { return ring_.waits(); }
 
@@ -55,7 +55,7 @@ class BakedParticles final : public study::Stimulus {
   std::int64_t length() const override { return bake_->header().frame_count; }
   void start(std::int64_t) override {}
   study::FrameFacts prepare(std::int64_t step) override;
-  void draw(unsigned framebuffer, int width_px, int height_px) override;
+  void draw(const study::Canvas& canvas) override;
 
  private:
   std::unique_ptr<sim::BakeReader> bake_;
@@ -82,7 +82,7 @@ class LiveFluid final : public study::Stimulus {
   void start(std::int64_t start_step) override;
   /// A step before the present one begins anew.
   study::FrameFacts prepare(std::int64_t step) override;
-  void draw(unsigned framebuffer, int width_px, int height_px) override;
+  void draw(const study::Canvas& canvas) override;
   /// The simulation at the prepared step; there is one from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
   /// Whether the method looks at the picture of the last frame, so that every one must be drawn.
@@ -106,7 +106,8 @@ class LiveFluid final : public study::Stimulus {
   bool started_ = false;  ///< and no step was prepared since
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
-  std::optional<sim::View> view_;  ///< of the last picture
+  std::optional<sim::View> view_;  ///< of the last picture; of two eyes the left one's
+  bool stereo_ = false;            ///< likewise; one looks straight ahead then
   double visual_scale_ = 1;        ///< likewise, sim::EyeLook's
 };
 

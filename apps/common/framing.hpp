@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libsim/view/camera.hpp"
+#include "libstudy/display/canvas.hpp"
 
 namespace apps {
 
@@ -42,6 +43,15 @@ Framing frame_picture(const sim::Camera& camera, const Viewing& viewing, int wid
 
 /// The view of that camera with the angle of frame_picture().
 sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, int height_px);
+
+/// The view of one eye. Its anchor stands at the camera's eye and has its heading, never its pitch: the
+/// horizon is where the person's own is. Angles are the headset's, not the camera's. base::Error for angles
+/// or a rectangle that make no picture, and a camera that looks straight up or down.
+sim::View eye_view(const sim::Camera& camera, const study::EyeView& eye);
+
+/// What is drawn on a canvas: framed_view() of the whole, or eye_view() of each eye.
+std::vector<sim::View> views_on(const sim::Camera& camera, const Viewing& viewing,
+                                const study::Canvas& canvas);
 
 /// Where a point lies in a view's picture, px from its lower left corner; none: not before the near plane.
 std::optional<std::pair<double, double>> place_in(const sim::View& view, const sim::Vec3d& point_m);

@@ -26,11 +26,12 @@ std::string HeadlessDisplay::description() const {
 
 void HeadlessDisplay::render(study::Stimulus& stimulus) {
   const sim::Offscreen& back = buffers_[1 - front_];
-  stimulus.draw(back.framebuffer(), back.width(), back.height());
+  stimulus.draw({back.framebuffer(), back.width(), back.height()});
   glFinish();
 }
 
-study::PresentTimes HeadlessDisplay::present(const study::Clock& clock) {
+study::PresentTimes HeadlessDisplay::present(std::int64_t scheduled_ns, study::Clock& clock) {
+  clock.wait_until(scheduled_ns);
   study::PresentTimes times;
   times.submitted_ns = clock.now_ns();
   front_ = 1 - front_;

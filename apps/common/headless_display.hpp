@@ -24,7 +24,7 @@ class HeadlessDisplay final : public study::Display {
   void render(study::Stimulus& stimulus) override;
   /// Makes the back buffer the front buffer. Nothing is left to draw, so submitted and done are one instant
   /// but for the check.
-  study::PresentTimes present(const study::Clock& clock) override;
+  study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
 
   /// The picture on show.
   sim::Image read() const { return buffers_[front_].read(); }

@@ -60,7 +60,7 @@ study::PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
     const bool measured = step + 1 >= between && phase <= 2;
     // The first one tells a method from where it is looked at.
     if (measured || step == 0 || fluid.follows_picture())
-      fluid.draw(target.framebuffer(), width_px, height_px);
+      fluid.draw({target.framebuffer(), width_px, height_px});
     if (!measured) continue;
     last[static_cast<std::size_t>(phase)] = to_measure(target.read(), fluid.read_depth());
     if (phase < 2) continue;

@@ -19,7 +19,7 @@ class NullStimulus final : public Stimulus {
     facts.simulation_time_s = static_cast<double>(step) * content_step_s_;
     return facts;
   }
-  void draw(unsigned, int, int) override {}
+  void draw(const Canvas&) override {}
 
  private:
   double content_step_s_;
@@ -32,7 +32,8 @@ class NullDisplay final : public Display {
   TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
   double refresh_hz() const override { return 0; }
   void render(Stimulus&) override {}
-  PresentTimes present(const Clock& clock) override {
+  PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override {
+    clock.wait_until(scheduled_ns);
     PresentTimes times;
     times.submitted_ns = clock.now_ns();
     return times;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/display/canvas.hpp"
+
 namespace study {
 
 /// How often the rules of a fluid stepped in while it computed one frame; the schema says what each counts.
@@ -43,8 +45,8 @@ class Stimulus {
   virtual void start(std::int64_t start_step) = 0;
   /// Makes content step `step` (>= the last one asked for) ready to draw.
   virtual FrameFacts prepare(std::int64_t step) = 0;
-  /// Draws the prepared step into GL framebuffer object `framebuffer`; the display's context is current.
-  virtual void draw(unsigned framebuffer, int width_px, int height_px) = 0;
+  /// Draws the prepared step. base::Error when it cannot be seen with two eyes.
+  virtual void draw(const Canvas& canvas) = 0;
 };
 
 /// When a frame was handed over and seen, on the session's clock, in nanoseconds; -1 = not known.
@@ -55,8 +57,15 @@ struct PresentTimes {
   std::int64_t actual_display_ns = -1;
 };
 
-/// How good the evidence for onset times is.
+/// How good the evidence for onset times is. Compositor: it predicted when it would show what it took.
 enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Compositor = 'C', CpuSubmit = 'D' };
+
+/// What is held against a frame's scheduled time: the predicted time where a compositor shows it in periods
+/// of its own (C), the submission otherwise and where nothing was predicted.
+inline std::int64_t placed_ns(const PresentTimes& times, TimingGrade grade) {
+  const bool predicted = grade == TimingGrade::Compositor && times.predicted_display_ns >= 0;
+  return predicted ? times.predicted_display_ns : times.submitted_ns;
+}
 
 class Clock;
 
@@ -76,8 +85,11 @@ class Display {
   virtual std::int64_t first_onset(std::int64_t earliest_ns) const { return earliest_ns; }
   /// Draws the stimulus off-screen so that present() is short. May do nothing.
   virtual void render(Stimulus& stimulus) = 0;
-  /// Shows what was rendered, now; returns when it was handed over.
-  virtual PresentTimes present(const Clock& clock) = 0;
+  /// Shows what was rendered at scheduled_ns, or as soon after it as it can; returns when it was handed over.
+  /// Waits on the session's clock.
+  virtual PresentTimes present(std::int64_t scheduled_ns, Clock& clock) = 0;
+  /// A presentation is over, or was cut: nothing of it is shown any more.
+  virtual void clear() {}
 };
 
 }  // namespace study

@@ -55,7 +55,7 @@ void judge_moments(Judgement& judgement, const TimingVerdict& trial, double mean
 void judge_lateness(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& played,
                     const TimingTolerance& tolerance) {
   for (const auto& frame : played.frames) {
-    const double late_ms = ms * static_cast<double>(frame.times.submitted_ns - frame.scheduled_ns);
+    const double late_ms = ms * static_cast<double>(placed_ns(frame.times, trial.grade) - frame.scheduled_ns);
     trial.worst_late_ms = std::max(trial.worst_late_ms, late_ms);
     trial.late += late_ms > tolerance.late_after_ms;
   }
@@ -117,7 +117,7 @@ ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade) {
   const bool shown = has_display_times(played, grade);
   const auto onset = [&](const FrameRecord& frame) {
-    return shown ? frame.times.actual_display_ns : frame.times.submitted_ns;
+    return shown ? frame.times.actual_display_ns : placed_ns(frame.times, grade);
   };
   std::vector<double> intervals_s;
   for (std::size_t i = 0; i < played.frames.size(); ++i) {

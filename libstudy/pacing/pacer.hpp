@@ -32,7 +32,7 @@ struct FrameRecord {
   std::int64_t content_step = 0;
   std::int64_t scheduled_ns = 0;
   PresentTimes times;
-  bool late = false;  ///< submitted over the protocol's lateness bound after `scheduled_ns`
+  bool late = false;  ///< placed_ns() over the protocol's lateness bound after `scheduled_ns`
   FrameFacts facts;
 };
 
@@ -45,7 +45,7 @@ struct PlayedTrial {
 
 /// What a trial is held to while it is shown.
 struct ShowingBounds {
-  std::int64_t late_after_ns = 0;  ///< of submitted - scheduled; beyond it a frame is late
+  std::int64_t late_after_ns = 0;  ///< of placed_ns() - scheduled; beyond it a frame is late
   std::int64_t overrun_ns = 0;     ///< past the planned end; a trial that goes on for longer is cut
 };
 
@@ -103,7 +103,7 @@ struct TimingVerdict {
 };
 
 /// Intervals in seconds between the onsets of successive frames, the last one up to end_ns: actual display
-/// times when the grade is A or B and every frame has one, submission times otherwise.
+/// times when the grade is A or B and every frame has one, placed_ns() otherwise.
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
 
 /// pass: no frame late and both realised moments within tolerance. fail: cut, or a moment beyond the fail_

@@ -94,19 +94,18 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
     if (i == 0) first_ns = display.first_onset(clock.now_ns() + lead_ns);
     if (i > 0 && clock.now_ns() - first_ns > length_ns + bounds.overrun_ns) {
       played.cut = static_cast<std::int64_t>(intervals_ns.size() - i);
-      clock.wait_until(played.frames.back().times.submitted_ns + intervals_ns[i - 1]);
+      clock.wait_until(placed_ns(played.frames.back().times, display.grade()) + intervals_ns[i - 1]);
       played.end_ns = clock.now_ns();
       return played;
     }
     record.scheduled_ns = first_ns + onset_ns;
-    clock.wait_until(record.scheduled_ns);
-    record.times = display.present(clock);
-    record.late = record.times.submitted_ns - record.scheduled_ns > bounds.late_after_ns;
+    record.times = display.present(record.scheduled_ns, clock);
+    record.late = placed_ns(record.times, display.grade()) - record.scheduled_ns > bounds.late_after_ns;
     played.frames.push_back(record);
     if (each) each(record);
     onset_ns += intervals_ns[i];
   }
-  const std::int64_t last_ns = played.frames.back().times.submitted_ns;
+  const std::int64_t last_ns = placed_ns(played.frames.back().times, display.grade());
   const std::int64_t planned_end_ns = first_ns + length_ns;
   clock.wait_until(last_ns < planned_end_ns ? planned_end_ns : last_ns + intervals_ns.back());
   played.end_ns = clock.now_ns();
@@ -133,7 +132,7 @@ PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus
       if (gone_ns - duration_ns > overrun_ns) played.cut = 0;
       return played;
     }
-    record.times = display.present(clock);
+    record.times = display.present(record.scheduled_ns, clock);
     played.frames.push_back(record);
     if (each) each(record);
   }

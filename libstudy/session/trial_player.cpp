@@ -14,13 +14,14 @@ int cell_index(const PlannedTrial& trial, int interval) {
 }
 
 /// Simulated time that went by from frame to frame over the time they took; a rewind counts nothing.
-double play_speed(const PlayedTrial& played) {
+double play_speed(const PlayedTrial& played, TimingGrade grade) {
   double simulated_s = 0;
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
     simulated_s += std::max(
         0.0, played.frames[i].facts.simulation_time_s - played.frames[i - 1].facts.simulation_time_s);
   }
-  const auto shown_ns = played.frames.back().times.submitted_ns - played.frames.front().times.submitted_ns;
+  const auto shown_ns =
+      placed_ns(played.frames.back().times, grade) - placed_ns(played.frames.front().times, grade);
   return shown_ns > 0 ? simulated_s / (1e-9 * static_cast<double>(shown_ns)) : 0;
 }
 
@@ -53,6 +54,18 @@ class RecordedGaze {
 
  private:
   GazeSource* source_;
+};
+
+/// Takes what was shown off the display, however it ends.
+class Cleared {
+ public:
+  explicit Cleared(Display& display) : display_(display) {}
+  ~Cleared() { display_.clear(); }
+  Cleared(const Cleared&) = delete;
+  Cleared& operator=(const Cleared&) = delete;
+
+ private:
+  Display& display_;
 };
 
 }  // namespace
@@ -174,6 +187,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
                                    const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
                                    ShownStimulus& shown) const {
   const SessionParts& parts = run_.parts;
+  const Cleared cleared(parts.display);
   RecordedGaze gaze(run_);
   FrameJournal journal(parts.store, presentation, start_ns, gaze.origin(), !parts.virtual_clock);
   const auto each = [&](const FrameRecord& frame) {
@@ -193,7 +207,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(gaze.take()), verdict);
     shown.realised = verdict.realised;
     shown.longest_ms = verdict.longest_ms;
-    shown.play_speed = play_speed(played);
+    shown.play_speed = play_speed(played, verdict.grade);
     return verdict;
   } catch (...) {
     // What cut it is the error to tell; should keeping the rest fail too, the next opening marks the cut.

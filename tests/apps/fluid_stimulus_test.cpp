@@ -180,7 +180,7 @@ TEST_F(FluidStimulusGl, BakedPicturesAreShownExactly) {
       EXPECT_DOUBLE_EQ(facts.simulation_time_s, step / 60.0);
       expect_facts(facts, step);
       display.render(pictures);
-      const study::PresentTimes times = display.present(clock_);
+      const study::PresentTimes times = display.present(clock_.now_ns(), clock_);
       EXPECT_GE(times.gpu_done_ns, times.submitted_ns);
       ASSERT_EQ(shown(display), bake_test::picture(step, 64, 36)) << step;
     }
@@ -198,7 +198,7 @@ TEST_F(FluidStimulusGl, RenderStaysUnseenUntilItIsPresented) {
     if (step == 1) {
       EXPECT_EQ(shown(display), bake_test::picture(0, 64, 36));
     }
-    display.present(clock_);
+    display.present(clock_.now_ns(), clock_);
     EXPECT_EQ(shown(display), bake_test::picture(step, 64, 36));
   }
 }
@@ -210,7 +210,7 @@ TEST_F(FluidStimulusGl, PicturesOfAnotherShapeStandBetweenBlackBars) {
   pictures.start(0);
   pictures.prepare(0);
   display.render(pictures);
-  display.present(clock_);
+  display.present(clock_.now_ns(), clock_);
   const sim::Bytes out = shown(display);
   const auto blue = [&](std::size_t x, std::size_t y) { return out[4 * (64 * y + x) + 2]; };
   EXPECT_EQ(blue(5, 13), 0);
@@ -233,7 +233,7 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   const auto picture = [&](study::Stimulus& stimulus, int step) {
     stimulus.prepare(step);
     display.render(stimulus);
-    display.present(clock_);
+    display.present(clock_.now_ns(), clock_);
     return shown(display);
   };
   live.start(0);

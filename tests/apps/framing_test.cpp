@@ -10,6 +10,7 @@
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps {
@@ -150,6 +151,68 @@ TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
     EXPECT_TRUE(!seen.any || seen.edge) << name;
     EXPECT_THAT(cut_off(scene, view), ElementsAre(scene.visible.front().name)) << name;
   }
+}
+
+/// A camera 2 m up that looks down along -x, as a scene's does.
+sim::Camera tilted() {
+  sim::Camera camera;
+  camera.eye_m = {3, 2, 1};
+  camera.target_m = {0, 1, 1};
+  return camera;
+}
+
+/// An eye at `right_m` of the anchor, a picture of 200 x 100 px whose frustum reaches further down and left.
+study::EyeView eye_at(double right_m) {
+  study::EyeView eye;
+  eye.position_m = {right_m, 0, 0};
+  eye.left_rad = -std::atan(1.2), eye.right_rad = std::atan(0.8);
+  eye.up_rad = std::atan(0.4), eye.down_rad = std::atan(-0.6);
+  eye.x_px = 200, eye.width_px = 200, eye.height_px = 100;
+  return eye;
+}
+
+TEST(EyeView, StandsAtTheScenesCameraWithItsHeadingAndALevelHorizon) {
+  const sim::View view = eye_view(tilted(), eye_at(0));
+  // Slope s to the right lies at (s + 1.2) / 2 of the width, slope t up at (t + 0.6) / 1 of the height.
+  const auto ahead = place_in(view, {-7, 2, 1});
+  ASSERT_TRUE(ahead);
+  EXPECT_NEAR(ahead->first, 120, 1e-3);
+  EXPECT_NEAR(ahead->second, 60, 1e-3);
+  const auto aside = place_in(view, {-1, 2.8, -1});  // 4 m ahead, 2 m to the right, 0.8 m up
+  ASSERT_TRUE(aside);
+  EXPECT_NEAR(aside->first, 170, 1e-3);
+  EXPECT_NEAR(aside->second, 80, 1e-3);
+  EXPECT_EQ(view.viewport.x, 200);
+}
+
+TEST(EyeView, TwoEyesSeeATargetApartByItsDistance) {
+  for (const double distance_m : {0.5, 1.0, 2.0}) {
+    const sim::Vec3d target{3 - distance_m, 2, 1};
+    const auto left = place_in(eye_view(tilted(), eye_at(-0.032)), target);
+    const auto right = place_in(eye_view(tilted(), eye_at(0.032)), target);
+    ASSERT_TRUE(left && right);
+    EXPECT_NEAR(left->first - right->first, 100 * 0.064 / distance_m, 1e-3);
+    EXPECT_NEAR(left->second, right->second, 1e-3);
+  }
+}
+
+TEST(EyeView, TurnsWithTheHead) {
+  study::EyeView eye = eye_at(0);
+  const double half = std::atan(0.5) / 2;
+  eye.orientation = {0, std::sin(half), 0, std::cos(half)};        // to the left
+  const auto met = place_in(eye_view(tilted(), eye), {-1, 2, 3});  // 4 m ahead, 2 m to the left
+  ASSERT_TRUE(met);
+  EXPECT_NEAR(met->first, 120, 1e-3);
+  EXPECT_NEAR(met->second, 60, 1e-3);
+}
+
+TEST(EyeView, WithoutAnAreaIsRefused) {
+  study::EyeView eye = eye_at(0);
+  std::swap(eye.left_rad, eye.right_rad);
+  EXPECT_THROW(eye_view(tilted(), eye), base::Error);
+  eye = eye_at(0);
+  eye.up_rad = eye.down_rad;
+  EXPECT_THROW(eye_view(tilted(), eye), base::Error);
 }
 
 }  // namespace

@@ -39,14 +39,14 @@ class SlowStage final : public study::Stimulus, public study::Display {
     steps.push_back(step);
     return {};
   }
-  void draw(unsigned, int, int) override {}
+  void draw(const study::Canvas&) override {}
   study::TimingGrade grade() const override { return study::TimingGrade::CpuSubmit; }
   double refresh_hz() const override { return 0; }
   void render(study::Stimulus&) override {
     take(draw_s_);
     ++rendered;
   }
-  study::PresentTimes present(const study::Clock&) override { return {}; }
+  study::PresentTimes present(std::int64_t, study::Clock&) override { return {}; }
 
   study::VirtualClock clock;
   std::vector<std::int64_t> starts, steps;

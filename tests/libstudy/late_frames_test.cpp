@@ -22,7 +22,8 @@ class LateDisplay final : public Display {
   TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
   double refresh_hz() const override { return 0; }
   void render(Stimulus&) override {}
-  PresentTimes present(const Clock&) override {
+  PresentTimes present(std::int64_t scheduled_ns, Clock&) override {
+    clock_.wait_until(scheduled_ns);
     clock_.wait_until(clock_.now_ns() + delay_ns_(frame_++));
     PresentTimes times;
     times.submitted_ns = clock_.now_ns();

@@ -34,7 +34,7 @@ class TimedStimulus final : public study::Stimulus {
     steps.push_back(step);
     return {static_cast<double>(step) / 60, {step, 2 * step}, study::FrameTolerance{-3, 1, 1, {}, {}}, {}};
   }
-  void draw(unsigned, int, int) override {}
+  void draw(const study::Canvas&) override {}
 
   std::map<std::int64_t, std::int64_t> cost_ns;  // by frame index
   std::vector<std::int64_t> starts, steps;
@@ -50,7 +50,8 @@ class PlainDisplay final : public study::Display {
   TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
   double refresh_hz() const override { return 0; }
   void render(study::Stimulus&) override { ++rendered; }
-  study::PresentTimes present(const study::Clock& clock) override {
+  study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override {
+    clock.wait_until(scheduled_ns);
     study::PresentTimes times;
     times.submitted_ns = clock.now_ns();
     return times;
@@ -312,6 +313,20 @@ TEST(JudgeTrial, UsesDisplayTimesOnlyWhereTheGradeVouchesForThem) {
   EXPECT_NEAR(study::realised_intervals(played, TimingGrade::CpuSubmit)[0], 0.020, 1e-12);
   played.frames[3].times.actual_display_ns = -1;
   EXPECT_NEAR(study::realised_intervals(played, TimingGrade::DisplayFeedback)[0], 0.020, 1e-12);
+}
+
+TEST(JudgeTrial, ACompositorsFramesAreOnAndLateByWhatItPredicted) {
+  auto played = played_with(std::vector<std::int64_t>(10, 20 * ms), {});
+  for (auto& frame : played.frames) frame.times.predicted_display_ns = frame.scheduled_ns;
+  played.frames[3].times.predicted_display_ns += 5 * ms;
+  for (auto& frame : played.frames) frame.times.submitted_ns -= 11 * ms;  // handed over a period before
+  const auto on = study::realised_intervals(played, TimingGrade::Compositor);
+  EXPECT_NEAR(on[2], 0.025, 1e-12);
+  EXPECT_NEAR(on[3], 0.015, 1e-12);
+  const auto verdict = study::judge_trial({50, 1, 0.2}, {}, played, {}, TimingGrade::Compositor);
+  EXPECT_EQ(verdict.late, 1);
+  EXPECT_NEAR(verdict.worst_late_ms, 5, 1e-9);
+  EXPECT_EQ(study::judge_trial({50, 1, 0.2}, {}, played, {}, TimingGrade::CpuSubmit).late, 0);
 }
 
 TEST(JudgeTrial, DescribesTheIntervals) {

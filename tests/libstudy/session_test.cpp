@@ -197,7 +197,8 @@ TEST(Session, NativeFramesAreTakenAsTheyComeAndHaveNoVerdict) {
       clock_.wait_until(clock_.now_ns() + (odd_ ? 20'000'000 : 10'000'000));
       odd_ = !odd_;
     }
-    PresentTimes present(const Clock& clock) override {
+    PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override {
+      clock.wait_until(scheduled_ns);
       PresentTimes times;
       times.submitted_ns = clock.now_ns();
       return times;
@@ -235,7 +236,7 @@ TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
       if (step > 0) facts.tolerance = FrameTolerance{-0.5 * static_cast<double>(step), 0.5, 0.25, 20, 2};
       return facts;
     }
-    void draw(unsigned, int, int) override {}
+    void draw(const Canvas&) override {}
   };
   class OneStimulus final : public StimulusSource {
    public:
@@ -284,7 +285,7 @@ class FixedRefresh final : public Display {
   TimingGrade grade() const override { return TimingGrade::Compositor; }
   double refresh_hz() const override { return hz_; }
   void render(Stimulus&) override {}
-  PresentTimes present(const Clock&) override { return {}; }
+  PresentTimes present(std::int64_t, Clock&) override { return {}; }
 
  private:
   double hz_;

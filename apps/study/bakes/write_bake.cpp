@@ -59,7 +59,7 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
     const study::FrameFacts facts = fluid->prepare(frame);
     fluid->simulation().read_particles(particles);
     writer.add_frame(facts.simulation_time_s, particles, fluid->simulation().account());
-    if (target) fluid->draw(target->framebuffer(), target->width(), target->height());
+    if (target) fluid->draw({target->framebuffer(), target->width(), target->height()});
     if (header.has_pictures()) writer.add_picture(read_upwards(*target));
     if (hooks.frames) hooks.frames(frame + 1);
   }

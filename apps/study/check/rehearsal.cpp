@@ -52,7 +52,7 @@ class MeasuredProcess final : public study::Stimulus {
     clock_.wait_until(clock_.now_ns() + std::llround(1e9 * std::max(taken_s, least_s_)));
     return {};
   }
-  void draw(unsigned, int, int) override {}
+  void draw(const study::Canvas&) override {}
 
   std::vector<double> frame_s;  ///< but of the first frame
 

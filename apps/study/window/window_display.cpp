@@ -69,7 +69,7 @@ std::string WindowDisplay::description() const {
 }
 
 void WindowDisplay::render(study::Stimulus& stimulus) {
-  stimulus.draw(picture_.framebuffer(), picture_.width(), picture_.height());
+  stimulus.draw({picture_.framebuffer(), picture_.width(), picture_.height()});
   glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(picture_.framebuffer(), 0, 0, 0, picture_.width(), picture_.height(), 0, 0,
                          picture_.width(), picture_.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
@@ -81,7 +81,8 @@ void WindowDisplay::render(study::Stimulus& stimulus) {
   ready_ns_ = clock_.now_ns();
 }
 
-study::PresentTimes WindowDisplay::present(const study::Clock& clock) {
+study::PresentTimes WindowDisplay::present(std::int64_t scheduled_ns, study::Clock& clock) {
+  clock.wait_until(scheduled_ns);
   study::PresentTimes times;
   times.gpu_done_ns = ready_ns_;
   times.submitted_ns = clock.now_ns();

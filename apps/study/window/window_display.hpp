@@ -35,7 +35,7 @@ class WindowDisplay final : public study::Display {
   /// is then a swap alone, and a slow picture shows as a late one.
   void render(study::Stimulus& stimulus) override;
   /// gpu_done is when the picture lay ready, which is before it was submitted.
-  study::PresentTimes present(const study::Clock& clock) override;
+  study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
 
   ScreenFacts facts() const;
 
