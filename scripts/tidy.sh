@@ -18,7 +18,7 @@ changed() {  # changed [BASE]: C++ files that differ from there
 source_of() {  # source_of FILE: itself, or for a header a source that reads it
   case $1 in
     *.cpp) echo "$1" ;;
-    *) if [ -f "${1%.hpp}.cpp" ]; then echo "${1%.hpp}.cpp"; else git grep -lF "\"$1\"" -- '*.cpp' | head -n 1; fi ;;
+    *) if [ -f "${1%.hpp}.cpp" ]; then echo "${1%.hpp}.cpp"; else git grep -lF "\"$1\"" -- '*.cpp' | sed -n 1p || true; fi ;;
   esac
 }
 

@@ -14,22 +14,6 @@ namespace {
 /// Slope from the middle of a picture to its upper edge.
 double slope(double vertical_deg) { return std::tan(vertical_deg * std::numbers::pi / 360); }
 
-/// From an eye's space to its anchor's.
-sim::Mat4 pose_matrix(const study::EyeView& eye) {
-  const auto& [x, y, z, w] = eye.orientation;
-  const std::array<std::array<double, 3>, 3> rows{
-      {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-       {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-       {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-  sim::Mat4 out = sim::identity();
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column)
-      out[4 * column + row] = static_cast<float>(rows[row][column]);
-    out[12 + row] = static_cast<float>(eye.position_m[row]);
-  }
-  return out;
-}
-
 bool holds(const sim::View& view, const sim::Vec3d& point_m) {
   const auto place = place_in(view, point_m);
   return place && place->first >= 0 && place->first <= view.viewport.width && place->second >= 0 &&
@@ -66,14 +50,11 @@ sim::View eye_view(const sim::Camera& camera, const study::EyeView& eye) {
   }
   const sim::Vec3d ahead{camera.target_m[0], camera.eye_m[1], camera.target_m[2]};
   sim::View view;
-  view.view = sim::multiply(sim::rigid_inverse(pose_matrix(eye)), sim::look_at(camera.eye_m, ahead));
+  const sim::Mat4 to_anchor = sim::rigid_pose(eye.position_m, eye.orientation);
+  view.view = sim::multiply(sim::rigid_inverse(to_anchor), sim::look_at(camera.eye_m, ahead));
   view.near_m = camera.near_m;
   view.far_m = camera.far_m;
-  view.projection = sim::perspective(90, 1, camera.near_m, camera.far_m);
-  view.projection[0] = static_cast<float>(2 / (right - left));
-  view.projection[5] = static_cast<float>(2 / (up - down));
-  view.projection[8] = static_cast<float>((right + left) / (right - left));
-  view.projection[9] = static_cast<float>((up + down) / (up - down));
+  view.projection = sim::frustum(left, right, down, up, camera.near_m, camera.far_m);
   view.viewport = {eye.x_px, eye.y_px, eye.width_px, eye.height_px};
   return view;
 }

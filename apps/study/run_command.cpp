@@ -80,7 +80,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data || !setup.departure().empty();
+  session.test_data = protocol.test_data || !setup.departure().empty() || command.run.display == "openxr";
   session.framing = framing_record(setup.scenes);
   session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;
@@ -205,8 +205,9 @@ void add_run_command(CLI::App& app) {
                  "Play in real time (a person's), or without waiting (an observer's)")
       ->check(CLI::IsMember({"real", "virtual"}));
   sub.add_option("--display", command->run.display,
-                 "Where frames go: a window (a person's), drawn without a window, or nowhere (an observer's)")
-      ->check(CLI::IsMember({"window", "headless", "none"}));
+                 "Where frames go: a window (a person's), drawn without a window, a headset by OpenXR on the "
+                 "virtual clock, or nowhere (an observer's)")
+      ->check(CLI::IsMember({"window", "headless", "openxr", "none"}));
   sub.add_option(
          "--gaze", command->run.gaze,
          "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "

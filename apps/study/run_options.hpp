@@ -10,7 +10,7 @@ namespace apps {
 struct RunOptions {
   std::string observer;                 ///< specification of a simulated observer; empty = a person
   std::string clock;                    ///< "real" or "virtual"
-  std::string display;                  ///< "none", "headless" or "window"
+  std::string display;                  ///< "none", "headless", "window" or "openxr"
   int width_px = 640, height_px = 360;  ///< 0: the whole monitor of a window
   int monitor = 0;                      ///< of a window; 0: the primary one
   std::string bake;                     ///< absolute path of the bake played; empty = none

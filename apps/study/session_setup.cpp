@@ -1,6 +1,7 @@
 #include "apps/study/session_setup.hpp"
 
 #include "apps/common/headless_display.hpp"
+#include "apps/common/headset/headset_display.hpp"
 #include "apps/study/cell_features.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/solver/settled_state.hpp"
@@ -22,6 +23,11 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 }
 
 void check_together(const RunOptions& options, const study::Protocol& protocol) {
+  if (options.display == "openxr" && (options.observer.empty() || options.clock != "virtual"))
+    throw base::Error("--display openxr", "shows no pages to a person yet and keeps no real time",
+                      "name an --observer and use --clock virtual, or --display window");
+  if (options.display == "openxr" && options.gaze != "fixed" && options.gaze != "none")
+    throw base::Error("--gaze " + options.gaze, "is not read from a headset yet", "use --gaze fixed or none");
   if (options.observer.empty() && options.display != "window")
     throw base::Error("--display " + options.display, "shows nothing to a person",
                       "use --display window, or name an --observer");
@@ -48,6 +54,27 @@ std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   StimulusChoice choice;
   if (!std::filesystem::is_directory(options.bake)) choice.bake = options.bake;
   return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
+}
+
+/// Before anything is written.
+void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol) {
+  for (const study::Cell& cell : protocol.design.cells) {
+    const FoundBake* bake = bakes.of(cell);
+    if (bake && bake->header.has_pictures()) {
+      throw base::Error(bake->path.string(), "holds pictures, which two eyes would see flat",
+                        "bake particles for a headset: vip-study bake without --pictures");
+    }
+  }
+}
+
+/// Its slots are the clock.
+void take_headset(SessionSetup& setup) {
+  auto headset = std::make_unique<HeadsetDisplay>();
+  setup.clock = std::make_unique<HeadsetClock>(*headset);
+  setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
+    return display->take_spoilt() ? study::Wish::NotShown : others();
+  };
+  setup.display = std::move(headset);
 }
 
 /// Live pictures are measured before the session; without any, the table stands in.
@@ -110,6 +137,8 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.poll = std::move(window.poll);
     setup.screen = window.screen;
     size = window.size;
+  } else if (options.display == "openxr") {
+    take_headset(setup);
   } else {
     setup.display = make_display(options);
   }
@@ -118,8 +147,11 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   look.common.model = model;
   look.common.viewing = viewing;
   SessionBakes bakes(options.bake, protocol, look);
-  if (options.display != "none")
+  if (options.display == "openxr") {
+    refuse_pictures(bakes, protocol);
+  } else if (options.display != "none") {
     setup.scenes = frame_scenes(protocol, viewing, size, bakes, sim::gl_description());
+  }
   check_visible(setup.scenes);
   check_one_picture(protocol, setup.scenes);
   setup.stimuli =

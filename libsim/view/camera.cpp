@@ -70,6 +70,32 @@ Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double f
   return m;
 }
 
+Mat4 frustum(double left, double right, double down, double up, double near_m, double far_m) {
+  Mat4 m{};
+  m[0] = static_cast<float>(2 / (right - left));
+  m[5] = static_cast<float>(2 / (up - down));
+  m[8] = static_cast<float>((right + left) / (right - left));
+  m[9] = static_cast<float>((up + down) / (up - down));
+  m[10] = static_cast<float>((far_m + near_m) / (near_m - far_m));
+  m[11] = -1;
+  m[14] = static_cast<float>(2 * far_m * near_m / (near_m - far_m));
+  return m;
+}
+
+Mat4 rigid_pose(const Vec3d& place_m, const std::array<double, 4>& turn) {
+  const auto [x, y, z, w] = turn;
+  const std::array<Vec3d, 3> axes{{{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+                                   {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+                                   {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}}};
+  Mat4 m = identity();
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column)
+      m[4 * column + row] = static_cast<float>(axes[column][row]);
+    m[12 + row] = static_cast<float>(place_m[row]);
+  }
+  return m;
+}
+
 Mat4 rigid_inverse(const Mat4& m) {
   Mat4 inverse = identity();
   for (std::size_t row = 0; row < 3; ++row) {

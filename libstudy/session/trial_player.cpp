@@ -102,6 +102,7 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
 void TrialPlayer::again(Showing& showing, const std::string& reason) {
   run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, reason);
   showing.unit.answered.clear();
+  showing.intervals = intervals_of(*showing.unit.trial);  // the display may show another rate by now
   ++showing.attempt;
   showing.verdicts.clear();
   showing.ready = nullptr;

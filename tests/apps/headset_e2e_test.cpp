@@ -94,14 +94,14 @@ TEST_F(HeadsetE2e, EachThingThatIsNotThereIsNamed) {
 }
 
 TEST_F(HeadsetE2e, WithoutARuntimeOrALoaderItSaysWhich) {
-  const auto no_runtime = run({}, {{"XR_RUNTIME_JSON", folder_ / "none.json"}});
+  const auto no_runtime = run({"headset"}, {{"XR_RUNTIME_JSON", folder_ / "none.json"}});
   EXPECT_EQ(no_runtime.exit_code, 1);
   EXPECT_THAT(no_runtime.err, HasSubstr("no runtime answers"));
   EXPECT_THAT(no_runtime.err, HasSubstr("XR_RUNTIME_JSON"));
-  const auto no_loader = run({}, {{"VIP_OPENXR_LOADER", "libnone.so.1"}});
+  const auto no_loader = run({"headset"}, {{"VIP_OPENXR_LOADER", "libnone.so.1"}});
   EXPECT_EQ(no_loader.exit_code, 1);
   EXPECT_THAT(no_loader.err, HasSubstr("there is no libnone.so.1 on this machine"));
-  const auto other = run({}, {{"VIP_OPENXR_LOADER", "libm.so.6"}});
+  const auto other = run({"headset"}, {{"VIP_OPENXR_LOADER", "libm.so.6"}});
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.err, HasSubstr("libm.so.6 is no OpenXR loader"));
 }

@@ -21,7 +21,7 @@ class HeadsetRuns : public ::testing::Test {
   using Environment = std::vector<std::pair<std::string, std::string>>;
 
   Ended run(const std::vector<std::string>& arguments, const Environment& environment) {
-    std::vector<std::string> all{bin + "/vip-study", "headset"};
+    std::vector<std::string> all{bin + "/vip-study"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     return run_program(all, [&] {
       for (const char* name :
@@ -33,8 +33,13 @@ class HeadsetRuns : public ::testing::Test {
       for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
     });
   }
-  /// On a runtime whose caller must keep the specification.
-  Ended on(const std::string& profile, const std::vector<std::string>& arguments = {}) {
+  /// vip-study headset on a runtime whose caller must keep the specification.
+  Ended on(const std::string& profile, std::vector<std::string> arguments = {}) {
+    arguments.insert(arguments.begin(), "headset");
+    return study(profile, arguments);
+  }
+  /// vip-study likewise.
+  Ended study(const std::string& profile, const std::vector<std::string>& arguments) {
     std::filesystem::remove(log());
     Ended ended =
         run(arguments, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
