@@ -40,7 +40,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
 
   /// The pilot's protocol with these means and standard deviations, played although some are approximate.
   std::string pilot(const std::string& means, const std::string& sds) {
-    std::string text = base::read_file("protocols/ptpe_pilot.toml", 1 << 20);
+    std::string text = base::read_file(base::find_input("protocols/ptpe_pilot.toml"), 1 << 20);
     const auto set = [&](const std::string& key, const std::string& value) {
       const auto at = text.find("\n" + key + " = ") + 1;
       text.replace(at, text.find('\n', at) - at, key + " = " + value);
