@@ -24,8 +24,8 @@ struct SessionSetup {
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
   std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
-  WindowWish wish;                              ///< the window's, or empty
-  std::function<std::optional<double>()> idle;  ///< likewise
+  WindowWish wish;                              ///< the window's or the headset's, or empty
+  std::function<std::optional<double>()> idle;  ///< the window's, or empty
   std::function<void()> open_mirror;            ///< likewise
   std::function<void()> poll;                   ///< likewise
   std::optional<ScreenFacts> screen;            ///< likewise

@@ -115,6 +115,15 @@ TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   }
 }
 
+/// 72 Hz shows 10 frames/s approximately alone: intervals of 90 Hz would lie beside its slots, and be late.
+TEST_F(HeadsetSessionE2e, AfterAChangeOfTheRateATrialsIntervalsAreComputedAnew) {
+  const auto ended = session("at=400:rate/72", pilot("[10]", "[0]"), "2");
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("1 cut short; timing: 0 pass, 1 degraded"));
+  EXPECT_THAT(ended.out,
+              HasSubstr("    10      0       1   10.000   0.000    0.514   0.514       0    0.000"));
+}
+
 TEST_F(HeadsetSessionE2e, ALostSessionIsToldAndContinued) {
   const std::string protocol = pilot("[10]", "[0]");
   for (const char* trouble : {"at=400:lost", "at=400:instance_lost", "at=400:exit"}) {

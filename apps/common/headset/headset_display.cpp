@@ -18,8 +18,6 @@ constexpr std::chrono::seconds most_idle{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
 
-std::int64_t rounded(double value) { return std::llround(value); }
-
 study::EyeView to_study(const EyeView& eye, int x_px) {
   study::EyeView out;
   for (std::size_t k = 0; k < 3; ++k) out.position_m[k] = static_cast<double>(eye.pose.place_m[k]);
@@ -67,9 +65,8 @@ double HeadsetDisplay::measured_hz() const { return session_->meter().hz().value
 
 /// Before the rate has settled no schedule runs.
 std::int64_t HeadsetDisplay::period_ns() const {
-  const auto hz = session_->meter().hz();
-  if (hz) return rounded(1e9 / *hz);
-  return refresh_hz_ > 0 ? rounded(1e9 / refresh_hz_) : 0;
+  const double hz = measured_hz();
+  return hz > 0 ? std::llround(1e9 / hz) : 0;
 }
 
 std::int64_t HeadsetDisplay::first_onset(std::int64_t earliest_ns) const {
