@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
-#include <vector>
+#include <utility>
 
 #include "stats/base/error.hpp"
 
@@ -17,6 +17,8 @@ namespace {
 constexpr std::chrono::seconds most_idle{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
+/// Of those that nobody takes; a minute's and more.
+constexpr std::size_t most_records = 20000;
 
 study::EyeView to_study(const EyeView& eye, int x_px) {
   study::EyeView out;
@@ -34,8 +36,8 @@ study::EyeView to_study(const EyeView& eye, int x_px) {
 
 }  // namespace
 
-HeadsetDisplay::HeadsetDisplay()
-    : gl_(sim::GlContext::make_headless()), session_(std::make_unique<HeadsetSession>(gl_)) {
+HeadsetDisplay::HeadsetDisplay(const HeadsetChoice& choice)
+    : gl_(sim::GlContext::make_headless()), session_(std::make_unique<HeadsetSession>(gl_, choice)) {
   const sim::Offscreen &left = session_->picture(0), &right = session_->picture(1);
   canvas_ =
       std::make_unique<sim::Offscreen>(left.width() + right.width(), std::max(left.height(), right.height()));
@@ -100,11 +102,20 @@ HeadsetSlot HeadsetDisplay::begin_slot() {
   const HeadsetSlot slot = session_->wait();
   session_->begin(slot);
   last_ns_ = slot.predicted_ns;
+  if (records_.size() >= most_records) records_.erase(records_.begin(), records_.begin() + most_records / 2);
+  records_.push_back({slot, session_->views(slot), session_->input(slot)});
   spoilt_ |= playing_ && !slot.should_render;
   return slot;
 }
 
-void HeadsetDisplay::end_slot(const HeadsetSlot& slot) { session_->end(slot, shown_); }
+void HeadsetDisplay::end_slot(const HeadsetSlot& slot) { session_->end(slot, shown_, page_); }
+
+std::vector<HeadsetRecord> HeadsetDisplay::take_records() { return std::exchange(records_, {}); }
+
+std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
+  turn();
+  return take_records();
+}
 
 void HeadsetDisplay::become_focused() {
   for (int slots = 0; session_->state() != HeadsetState::Focused; ++slots) {
@@ -114,8 +125,8 @@ void HeadsetDisplay::become_focused() {
   }
 }
 
-void HeadsetDisplay::draw(const HeadsetSlot& slot) {
-  const EyeViews views = session_->views(slot);
+void HeadsetDisplay::draw() {
+  const EyeViews views = records_.back().views;
   if (!can_be_shown(views)) {
     spoilt_ = true;
     return;
@@ -138,7 +149,7 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
   study::PresentTimes times;
   times.submitted_ns = clock.now_ns();
   const HeadsetSlot slot = begin_slot();
-  draw(slot);
+  draw();
   end_slot(slot);
   times.predicted_display_ns = slot.predicted_ns;
   return times;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/common/headset/headset_session.hpp"
 #include "libsim/render/gl_context.hpp"
@@ -15,6 +16,13 @@
 
 namespace apps {
 
+/// What a slot brought in.
+struct HeadsetRecord {
+  HeadsetSlot slot;
+  EyeViews views;  ///< where the eyes will be at slot.predicted_ns
+  HeadsetInput input;
+};
+
 /// Shows a picture for as long as the schedule says, in every slot that the runtime gives: an old picture
 /// keeps the pose that it was drawn from (hold mode `image`), and black is a slot without a picture. All
 /// slots are turned on the calling thread, so none come while a stimulus computes: for runtimes whose time
@@ -23,7 +31,7 @@ class HeadsetDisplay final : public study::Display {
  public:
   /// Connects, turns slots until the headset is worn and the rate has settled. base::Error for what is not
   /// there, and for a headset that nobody puts on.
-  HeadsetDisplay();
+  explicit HeadsetDisplay(const HeadsetChoice& choice = {});
 
   std::string description() const override;
   /// C; D where the runtime's times do not convert, repeat or leave their grid.
@@ -40,6 +48,20 @@ class HeadsetDisplay final : public study::Display {
   std::int64_t next_ns() const { return last_ns_ + period_ns(); }
   /// Turns slots until the next one is the nearest to deadline_ns, or a later one.
   void turn_until(std::int64_t deadline_ns);
+
+  /// To draw a page into, of the size that was chosen.
+  const sim::Offscreen& page() const { return session_->page(); }
+  /// Shows the page as it was drawn, before whatever else is seen, until hide_page().
+  void show_page(const HeadsetPage& page) { page_ = page; }
+  void hide_page() { page_.reset(); }
+
+  /// What the slots brought in since the last call, of those that are over; the oldest go where there are
+  /// many.
+  std::vector<HeadsetRecord> take_records();
+  /// The same, after the next slot.
+  std::vector<HeadsetRecord> next_records();
+  const HeadsetSession& session() const { return *session_; }
+
   /// Whether, since the last question, a picture that was on could not be seen, or the world or the rate
   /// changed under it. Answers after the headset is worn again.
   bool take_spoilt();
@@ -51,14 +73,16 @@ class HeadsetDisplay final : public study::Display {
   void turn() { end_slot(begin_slot()); }
   void heed(const HeadsetEvent& event);
   void become_focused();
-  void draw(const HeadsetSlot& slot);
+  void draw();
 
   sim::GlContext gl_;
   std::unique_ptr<HeadsetSession> session_;
   std::unique_ptr<sim::Offscreen> canvas_;  ///< both eyes beside each other
   study::Stimulus* pending_ = nullptr;
   std::optional<EyeViews> shown_;  ///< what the present pictures were drawn from; none: black
-  std::int64_t last_ns_ = 0;       ///< of the last slot
+  std::optional<HeadsetPage> page_;
+  std::vector<HeadsetRecord> records_;
+  std::int64_t last_ns_ = 0;  ///< of the last slot
   double refresh_hz_ = 0;
   bool playing_ = false;  ///< a presentation is on
   bool spoilt_ = false;
