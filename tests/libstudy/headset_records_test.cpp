@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/permissions.hpp"
@@ -10,6 +13,7 @@
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
+#include "tests/common/bids_rules.hpp"
 #include "tests/libstudy/headset_fixture.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 #include "tests/libstudy/session_fixture.hpp"
@@ -75,7 +79,9 @@ TEST(HeadsetRecords, HoldEverySlotWithTheFrameThatWasOn) {
   EXPECT_EQ(worn.count("slot s JOIN frame f USING (presentation_id, frame_index) WHERE s.predicted_ns < "
                        "f.scheduled_ns OR s.predicted_ns > f.scheduled_ns + 60000000"),
             0);
-  EXPECT_EQ(worn.count("(SELECT DISTINCT presentation_id, frame_index FROM slot WHERE frame_index IS NOT NULL)"), 10 + 25);
+  EXPECT_EQ(
+      worn.count("(SELECT DISTINCT presentation_id, frame_index FROM slot WHERE frame_index IS NOT NULL)"),
+      10 + 25);
   EXPECT_EQ(worn.count("head WHERE x_m = 0.5 AND quat_w = 0.8 AND place_tracked = 1 AND turn_tracked = 0"),
             worn.count("slot"));
   EXPECT_EQ(worn.count("gaze WHERE source = 'tracker' AND tracked = 0 AND direction_x = 0.6 AND origin_z_m = "
@@ -153,7 +159,9 @@ fs::path headset_study(const test::TemporaryFolder& folder, const std::string& n
                        const std::vector<test::Says>& people) {
   Store store(folder / name, Open::Create);
   test::add_people(store, test::asking_protocol(), people);
-  for (std::size_t i = 0; i < people.size(); ++i) add_headset_rows(store, static_cast<std::int64_t>(i) + 1);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (people[i].gaze == 1) add_headset_rows(store, static_cast<std::int64_t>(i) + 1);
+  }
   return folder / name;
 }
 
@@ -279,6 +287,38 @@ TEST(HeadsetRecords, AreExportedOnlyWithGazeWhereTheyTellOfAPerson) {
   EXPECT_THAT(test::bytes_of(folder / "all/gaze_validations.csv"),
               HasSubstr("\r\n1,1,0,8,10,-10,30,29,0.5,0.25,0.125,1\r\n"));
   EXPECT_THAT(test::bytes_of(folder / "all/dictionary.csv"), HasSubstr("\nheads.csv,quat_w,REAL,"));
+}
+
+TEST(HeadsetRecords, AreMotionAndAnEyeInTheHeadInBids) {
+  const test::TemporaryFolder folder;
+  const fs::path path = headset_study(folder, "study.db", {{"P01", 1, 1}, {"P02", 0, 1}});
+  {
+    Store store(path, Open::Write);
+    const GazeSample blink{10'000'005, {}, false, {}, false, {}};
+    store.add_gaze(1, 0, GazeOrigin::Tracker, {&blink, 1});
+    ShownSlot slot{test::slot_at(10'000'006), 1};
+    slot.slot.head->place_valid = false;
+    store.add_slots(1, 0, {&slot, 1});
+  }
+  const std::string session = "sub-P01/ses-askingv1/", stem = "sub-P01_ses-askingv1_task-asking";
+  export_bids(path, folder / "few");
+  EXPECT_FALSE(fs::exists(folder / "few" / session / "motion"));
+  export_bids(path, folder / "bids", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
+  const fs::path motion = folder / "bids" / session / "motion" / (stem + "_tracksys-headset_");
+  EXPECT_EQ(test::bytes_of(motion.string() + "motion.tsv"),
+            "6e-09\t0.5\t1.5\t-0.25\t0\t0.6\t0\t0.8\t1\t0\n"
+            "0.010000006\tn/a\tn/a\tn/a\t0\t0.6\t0\t0.8\t0\t0\n");
+  EXPECT_THAT(test::bytes_of(motion.string() + "channels.tsv"), HasSubstr("\nquat_w\tquat_w\tORNT\thead\t"));
+  const auto eye = nlohmann::json::parse(
+      test::bytes_of(folder / "bids" / session / "beh" / (stem + "_recording-eye1_physio.json")));
+  EXPECT_EQ(eye["SampleCoordinateSystem"], "eye-in-head");
+  EXPECT_EQ(eye["AverageCalibrationError"], 0.5);
+  const auto events =
+      nlohmann::json::parse(test::bytes_of(folder / "bids" / session / "beh" / (stem + "_events.json")));
+  EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["headset"], "a headset");
+  EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["ipd_mm"][0], 63);
+  EXPECT_FALSE(fs::exists(folder / "bids/sub-P02/ses-askingv1/motion")) << "refused gaze";
 }
 
 }  // namespace
