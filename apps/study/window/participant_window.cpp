@@ -111,6 +111,7 @@ void ParticipantWindow::draw(PageView& view, PageState& state, std::int64_t now_
 /// Returns whether Esc was among them.
 bool ParticipantWindow::handle_keys(PageState& state, PageView& view, std::int64_t now_ns) {
   bool escape = false;
+  state.use(study::AnswerInput::Keyboard);
   const bool shift = glfwGetKey(window_.get(), GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                      glfwGetKey(window_.get(), GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
   for (const int key : window_.take_keys()) {
@@ -121,7 +122,9 @@ bool ParticipantWindow::handle_keys(PageState& state, PageView& view, std::int64
     if (key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT) state.minus(now_ns);
     if (const auto meant = page_key(key, shift)) state.press(*meant, now_ns);
   }
+  state.use(study::AnswerInput::Gamepad);
   for (const PageKey key : gamepad_.take()) state.press(key, now_ns);
+  state.use(study::AnswerInput::Mouse);  // clicks come while the page is drawn
   return escape;
 }
 
