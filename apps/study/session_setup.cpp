@@ -68,9 +68,9 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
 }
 
 /// Its slots are the clock.
-void take_headset(SessionSetup& setup) {
-  auto headset =
-      std::make_unique<HeadsetDisplay>(setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread);
+void take_headset(SessionSetup& setup, const study::Protocol& protocol) {
+  const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
+  auto headset = std::make_unique<HeadsetDisplay>(drive, HeadsetChoice{}, protocol.headset);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
     if (!display->take_spoilt()) return others();
@@ -145,7 +145,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.screen = window.screen;
     size = window.size;
   } else if (options.display == "openxr") {
-    take_headset(setup);
+    take_headset(setup, protocol);
   } else {
     setup.display = make_display(options);
   }
