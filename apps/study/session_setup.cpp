@@ -23,9 +23,9 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 }
 
 void check_together(const RunOptions& options, const study::Protocol& protocol) {
-  if (options.display == "openxr" && (options.observer.empty() || options.clock != "virtual"))
-    throw base::Error("--display openxr", "shows no pages to a person yet and keeps no real time",
-                      "name an --observer and use --clock virtual, or --display window");
+  if (options.display == "openxr" && options.observer.empty())
+    throw base::Error("--display openxr", "shows no pages to a person yet",
+                      "name an --observer, or use --display window");
   if (options.display == "openxr" && options.gaze != "fixed" && options.gaze != "none")
     throw base::Error("--gaze " + options.gaze, "is not read from a headset yet", "use --gaze fixed or none");
   if (options.observer.empty() && options.display != "window")
@@ -68,11 +68,18 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
 }
 
 /// Its slots are the clock.
-void take_headset(SessionSetup& setup) {
-  auto headset = std::make_unique<HeadsetDisplay>();
+void take_headset(SessionSetup& setup, const study::Protocol& protocol) {
+  const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
+  auto headset = std::make_unique<HeadsetDisplay>(drive, HeadsetChoice{}, protocol.headset);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
-    return display->take_spoilt() ? study::Wish::NotShown : others();
+    if (!display->take_spoilt()) return others();
+    display->clear();
+    do {
+      if (others() == study::Wish::Stop) return study::Wish::Stop;
+      display->turn();  // also at first: what was not seen may be told before the reason
+    } while (!display->focused());
+    return study::Wish::NotShown;
   };
   setup.display = std::move(headset);
 }
@@ -138,7 +145,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.screen = window.screen;
     size = window.size;
   } else if (options.display == "openxr") {
-    take_headset(setup);
+    take_headset(setup, protocol);
   } else {
     setup.display = make_display(options);
   }

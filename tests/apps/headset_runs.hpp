@@ -46,6 +46,14 @@ class HeadsetRuns : public ::testing::Test {
     EXPECT_THAT(calls(), ::testing::Not(::testing::HasSubstr("BREACH")));
     return ended;
   }
+  /// For tests that open the headset in their own process.
+  void use_here(const std::string& profile) const {
+    ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);
+    ::setenv("XR_LOADER_DEBUG", "none", 1);
+    ::setenv("VIP_XR_PROFILE", profile.c_str(), 1);
+    ::setenv("VIP_XR_LOG", log().c_str(), 1);
+    ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
+  }
   std::string log() const { return folder_ / "calls.log"; }
   std::string calls() const { return std::filesystem::exists(log()) ? base::read_file(log(), 1 << 24) : ""; }
   /// What a frame that the profile dumps showed to an eye, "left" or "right".
