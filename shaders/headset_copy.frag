@@ -1,5 +1,7 @@
 // Copies an sRGB picture pixel by pixel. TO_LINEAR: into an image that holds linear light.
 layout(binding = 0) uniform sampler2D picture;
+uniform int x;        // of the picture's column that comes first
+uniform float light;  // by which its levels are multiplied
 layout(location = 0) out vec4 colour;
 
 vec3 light_of(vec3 srgb) {  // IEC 61966-2-1
@@ -7,7 +9,7 @@ vec3 light_of(vec3 srgb) {  // IEC 61966-2-1
 }
 
 void main() {
-  const vec3 srgb = texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb;
+  const vec3 srgb = light * texelFetch(picture, ivec2(gl_FragCoord.xy) + ivec2(x, 0), 0).rgb;
 #ifdef TO_LINEAR
   colour = vec4(light_of(srgb), 1.0);
 #else

@@ -4,6 +4,7 @@ layout(location = 0) out vec4 colour;
 uniform vec3 eye;       // m
 uniform mat3 turn;      // the eye's axes: right, up, back
 uniform vec4 tangents;  // of the field of view: left, right, down, up
+uniform float x;        // px from the left, where the picture begins
 uniform vec2 size;      // px
 uniform vec4 ramp;      // left, right, down, up, m
 uniform float ramp_z;
@@ -18,7 +19,7 @@ bool reach(vec3 ray, float z, out vec2 at) {
 }
 
 void main() {
-  const vec2 share = gl_FragCoord.xy / size;
+  const vec2 share = (gl_FragCoord.xy - vec2(x, 0.0)) / size;
   const vec3 ray =
       turn * vec3(mix(tangents.x, tangents.y, share.x), mix(tangents.z, tangents.w, share.y), -1.0);
   colour = vec4(ray.y > 0.0 ? vec3(0.25, 0.25, 0.4) : vec3(0.2, 0.25, 0.2), 1.0);

@@ -112,6 +112,7 @@ class Show {
  public:
   Show(const sim::GlContext& gl, const TestScene& scene, const ShowChoice& choice, ShowReport& report)
       : session_(gl, {.eye_gaze = true, .patience_s = choice.patience_s}),
+        picture_(session_.picture_size().width, session_.picture_size().height),
         scene_(scene),
         report_(report),
         asked_hz_(choice.refresh_hz) {
@@ -181,9 +182,9 @@ class Show {
     const bool shows = slot.should_render && can_be_shown(views);
     if (shows) {
       for (std::size_t eye = 0; eye < views.size(); ++eye)
-        scene_.draw(views[eye], session_.picture(eye).framebuffer());
+        scene_.draw(views[eye], picture_.framebuffer(), eye == 0 ? 0 : views[0].width_px);
     }
-    session_.end(slot, shows ? std::optional(views) : std::nullopt);
+    session_.end(slot, {.picture = shows ? &picture_ : nullptr, .views = views});
     ++report_.frames;
     report_.shown += shows;
   }
@@ -197,6 +198,7 @@ class Show {
   }
 
   HeadsetSession session_;
+  sim::Offscreen picture_;
   const TestScene& scene_;
   ShowReport& report_;
   double asked_hz_;  ///< 0: none

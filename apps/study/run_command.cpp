@@ -80,7 +80,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   study::SessionPlan session;
   session.visit = command.visit;
   session.seed = static_cast<std::uint64_t>(command.seed);
-  session.test_data = protocol.test_data || !setup.departure().empty() || command.run.display == "openxr";
+  session.test_data = protocol.test_data || !setup.departure().empty() ||
+                      (command.run.display == "openxr" && command.run.clock == "virtual");
   session.framing = framing_record(setup.scenes);
   session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;

@@ -24,9 +24,6 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 }
 
 void check_together(const RunOptions& options, const study::Protocol& protocol) {
-  if (options.display == "openxr" && options.clock != "virtual")
-    throw base::Error("--display openxr", "keeps no real time yet",
-                      "use --clock virtual, or --display window");
   if (!options.answer.empty() && (options.display != "openxr" || !options.observer.empty()))
     throw base::Error("--answer", "is for a person in a headset", "leave it out, or use --display openxr");
   if (options.display == "openxr" && options.gaze != "fixed" && options.gaze != "none")
@@ -75,10 +72,17 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
 void take_headset(SessionSetup& setup, const RunOptions& options, const study::Protocol& protocol) {
   const bool person = options.observer.empty();
   const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
-  auto headset = std::make_unique<HeadsetDisplay>(person ? choice_for_person(ways) : HeadsetChoice());
+  auto headset = std::make_unique<HeadsetDisplay>(setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread,
+                                                  person ? choice_for_person(ways) : HeadsetChoice());
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
-    return display->take_spoilt() ? study::Wish::NotShown : others();
+    if (!display->take_spoilt()) return others();
+    display->clear();
+    do {
+      if (others() == study::Wish::Stop) return study::Wish::Stop;
+      display->turn();  // also at first: what was not seen may be told before the reason
+    } while (!display->focused());
+    return study::Wish::NotShown;
   };
   if (person) {
     HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);

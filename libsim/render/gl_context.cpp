@@ -92,6 +92,17 @@ struct GlContext::State {
     // No eglTerminate: displays are shared by all contexts of a process.
   }
 
+  void create(EGLContext shared) {
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_NONE};
+    context = eglCreateContext(display, config, shared, attributes);
+  }
+
   /// Empty when it worked, otherwise what went wrong.
   std::string open(const Trial& trial) {
     display = eglGetPlatformDisplayEXT(trial.platform, trial.native, nullptr);
@@ -107,14 +118,7 @@ struct GlContext::State {
     if (!eglChooseConfig(display, config_attributes, &config, 1, &configs) || configs == 0) {
       return "no configuration with OpenGL";
     }
-    const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                         4,
-                                         EGL_CONTEXT_MINOR_VERSION,
-                                         5,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                         EGL_NONE};
-    context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes);
+    create(EGL_NO_CONTEXT);
     if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core context";
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return "eglMakeCurrent failed";
     return "";
@@ -146,7 +150,18 @@ GlContext GlContext::make_headless() {
                     mend);
 }
 
+GlContext GlContext::make_shared() const {
+  auto state = std::make_unique<State>();
+  state->display = state_->display;
+  state->config = state_->config;
+  state->create(state_->context);
+  if (state->context == EGL_NO_CONTEXT)
+    throw base::Error("OpenGL", "the driver gives no second context", "update the graphics driver");
+  return GlContext(std::move(state));
+}
+
 void GlContext::make_current() {
+  eglBindAPI(EGL_OPENGL_API);  // each thread has its own
   if (!eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_->context)) {
     throw base::Error("OpenGL", "the headless context cannot be made current",
                       "release it on the other thread first");

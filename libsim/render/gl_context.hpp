@@ -25,6 +25,10 @@ class GlContext {
   GlContext& operator=(GlContext&&) noexcept;
   ~GlContext();
 
+  /// Another context that shares textures and buffers with this one; current nowhere. base::Error when the
+  /// driver gives none.
+  GlContext make_shared() const;
+
   /// Makes it current on the calling thread (release it on the other one first).
   void make_current();
   /// Leaves the calling thread without a context.

@@ -34,7 +34,7 @@ std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> q
   for (const Question& question : questions) {
     const bool judges = !judged && is_judged(question);
     judged = judged || judges;
-    out.push_back({answer_of(*this, question, occasion, judges), 0});
+    out.push_back({answer_of(*this, question, occasion, judges), 0, AnswerInput::Observer});
   }
   return out;
 }

@@ -55,9 +55,23 @@ struct Answer {
   std::string words;
 };
 
+/// What an answer was given with.
+enum class AnswerInput {
+  Keyboard,
+  Mouse,
+  Gamepad,
+  Ray,      ///< a hand's ray and select
+  Stick,    ///< a controller's thumbstick
+  Dwell,    ///< by looking at it for a while
+  Observer  ///< a simulated participant
+};
+
 struct TimedAnswer {
   Answer answer;
   double response_time_s = 0;  ///< from the page's showing to the last change of this answer
+  /// What the last change of this answer came from, and of an answer that was left empty the confirmation;
+  /// none: not known.
+  std::optional<AnswerInput> input{};
 };
 
 }  // namespace study

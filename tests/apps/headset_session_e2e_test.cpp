@@ -143,6 +143,17 @@ TEST_F(HeadsetSessionE2e, DroppedSlotsMakeAFrameLate) {
   EXPECT_THAT(ended.out, Not(HasSubstr("1 of 1 trials pass")));
 }
 
+TEST_F(HeadsetSessionE2e, SessionsRunInRealTimeToo) {
+  const std::string protocol = pilot("[10]", "[0]");
+  const auto ended =
+      study("size=32x32;clock=real;rates=20;rate=20",
+            {"run", protocol, "--db", database_, "--observer", "random", "--display", "openxr", "--clock",
+             "real", "--stimulus", dam_, "--participants", "1", "--trial-seconds", "1"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
+  EXPECT_THAT(ended.out, HasSubstr(" C "));
+}
+
 TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   const std::string protocol = pilot("[10]", "[0]");
   const auto refuse = [&](const std::string& profile, const std::vector<std::string>& more,

@@ -21,12 +21,12 @@ class HeadsetSessionGl : public test::HeadsetRuns {
   ~HeadsetSessionGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
   HeadsetSession& start(const std::string& profile, const HeadsetChoice& choice = {}) {
-    ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);
-    ::setenv("XR_LOADER_DEBUG", "none", 1);
-    ::setenv("VIP_XR_PROFILE", ("size=64x48;" + profile).c_str(), 1);
-    ::setenv("VIP_XR_LOG", log().c_str(), 1);
-    ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
+    use_here("size=64x48;" + profile);
     session_.emplace(gl_, choice);
+    const PictureSize size = session_->picture_size();
+    picture_ = std::make_unique<sim::Offscreen>(size.width, size.height);
+    if (choice.page_width_px > 0)
+      page_ = std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px);
     return *session_;
   }
   /// Polls until frames must come.
@@ -34,28 +34,21 @@ class HeadsetSessionGl : public test::HeadsetRuns {
     for (int i = 0; i < 100 && !session_->running(); ++i) session_->poll();
     ASSERT_TRUE(session_->running());
   }
-  /// Frames whose content `draw` makes: it gives the views to show from and the page.
-  struct Content {
-    std::optional<EyeViews> shown;
-    std::optional<HeadsetPage> page;
-  };
-  using Draw = std::function<Content(const HeadsetSlot&)>;
+  /// Frames whose content `draw` makes.
+  using Draw = std::function<HeadsetLayers(const HeadsetSlot&)>;
   void run_frames(int count, const Draw& draw) {
     for (int i = 0; i < count; ++i) {
       session_->poll();
       const HeadsetSlot slot = session_->wait();
       session_->begin(slot);
-      const Content content = draw(slot);
-      session_->end(slot, content.shown, content.page);
+      session_->end(slot, draw(slot));
     }
   }
   void paint(const sim::Offscreen& picture, float red) const {
     const std::array<float, 4> colour{red, 0.5f, 0.25f, 1};
     glClearNamedFramebufferfv(picture.framebuffer(), GL_COLOR, 0, colour.data());
   }
-  void paint_eyes(float red) const {
-    for (std::size_t eye = 0; eye < 2; ++eye) paint(session_->picture(eye), red);
-  }
+  HeadsetLayers seen_from(const EyeViews& views) const { return {.picture = picture_.get(), .views = views}; }
   /// What the log says of one frame behind a word.
   std::string logged(long frame, const std::string& what) const {
     const std::string all = calls();
@@ -65,6 +58,7 @@ class HeadsetSessionGl : public test::HeadsetRuns {
   }
 
   sim::GlContext gl_ = sim::GlContext::make_headless();
+  std::unique_ptr<sim::Offscreen> picture_, page_;
   std::optional<HeadsetSession> session_;
 };
 
@@ -73,15 +67,15 @@ TEST_F(HeadsetSessionGl, AHeldPictureKeepsItsPoseWhileTheHeadMoves) {
   begin_running();
   std::optional<EyeViews> held;
   std::array<float, 3> last_place{};
-  run_frames(10, [&](const HeadsetSlot& slot) -> Content {
+  run_frames(10, [&](const HeadsetSlot& slot) -> HeadsetLayers {
     const EyeViews now = session_->views(slot);
     if (!slot.should_render) return {};
     if (!held) {
-      paint_eyes(1);
+      paint(*picture_, 1);
       held = now;
     }
     last_place = now[0].pose.place_m;
-    return {held, {}};
+    return seen_from(*held);
   });
   ASSERT_TRUE(held);
   EXPECT_NE((*held)[0].pose.place_m, last_place);
@@ -99,11 +93,14 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
   page.pose.place_m = {0.1f, 0.2f, -1.5f};
   page.width_m = 0.8f;
   page.height_m = 0.4f;
-  run_frames(8, [&](const HeadsetSlot& slot) -> Content {
-    paint_eyes(0);
-    paint(session_->page(), 1);
+  run_frames(8, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+    paint(*picture_, 0);
+    paint(*page_, 1);
     // The last ones have the page alone.
-    return {slot.index < 7 ? std::optional(session_->views(slot)) : std::nullopt, page};
+    return {.picture = slot.index < 7 ? picture_.get() : nullptr,
+            .views = session_->views(slot),
+            .page = page_.get(),
+            .place = page};
   });
   EXPECT_EQ(logged(5, "layers [0-9]+"), "layers 2");
   EXPECT_EQ(logged(7, "layers [0-9]+"), "layers 1");
@@ -124,7 +121,9 @@ TEST_F(HeadsetSessionGl, NothingIsHandedOverForASlotThatNobodySees) {
   HeadsetPage page;
   page.pose.place_m = {0, 0, -1};
   page.width_m = page.height_m = 0.5f;
-  run_frames(7, [&](const HeadsetSlot& slot) -> Content { return {session_->views(slot), page}; });
+  run_frames(7, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+    return {.picture = picture_.get(), .views = session_->views(slot), .page = page_.get(), .place = page};
+  });
   EXPECT_EQ(logged(3, "render 1 layers [0-9]+"), "render 1 layers 2");
   EXPECT_EQ(logged(6, "render 0 layers [0-9]+"), "render 0 layers 0");
 }
@@ -135,9 +134,9 @@ TEST_F(HeadsetSessionGl, FramesMayComeFromAThreadOfTheirOwn) {
   auto frames = std::async(std::launch::async, [&] {
     gl_.make_current();
     begin_running();
-    run_frames(20, [&](const HeadsetSlot& slot) -> Content {
-      paint_eyes(1);
-      return {session_->views(slot), {}};
+    run_frames(20, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+      paint(*picture_, 1);
+      return seen_from(session_->views(slot));
     });
     gl_.release();
   });
@@ -167,8 +166,8 @@ TEST_F(HeadsetSessionGl, TheCallersContextIsCurrentAfterEachCallAndWithoutErrors
       expect_own("begin");
       const EyeViews views = session_->views(slot);
       session_->input(slot);
-      paint_eyes(1);
-      session_->end(slot, views);
+      paint(*picture_, 1);
+      session_->end(slot, seen_from(views));
       expect_own("end");
     }
     session_.reset();
@@ -181,7 +180,7 @@ TEST_F(HeadsetSessionGl, TimesThatDoNotConvertKeepTheirSteps) {
   EXPECT_FALSE(session.times_convert());
   begin_running();
   std::vector<std::int64_t> predicted;
-  run_frames(5, [&](const HeadsetSlot& slot) -> Content {
+  run_frames(5, [&](const HeadsetSlot& slot) -> HeadsetLayers {
     predicted.push_back(slot.predicted_ns);
     return {};
   });
@@ -193,7 +192,7 @@ TEST_F(HeadsetSessionGl, APlaceThatIsNotTrackedIsTold) {
   HeadsetSession& session = start("at=4:position/0");
   begin_running();
   std::vector<bool> tracked;
-  run_frames(6, [&](const HeadsetSlot& slot) -> Content {
+  run_frames(6, [&](const HeadsetSlot& slot) -> HeadsetLayers {
     const HeadsetPose head = session.input(slot).head;
     EXPECT_TRUE(head.turn_tracked);
     tracked.push_back(head.place_tracked);

@@ -90,6 +90,24 @@ TEST(PageState, AnAnswerCanBeChangedUntilItIsConfirmed) {
   EXPECT_DOUBLE_EQ(answers[0].response_time_s, 2.5);
 }
 
+TEST(PageState, AnAnswerTellsWhatItsLastChangeCameFrom) {
+  using study::AnswerInput;
+  PageState state = page({scale(1, 7), scale(1, 7), words(false), scale(1, 7, false)});
+  state.digit(5, at(1000));
+  state.use(AnswerInput::Ray);
+  state.click(1, 3, at(1500));
+  state.click(0, 5, at(1600));  // no change
+  state.write(2, "grainy", at(1700));
+  state.use(AnswerInput::Stick);
+  state.click_confirm(at(2000));
+  ASSERT_TRUE(state.confirmed());
+  const auto answers = state.answers();
+  EXPECT_EQ(answers[0].input, AnswerInput::Keyboard);
+  EXPECT_EQ(answers[1].input, AnswerInput::Ray);
+  EXPECT_EQ(answers[2].input, AnswerInput::Keyboard);
+  EXPECT_EQ(answers[3].input, AnswerInput::Stick);
+}
+
 TEST(PageState, TheSameAnswerAgainIsNoChange) {
   PageState state = page({scale(1, 7)});
   state.digit(5, at(1000));

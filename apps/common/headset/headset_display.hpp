@@ -3,35 +3,24 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "apps/common/headset/headset_session.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "apps/common/headset/frame_loop.hpp"
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
 
 namespace apps {
 
-/// What a slot brought in.
-struct HeadsetRecord {
-  HeadsetSlot slot;
-  EyeViews views;  ///< where the eyes will be at slot.predicted_ns
-  HeadsetInput input;
-};
-
 /// Shows a picture for as long as the schedule says, in every slot that the runtime gives: an old picture
-/// keeps the pose that it was drawn from (hold mode `image`), and black is a slot without a picture. All
-/// slots are turned on the calling thread, so none come while a stimulus computes: for runtimes whose time
-/// stands still meanwhile. Destroy stimuli that drew on it first.
+/// keeps the pose that it was drawn from (hold mode `image`), and black is a slot without a picture. Destroy
+/// stimuli that drew on it first. All calls on the thread that made it.
 class HeadsetDisplay final : public study::Display {
  public:
-  /// Connects, turns slots until the headset is worn and the rate has settled. base::Error for what is not
-  /// there, and for a headset that nobody puts on.
-  explicit HeadsetDisplay(const HeadsetChoice& choice = {});
+  /// Connects, waits until the headset is worn and the rate has settled. base::Error for what is not there,
+  /// and for a headset that nobody puts on.
+  explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {});
 
   std::string description() const override;
   /// C; D where the runtime's times do not convert, repeat or leave their grid.
@@ -39,61 +28,61 @@ class HeadsetDisplay final : public study::Display {
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Only remembers it: it is drawn from the pose of the slot in which it comes on.
-  void render(study::Stimulus& stimulus) override { pending_ = &stimulus; }
+  /// Only remembers it: it is drawn as late as it can be, from where the head will be when it comes on.
+  void render(study::Stimulus& stimulus) override;
   study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
   void clear() override;
 
-  /// When what is handed over now would be seen: the next slot, on the runtime's clock, ns.
-  std::int64_t next_ns() const { return last_ns_ + period_ns(); }
-  /// Turns slots until the next one is the nearest to deadline_ns, or a later one.
+  /// When what is handed over now would be seen, on the runtime's clock, ns: that of the next slot, which
+  /// goes on between slots where they have a thread of their own.
+  std::int64_t now_ns() const { return loop_.now_ns(); }
+  /// Waits until the next slot is the nearest to deadline_ns, or a later one.
   void turn_until(std::int64_t deadline_ns);
+  /// Waits for the next slot, or a tenth of a second where none comes.
+  void turn();
 
-  /// To draw a page into, of the size that was chosen.
-  const sim::Offscreen& page() const { return session_->page(); }
+  /// To draw a page into, of the size that was chosen; ask again for each drawing.
+  const sim::Offscreen& page() const { return loop_.page(); }
   /// Shows the page as it was drawn, before whatever else is seen, until hide_page().
-  void show_page(const HeadsetPage& page) { page_ = page; }
-  void hide_page() { page_.reset(); }
+  void show_page(const HeadsetPage& page) { loop_.show_page(page); }
+  void hide_page() { loop_.hide_page(); }
 
   /// What the slots brought in since the last call, of those that are over; the oldest go where there are
   /// many.
-  std::vector<HeadsetRecord> take_records();
-  /// The same, after the next slot.
+  std::vector<HeadsetRecord> take_records() { return loop_.take_records(); }
+  /// The same, after the next slot; nothing where none came for a tenth of a second.
   std::vector<HeadsetRecord> next_records();
-  const HeadsetSession& session() const { return *session_; }
+  const HeadsetSession& session() const { return loop_.session(); }
+  LoopFacts facts() const { return loop_.facts(); }
 
+  /// Whether the participant sees and can answer.
+  bool focused() const { return facts().state == HeadsetState::Focused; }
   /// Whether, since the last question, a picture that was on could not be seen, or the world or the rate
-  /// changed under it. Answers after the headset is worn again.
+  /// changed under it.
   bool take_spoilt();
 
  private:
-  std::int64_t period_ns() const;
-  HeadsetSlot begin_slot();
-  void end_slot(const HeadsetSlot& slot);
-  void turn() { end_slot(begin_slot()); }
-  void heed(const HeadsetEvent& event);
-  void become_focused();
-  void draw();
+  std::int64_t lead_ns() const;
+  void heed();
+  void await(const std::function<bool()>& ready, const char* problem, const char* mend);
+  EyeViews draw(std::int64_t at_ns);
 
-  sim::GlContext gl_;
-  std::unique_ptr<HeadsetSession> session_;
-  std::unique_ptr<sim::Offscreen> canvas_;  ///< both eyes beside each other
+  FrameLoop loop_;
   study::Stimulus* pending_ = nullptr;
-  std::optional<EyeViews> shown_;  ///< what the present pictures were drawn from; none: black
-  std::optional<HeadsetPage> page_;
-  std::vector<HeadsetRecord> records_;
-  std::int64_t last_ns_ = 0;  ///< of the last slot
   double refresh_hz_ = 0;
+  std::int64_t draw_ns_ =
+      0;  ///< that a picture takes lately; 0: none was drawn, or time stands still meanwhile
+  bool slots_by_thread_;
   bool playing_ = false;  ///< a presentation is on
   bool spoilt_ = false;
 };
 
-/// The time of a headset's slots, which passes as they are turned. A wait ends at the slot that is nearest to
+/// The time at which what is handed over now would be seen. A wait ends at the slot that is nearest to
 /// its deadline, and takes that for the deadline itself.
 class HeadsetClock final : public study::Clock {
  public:
   explicit HeadsetClock(HeadsetDisplay& display) : display_(display) {}
-  std::int64_t now_ns() const override { return std::max(display_.next_ns(), reached_ns_); }
+  std::int64_t now_ns() const override { return std::max(display_.now_ns(), reached_ns_); }
   void wait_until(std::int64_t deadline_ns) override {
     display_.turn_until(deadline_ns);
     reached_ns_ = std::max(reached_ns_, deadline_ns);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "apps/common/headset/actions.hpp"
@@ -49,10 +51,8 @@ struct HeadsetSession::Parts {
         world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
         head(session, XR_REFERENCE_SPACE_TYPE_VIEW),
         actions(session, clock, system.eye_gaze) {
-    const std::vector<PictureSize> sizes = picture_sizes(system, choice);
+    sizes = picture_sizes(system, choice);
     swapchains = make_swapchains(session, sizes);
-    for (const PictureSize& size : sizes)
-      pictures.push_back(std::make_unique<sim::Offscreen>(size.width_px, size.height_px));
   }
 
   std::chrono::nanoseconds patience;
@@ -64,8 +64,8 @@ struct HeadsetSession::Parts {
   RefreshControl refresh;
   Space world, head;
   Actions actions;
-  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< left, right and, where one is asked for, the page
-  std::vector<std::unique_ptr<sim::Offscreen>> pictures;  ///< the same
+  std::vector<PictureSize> sizes;                      ///< left, right and, where one is asked for, the page
+  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< the same
   RateMeter meter;
   double told_hz = 0;                    ///< by the last event; 0: none came
   std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event told
@@ -119,8 +119,8 @@ HeadsetSession::HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& ch
 HeadsetSession::~HeadsetSession() = default;
 
 std::string HeadsetSession::description() const {
-  return fmt::format("{}, {} x {} px an eye, {}", parts_->system.name, picture(0).width(),
-                     picture(0).height(), gl_format_name(parts_->swapchains[0]->format()));
+  return fmt::format("{}, {} x {} px an eye, {}", parts_->system.name, eye_size(0).width, eye_size(0).height,
+                     gl_format_name(parts_->swapchains[0]->format()));
 }
 
 bool HeadsetSession::keeps_levels() const { return apps::keeps_levels(parts_->swapchains[0]->format()); }
@@ -162,11 +162,11 @@ void HeadsetSession::begin(const HeadsetSlot&) {
   parts_->session.call<PFN_xrBeginFrame>("xrBeginFrame", parts_->session.get(), &info);
 }
 
-EyeViews HeadsetSession::views(const HeadsetSlot& slot) {
+EyeViews HeadsetSession::views_at(std::int64_t runtime_time) {
   XrViewLocateInfo info{};
   info.type = XR_TYPE_VIEW_LOCATE_INFO;
   info.viewConfigurationType = stereo_views;
-  info.displayTime = slot.runtime_time;
+  info.displayTime = runtime_time;
   info.space = parts_->world.get();
   XrViewState state{};
   state.type = XR_TYPE_VIEW_STATE;
@@ -180,8 +180,8 @@ EyeViews HeadsetSession::views(const HeadsetSlot& slot) {
     const XrFovf& fov = found[eye].fov;
     out[eye] = {pose_of(found[eye].pose, state.viewStateFlags),
                 {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown},
-                picture(eye).width(),
-                picture(eye).height()};
+                eye_size(eye).width,
+                eye_size(eye).height};
   }
   return out;
 }
@@ -193,20 +193,24 @@ HeadsetInput HeadsetSession::input(const HeadsetSlot& slot) {
   return out;
 }
 
-const sim::Offscreen& HeadsetSession::picture(std::size_t eye) const { return *parts_->pictures.at(eye); }
-const sim::Offscreen& HeadsetSession::page() const { return *parts_->pictures.at(2); }
+PictureSize HeadsetSession::eye_size(std::size_t eye) const { return parts_->sizes.at(eye); }
 
-void HeadsetSession::end(const HeadsetSlot& slot, const std::optional<EyeViews>& shown,
-                         const std::optional<HeadsetPage>& page) {
+PictureSize HeadsetSession::picture_size() const {
+  const PictureSize left = eye_size(0), right = eye_size(1);
+  return {left.width + right.width, std::max(left.height, right.height)};
+}
+
+void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
   Parts& parts = *parts_;
   std::vector<const XrCompositionLayerBaseHeader*> layers;
   std::array<XrCompositionLayerProjectionView, 2> views{};
   XrCompositionLayerProjection projection{};
   XrCompositionLayerQuad quad{};
-  if (slot.should_render && shown && can_be_shown(*shown)) {
+  if (slot.should_render && shown.picture && can_be_shown(shown.views)) {
     for (std::size_t eye = 0; eye < views.size(); ++eye) {
-      parts.swapchains[eye]->write(picture(eye), parts.patience);
-      views[eye] = parts.layer_view((*shown)[eye], *parts.swapchains[eye]);
+      const PicturePart part{eye == 0 ? 0 : parts.sizes[0].width, shown.light};
+      parts.swapchains[eye]->write(*shown.picture, part, parts.patience);
+      views[eye] = parts.layer_view(shown.views[eye], *parts.swapchains[eye]);
     }
     projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
     projection.space = parts.world.get();
@@ -214,15 +218,15 @@ void HeadsetSession::end(const HeadsetSlot& slot, const std::optional<EyeViews>&
     projection.views = views.data();
     layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
   }
-  if (slot.should_render && page) {
+  if (slot.should_render && shown.page) {
     Swapchain& swapchain = *parts.swapchains.at(2);
-    swapchain.write(this->page(), parts.patience);
+    swapchain.write(*shown.page, {}, parts.patience);
     quad.type = XR_TYPE_COMPOSITION_LAYER_QUAD;
     quad.space = parts.world.get();
     quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
     quad.subImage = swapchain.image();
-    quad.pose = pose_of(page->pose);
-    quad.size = {page->width_m, page->height_m};
+    quad.pose = pose_of(shown.place.pose);
+    quad.size = {shown.place.width_m, shown.place.height_m};
     layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
   }
   XrFrameEndInfo info{};

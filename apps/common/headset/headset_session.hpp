@@ -11,6 +11,7 @@
 #include "apps/common/headset/input.hpp"
 #include "apps/common/headset/rate_meter.hpp"
 #include "apps/common/headset/views.hpp"
+#include "apps/common/picture_size.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 
@@ -37,13 +38,24 @@ struct HeadsetPage {
   float width_m = 0, height_m = 0;
 };
 
+/// What a slot shows.
+struct HeadsetLayers {
+  /// Of picture_size(), both eyes beside each other, the left one first: values as on a desktop, sRGB. None:
+  /// black.
+  const sim::Offscreen* picture = nullptr;
+  EyeViews views{};                      ///< what it was drawn from
+  float light = 1;                       ///< by which its levels are multiplied, [0, 1]
+  const sim::Offscreen* page = nullptr;  ///< of the size that was chosen; before the picture. None: no page
+  HeadsetPage place{};                   ///< of the page
+};
+
 /// A display rate and where it is from.
 struct HeadsetRate {
   std::optional<double> told_hz;      ///< by the runtime; only where it lists several rates
   std::optional<double> measured_hz;  ///< settled steps between predicted times
 };
 
-/// One session of one runtime, from connecting to leaving. Not thread-safe: all calls come from the thread on
+/// One session of one runtime, from connecting to leaving. All calls but views_at() come from the thread on
 /// which `gl` is current; another one may take over between two calls, with the context. base::Error for
 /// what is not there and for calls that fail; HeadsetLost (loader.hpp) once session or runtime are gone.
 ///
@@ -70,16 +82,16 @@ class HeadsetSession {
   HeadsetSlot wait();
   void begin(const HeadsetSlot& slot);
   /// Where the eyes will be. Draw only when can_be_shown().
-  EyeViews views(const HeadsetSlot& slot);
+  EyeViews views(const HeadsetSlot& slot) { return views_at(slot.runtime_time); }
+  /// The same at any time of the runtime's; from any thread.
+  EyeViews views_at(std::int64_t runtime_time);
   HeadsetInput input(const HeadsetSlot& slot);
-  /// What is drawn into for an eye (0 left, 1 right), and for the page: values as on a desktop, sRGB. They
-  /// keep what was drawn.
-  const sim::Offscreen& picture(std::size_t eye) const;
-  const sim::Offscreen& page() const;
-  /// Shows the pictures as drawn from `shown`, with a page before them; neither where it is empty or the slot
-  /// should not render.
-  void end(const HeadsetSlot& slot, const std::optional<EyeViews>& shown,
-           const std::optional<HeadsetPage>& page = {});
+  /// Of an eye, 0 left, 1 right.
+  PictureSize eye_size(std::size_t eye) const;
+  /// Of both beside each other.
+  PictureSize picture_size() const;
+  /// Shows the layers; nothing where the slot should not render.
+  void end(const HeadsetSlot& slot, const HeadsetLayers& layers = {});
 
   HeadsetRate rate() const;
   const RateMeter& meter() const;

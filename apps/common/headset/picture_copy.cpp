@@ -66,13 +66,15 @@ PictureCopy::PictureCopy(std::int64_t format)
 
 PictureCopy::~PictureCopy() { glDeleteVertexArrays(1, &vertices_); }
 
-void PictureCopy::copy(const sim::Offscreen& picture, unsigned framebuffer) const {
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, picture.width(), picture.height());
+void PictureCopy::copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
+  glViewport(0, 0, to.width_px, to.height_px);
   for (const GLenum off : {GL_FRAMEBUFFER_SRGB, GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})
     glDisable(off);  // with GL_FRAMEBUFFER_SRGB sRGB values would be encoded once more
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   program_.use();
+  glUniform1i(program_.uniform("x"), part.x_px);
+  glUniform1f(program_.uniform("light"), part.light);
   glBindTextureUnit(0, picture.texture());
   glBindSampler(0, 0);
   glBindVertexArray(vertices_);

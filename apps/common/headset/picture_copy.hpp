@@ -18,6 +18,16 @@ bool keeps_levels(std::int64_t format);
 /// "GL_SRGB8_ALPHA8" or the number in hex.
 std::string gl_format_name(std::int64_t format);
 
+/// What of a picture is copied, and how bright.
+struct PicturePart {
+  int x_px = 0;     ///< where it begins, from the left
+  float light = 1;  ///< its levels are multiplied by it, [0, 1]
+};
+struct CopyTarget {
+  unsigned framebuffer = 0;
+  int width_px = 0, height_px = 0;
+};
+
 /// Copies pictures into framebuffers whose colour has one format. Needs a current context always.
 class PictureCopy {
  public:
@@ -25,9 +35,9 @@ class PictureCopy {
   ~PictureCopy();
   PictureCopy(const PictureCopy&) = delete;
   PictureCopy& operator=(const PictureCopy&) = delete;
-  /// The framebuffer is as large as the picture. Its values arrive as they are when the image is shown as
-  /// what its format says.
-  void copy(const sim::Offscreen& picture, unsigned framebuffer) const;
+  /// As many pixels as the target has. Values arrive as they are when the image is shown as what its format
+  /// says.
+  void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:
   sim::GlProgram program_;

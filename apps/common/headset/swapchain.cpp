@@ -73,8 +73,9 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
                     "start the headset's software anew");
 }
 
-void Swapchain::write(const sim::Offscreen& picture, std::chrono::nanoseconds limit) {
-  copy_->copy(picture, framebuffers_.at(acquire(limit)));
+void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part,
+                      std::chrono::nanoseconds limit) {
+  copy_->copy(picture, part, {framebuffers_.at(acquire(limit)), width_px_, height_px_});
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   XrSwapchainImageReleaseInfo release{};
   release.type = XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO;
@@ -94,7 +95,7 @@ std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& ses
     try {
       std::vector<std::unique_ptr<Swapchain>> made;
       for (const PictureSize& size : sizes)
-        made.push_back(std::make_unique<Swapchain>(session, format, size.width_px, size.height_px));
+        made.push_back(std::make_unique<Swapchain>(session, format, size.width, size.height));
       return made;
     } catch (const HeadsetLost&) {
       throw;

@@ -7,6 +7,7 @@
 
 #include "apps/common/headset/picture_copy.hpp"
 #include "apps/common/headset/session_handle.hpp"
+#include "apps/common/picture_size.hpp"
 
 namespace apps {
 
@@ -20,9 +21,9 @@ class Swapchain {
   Swapchain& operator=(const Swapchain&) = delete;
 
   std::int64_t format() const { return format_; }
-  /// Copies a picture of its size into the next image and hands that over. base::Error when the runtime holds
-  /// all images for longer than `limit`.
-  void write(const sim::Offscreen& picture, std::chrono::nanoseconds limit);
+  /// Copies a part of a picture, of the image's size, into the next image and hands that over. base::Error
+  /// when the runtime holds all images for longer than `limit`.
+  void write(const sim::Offscreen& picture, const PicturePart& part, std::chrono::nanoseconds limit);
   /// The whole picture, for a layer.
   XrSwapchainSubImage image() const;
 
@@ -41,9 +42,6 @@ class Swapchain {
 
 /// Swapchains of the best offered format that can really be made, one a size; they all have the same.
 /// base::Error when there is none.
-struct PictureSize {
-  int width_px = 0, height_px = 0;
-};
 std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& session,
                                                         const std::vector<PictureSize>& sizes);
 

@@ -39,9 +39,9 @@ TestScene::TestScene()
 
 TestScene::~TestScene() { glDeleteVertexArrays(1, &vertices_); }
 
-void TestScene::draw(const EyeView& eye, unsigned framebuffer) const {
+void TestScene::draw(const EyeView& eye, unsigned framebuffer, int x_px) const {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, eye.width_px, eye.height_px);
+  glViewport(x_px, 0, eye.width_px, eye.height_px);
   for (const GLenum off : {GL_FRAMEBUFFER_SRGB, GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST}) glDisable(off);
   program_.use();
   const auto turn = axes_of(eye.pose);
@@ -49,6 +49,7 @@ void TestScene::draw(const EyeView& eye, unsigned framebuffer) const {
   glUniformMatrix3fv(program_.uniform("turn"), 1, GL_FALSE, turn.data());
   glUniform4f(program_.uniform("tangents"), std::tan(eye.fov.left), std::tan(eye.fov.right),
               std::tan(eye.fov.down), std::tan(eye.fov.up));
+  glUniform1f(program_.uniform("x"), static_cast<float>(x_px));
   glUniform2f(program_.uniform("size"), static_cast<float>(eye.width_px), static_cast<float>(eye.height_px));
   glBindVertexArray(vertices_);
   glDrawArrays(GL_TRIANGLES, 0, 3);

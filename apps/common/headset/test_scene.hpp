@@ -29,8 +29,9 @@ class TestScene {
   ~TestScene();
   TestScene(const TestScene&) = delete;
   TestScene& operator=(const TestScene&) = delete;
-  /// As the eye sees it, into a framebuffer of the eye's size; sRGB values.
-  void draw(const EyeView& eye, unsigned framebuffer) const;
+  /// As the eye sees it, into a part of a framebuffer that begins at x_px and has the eye's size; sRGB
+  /// values.
+  void draw(const EyeView& eye, unsigned framebuffer, int x_px) const;
 
  private:
   sim::GlProgram program_;

@@ -85,6 +85,11 @@ void PageState::move_cursor(int by) {
   }
 }
 
+void PageState::mark_changed(PageItem& item, std::int64_t now_ns) const {
+  item.changed_ns = now_ns - left_out_ns_;
+  item.input = input_;
+}
+
 void PageState::enter(std::int64_t now_ns) {
   if (focus_ == size()) return click_confirm(now_ns);
   const PageItem& item = items_[focus_];
@@ -99,7 +104,7 @@ void PageState::choose(std::size_t question, int score, std::int64_t now_ns) {
   item.cursor = score;
   if (item.chosen == score) return;
   item.chosen = score;
-  item.changed_ns = now_ns - left_out_ns_;
+  mark_changed(item, now_ns);
 }
 
 void PageState::digit(int digit, std::int64_t now_ns) {
@@ -109,7 +114,7 @@ void PageState::digit(int digit, std::int64_t now_ns) {
     PageItem& item = items_[focus_];
     if (item.typed.size() >= 9) return;
     item.typed += static_cast<char>('0' + digit);
-    item.changed_ns = now_ns - left_out_ns_;
+    mark_changed(item, now_ns);
   } else if (one_digit_does(question)) {
     const auto scores = scores_of(question);
     if (std::find(scores.begin(), scores.end(), digit) != scores.end()) choose(focus_, digit, now_ns);
@@ -121,7 +126,7 @@ void PageState::minus(std::int64_t now_ns) {
   PageItem& item = items_[focus_];
   if (!item.typed.empty() || questions_[focus_].scale_min >= 0) return;
   item.typed = "-";
-  item.changed_ns = now_ns - left_out_ns_;
+  mark_changed(item, now_ns);
 }
 
 void PageState::erase(std::int64_t now_ns) {
@@ -132,7 +137,7 @@ void PageState::erase(std::int64_t now_ns) {
   while (item.typed.size() > 1 && follows(item.typed.back()))
     item.typed.pop_back();  // of one letter in UTF-8
   item.typed.pop_back();
-  item.changed_ns = now_ns - left_out_ns_;
+  mark_changed(item, now_ns);
 }
 
 void PageState::click(std::size_t question, int score, std::int64_t now_ns) {
@@ -154,18 +159,25 @@ void PageState::click_confirm(std::int64_t now_ns) {
     focus_ = i;
     return;
   }
-  if (can_confirm(now_ns)) confirmed_ns_ = now_ns - left_out_ns_;
+  if (!can_confirm(now_ns)) return;
+  confirmed_ns_ = now_ns - left_out_ns_;
+  confirmed_by_ = input_;
 }
 
 void PageState::write(std::size_t question, const std::string& words, std::int64_t now_ns) {
-  if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return;
-  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return;
+  if (put(question, words, now_ns)) items_[question].input = study::AnswerInput::Keyboard;
+}
+
+bool PageState::put(std::size_t question, const std::string& words, std::int64_t now_ns) {
+  if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return false;
+  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return false;
   items_[question].typed = words;
-  items_[question].changed_ns = now_ns - left_out_ns_;
+  mark_changed(items_[question], now_ns);
+  return true;
 }
 
 void PageState::type(const std::string& letters, std::int64_t now_ns) {
-  if (focus_ < size()) write(focus_, items_[focus_].typed + letters, now_ns);
+  if (focus_ < size()) put(focus_, items_[focus_].typed + letters, now_ns);
 }
 
 void PageState::leave_out(std::int64_t from_ns, std::int64_t to_ns) {
@@ -226,6 +238,7 @@ std::vector<study::TimedAnswer> PageState::answers() const {
     if (given && questions_[i].kind == AnswerKind::Number) timed.answer.score = number(i);
     const std::int64_t end_ns = given ? items_[i].changed_ns : *confirmed_ns_;
     timed.response_time_s = 1e-9 * static_cast<double>(end_ns - shown_ns_);
+    timed.input = given ? items_[i].input : confirmed_by_;
     out.push_back(timed);
   }
   return out;

@@ -17,10 +17,11 @@ enum class PageKey { Left, Right, Up, Down, Next, Previous, Enter, Erase };
 
 /// How far one question is.
 struct PageItem {
-  std::optional<int> chosen;    ///< Scale, Choice: nothing to begin with
-  std::optional<int> cursor;    ///< where the arrows are; chooses nothing
-  std::string typed;            ///< Number, Text
-  std::int64_t changed_ns = 0;  ///< last change of the answer
+  std::optional<int> chosen;                  ///< Scale, Choice: nothing to begin with
+  std::optional<int> cursor;                  ///< where the arrows are; chooses nothing
+  std::string typed;                          ///< Number, Text
+  std::int64_t changed_ns = 0;                ///< last change of the answer
+  std::optional<study::AnswerInput> input{};  ///< what that change came from
 };
 
 /// Nothing is chosen beforehand, every answer can be changed until the page is confirmed, and that takes an
@@ -33,6 +34,8 @@ class PageState {
   /// Without questions it is a text to be read. One can go on `least_s` after shown_ns at the earliest.
   PageState(std::span<const study::Question> questions, double least_s, std::int64_t shown_ns);
 
+  /// What follows comes from this; the keyboard until it is said.
+  void use(study::AnswerInput input) { input_ = input; }
   /// Enter chooses what the arrows point at, then goes to the next question and at last confirms.
   void press(PageKey key, std::int64_t now_ns);
   /// 0 to 9: the score on a scale where each is one digit, a digit of a Number.
@@ -45,7 +48,7 @@ class PageState {
   void click_confirm(std::int64_t now_ns);
   /// More letters for a Text that has the focus; Erase takes the last one.
   void type(const std::string& letters, std::int64_t now_ns);
-  /// What stands in the field of a Text.
+  /// What stands in the field of a Text; it was typed at the keyboard.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
   /// Time that did not pass on the page, such as in a dialog above it, as far as the page was there; whatever
   /// follows is guarded anew.
@@ -70,7 +73,7 @@ class PageState {
   bool confirmed() const { return confirmed_ns_.has_value(); }
 
   /// Once confirmed. Response times run from the showing of the page to the last change of each answer, and
-  /// to the confirmation where it was left empty.
+  /// to the confirmation where it was left empty. Their input likewise.
   std::vector<study::TimedAnswer> answers() const;
 
  private:
@@ -78,6 +81,8 @@ class PageState {
   void enter(std::int64_t now_ns);
   void choose(std::size_t question, int score, std::int64_t now_ns);
   void erase(std::int64_t now_ns);
+  bool put(std::size_t question, const std::string& words, std::int64_t now_ns);
+  void mark_changed(PageItem& item, std::int64_t now_ns) const;
   void step_focus(int by);
   bool is_missing(std::size_t question) const;
   std::optional<int> number(std::size_t question) const;
@@ -87,7 +92,9 @@ class PageState {
   std::int64_t least_ns_, shown_ns_, guarded_from_ns_;
   std::int64_t left_out_ns_ = 0;
   std::size_t focus_ = 0;
+  study::AnswerInput input_ = study::AnswerInput::Keyboard;
   std::optional<std::int64_t> confirmed_ns_;
+  std::optional<study::AnswerInput> confirmed_by_;
 };
 
 /// Every score that can be chosen, ascending: all of a Scale, those with words of a Choice.

@@ -33,7 +33,7 @@ std::vector<PageEvent> HandKeys::take(const HeadsetHands& hands, bool stick, std
   std::vector<PageEvent> events;
   if (const auto key = push(hands, now_ns); key && stick) {
     const float lines = key == PageKey::Down ? 1.0F : key == PageKey::Up ? -1.0F : 0.0F;
-    events.push_back({.key = key, .lines = lines, .text_only = true});
+    events.push_back({.key = key, .lines = lines, .text_only = true, .input = study::AnswerInput::Stick});
   }
   if (!hands.menu) {
     menu_ns_ = -1;

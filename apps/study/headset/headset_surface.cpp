@@ -37,7 +37,7 @@ HeadsetSurface::HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways)
     : display_(display),
       ways_(ways),
       gui_(type_for_x_height(px_of_height(least_x_height_deg)),
-           {[this] { tell_gui(); }, display.page().framebuffer(), true}),
+           {[this] { tell_gui(); }, [this] { return display_.page().framebuffer(); }, true}),
       used_ns_(steady_ns()) {}
 
 void HeadsetSurface::listen() {
@@ -47,6 +47,10 @@ void HeadsetSurface::listen() {
 double HeadsetSurface::idle_s() const { return 1e-9 * static_cast<double>(steady_ns() - used_ns_); }
 void HeadsetSurface::note_use() { used_ns_ = steady_ns(); }
 
+study::AnswerInput HeadsetSurface::pointer() const {
+  return ways_.dwell ? study::AnswerInput::Dwell : study::AnswerInput::Ray;
+}
+
 std::string HeadsetSurface::beginning(const DeskWords& words) const {
   std::string all;
   if (ways_.ray) all += words.by_ray + " ";
@@ -55,7 +59,19 @@ std::string HeadsetSurface::beginning(const DeskWords& words) const {
   return all + words.begin_by_hand;
 }
 
-void HeadsetSurface::poll(double) { take_in(display_.next_records()); }
+/// Less than wait_s when there is something new to draw.
+void HeadsetSurface::poll(double wait_s) {
+  std::int64_t until_ns = -1;
+  for (;;) {
+    const Place place = pointer_;
+    const bool pressed = pressed_;
+    const auto records = display_.next_records();
+    take_in(records);
+    if (records.empty() || !events_.empty() || pressed != pressed_ || place != pointer_) return;
+    if (until_ns < 0) until_ns = records[0].slot.predicted_ns + std::llround(1e9 * wait_s);
+    if (records.back().slot.predicted_ns + records.back().slot.period_ns >= until_ns) return;
+  }
+}
 
 void HeadsetSurface::take_in(const std::vector<HeadsetRecord>& records) {
   for (const HeadsetRecord& record : records) take_in(record);
@@ -107,7 +123,7 @@ void HeadsetSurface::take_hands(const HeadsetHands& hands, std::int64_t now_ns) 
   const bool put_away = stick_from_ && (!place || distance(*place, *stick_from_) < moved_px);
   if (place && !put_away) stick_from_.reset();
   if (ways_.stick && hands.select_began && (put_away || !ways_.ray))
-    events_.push_back({.key = PageKey::Enter});
+    events_.push_back({.key = PageKey::Enter, .input = study::AnswerInput::Stick});
   if (ways_.dwell) return;
   pointer_ = put_away ? Place() : place;
   pressed_ = pointer_ && hands.select;

@@ -35,6 +35,7 @@ class HeadsetSurface final : public PageSurface {
 
   Gui& gui() override { return gui_; }
   std::string beginning(const DeskWords& words) const override;
+  study::AnswerInput pointer() const override;
   void poll(double wait_s) override;
   std::vector<PageEvent> take_events() override;
   void forget_input() override;
@@ -45,6 +46,7 @@ class HeadsetSurface final : public PageSurface {
   void show() override;
   void show_black() override;
   bool take_unseen() override { return display_.take_spoilt(); }
+  bool unseen() const override { return !display_.focused(); }
 
  private:
   using Place = std::optional<std::pair<float, float>>;

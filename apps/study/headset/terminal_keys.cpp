@@ -58,7 +58,6 @@ std::vector<PageEvent> page_events(const std::string& typed) {
     } else {
       event = event_of(typed[at]);
     }
-    event.by_keyboard = true;
     events.push_back(event);
   }
   return events;

@@ -89,6 +89,7 @@ Gui::Gui(const TypeSizes& type, Host host)
   body_ = add_font(atlas, file, type.body, glyphs);
   title_ = add_font(atlas, file, type.title, glyphs);
   huge_ = add_font(atlas, file, type.huge, digits);
+  atlas.Build();
   ImGui::StyleColorsDark();
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
@@ -113,7 +114,7 @@ void Gui::begin(unsigned clear_colour) {
 }
 
 void Gui::clear() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, host_.framebuffer);
+  glBindFramebuffer(GL_FRAMEBUFFER, host_.framebuffer());
   const ImVec2 size = ImGui::GetIO().DisplaySize, scale = ImGui::GetIO().DisplayFramebufferScale;
   glViewport(0, 0, static_cast<int>(size.x * scale.x), static_cast<int>(size.y * scale.y));
   glDisable(GL_SCISSOR_TEST);

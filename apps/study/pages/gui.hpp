@@ -35,7 +35,7 @@ class Gui {
   struct Host {
     /// Called before each picture: tells ImGui's IO the size, the pointer and what was typed.
     std::function<void()> look;
-    unsigned framebuffer = 0;
+    std::function<unsigned()> framebuffer;  ///< asked for each picture
     /// There is nothing but the page to answer with: it shows its own keys, arrows and the way to stop.
     bool by_hand = false;
   };

@@ -18,11 +18,12 @@ struct PageEvent {
   std::optional<PageKey> key{};
   int digit = -1;
   bool minus = false;
-  bool stop = false;         ///< asks whether to stop
-  float lines = 0;           ///< scrolls down by so many
-  bool text_only = false;    ///< it scrolls a text without questions alone
-  bool by_keyboard = false;  ///< goes to the field that has the keyboard, unless it leaves the field
-  std::string letters{};     ///< where the surface types into fields by itself
+  bool stop = false;       ///< asks whether to stop
+  float lines = 0;         ///< scrolls down by so many
+  bool text_only = false;  ///< it scrolls a text without questions alone
+  /// Those of the keyboard go to the field that has it, unless they leave the field.
+  study::AnswerInput input = study::AnswerInput::Keyboard;
+  std::string letters{};  ///< where the surface types into fields by itself
 };
 
 /// All calls on one thread, the session's.
@@ -32,6 +33,9 @@ class PageSurface {
   virtual Gui& gui() = 0;
   /// What the first page of a session says on how to answer and to stop.
   virtual std::string beginning(const DeskWords& words) const { return words.begin; }
+
+  /// What the pointer is moved by.
+  virtual study::AnswerInput pointer() const { return study::AnswerInput::Mouse; }
 
   /// Takes in what happened, waiting about wait_s for it. base::Error when the surface is gone.
   virtual void poll(double wait_s) = 0;

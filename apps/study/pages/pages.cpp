@@ -53,8 +53,10 @@ bool Pages::handle_events(PageState& state, PageView& view) {
   const std::int64_t now_ns = this->now_ns();
   bool stop = false;
   for (const PageEvent& event : surface_.take_events()) {
+    const bool by_keyboard = event.input == study::AnswerInput::Keyboard;
+    state.use(event.input);
     stop = stop || event.stop;
-    if (event.by_keyboard && view.typing(state) && !leaves_field(event)) continue;
+    if (by_keyboard && view.typing(state) && !leaves_field(event)) continue;
     if (state.size() == 0 || !event.text_only) view.scroll(event.lines);
     if (!event.letters.empty() && view.fills_words(state)) {
       state.type(event.letters, now_ns);
@@ -62,9 +64,10 @@ bool Pages::handle_events(PageState& state, PageView& view) {
     }
     if (event.digit >= 0) state.digit(event.digit, now_ns);
     if (event.minus) state.minus(now_ns);
-    if (event.key && event.by_keyboard) state.press(*event.key, now_ns);
-    if (event.key && !event.by_keyboard) view.press(state, *event.key, now_ns);
+    if (event.key && by_keyboard) state.press(*event.key, now_ns);
+    if (event.key && !by_keyboard) view.press(state, *event.key, now_ns);
   }
+  state.use(surface_.pointer());  // clicks come while the page is drawn
   return stop;
 }
 
@@ -187,11 +190,11 @@ void Pages::set_over(bool over) {
 }
 
 study::Wish Pages::wait_while_unseen(const std::function<study::Wish()>& others) {
-  while (surface_.unseen()) {
+  do {  // what was not seen may be told before the reason
     surface_.poll(poll_s);
     const study::Wish other = others ? others() : study::Wish::GoOn;
     if (other == study::Wish::Stop || other == study::Wish::EndSession) return other;
-  }
+  } while (surface_.unseen());
   away_ = false;
   surface_.forget_input();
   surface_.show_black();

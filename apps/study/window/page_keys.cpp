@@ -54,7 +54,6 @@ PageEvent event_of(int key, bool shift) {
   event.stop = key == GLFW_KEY_ESCAPE;
   event.lines = lines_of(key);
   event.text_only = key != GLFW_KEY_PAGE_DOWN && key != GLFW_KEY_PAGE_UP;
-  event.by_keyboard = true;
   return event;
 }
 

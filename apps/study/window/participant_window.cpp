@@ -28,7 +28,7 @@ ParticipantWindow::Backend::~Backend() { ImGui_ImplGlfw_Shutdown(); }
 ParticipantWindow::ParticipantWindow(const ParticipantWindowOptions& options)
     : window_(as_window(options)),
       size_(window_.size()),
-      gui_(type_for_screen(size_.height), {ImGui_ImplGlfw_NewFrame}),
+      gui_(type_for_screen(size_.height), {ImGui_ImplGlfw_NewFrame, [] { return 0U; }}),
       backend_(window_.get()) {
   sim::require_gl45();
   show_black();
@@ -85,7 +85,8 @@ std::vector<PageEvent> ParticipantWindow::take_events() {
   const bool shift = glfwGetKey(window_.get(), GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                      glfwGetKey(window_.get(), GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
   for (const int key : window_.take_keys()) events.push_back(event_of(key, shift));
-  for (const PageKey key : gamepad_.take()) events.push_back({.key = key});
+  for (const PageKey key : gamepad_.take())
+    events.push_back({.key = key, .input = study::AnswerInput::Gamepad});
   return events;
 }
 

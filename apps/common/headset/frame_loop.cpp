@@ -1,0 +1,270 @@
+#include "apps/common/headset/frame_loop.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "libstudy/base/clock.hpp"
+#include "libstudy/pacing/real_time.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr std::chrono::seconds most_idle{30};
+constexpr std::chrono::milliseconds one_wait{100};
+/// Of those that nobody takes; a minute's and more.
+constexpr std::size_t most_records = 20000;
+/// A picture that is on for so long was left behind by a program that hangs: it fades away, so that nobody
+/// stays in a world that stands still.
+constexpr double most_held_s = 2, fade_s = 0.3;
+
+std::int64_t system_ns() { return study::RealClock().now_ns(); }
+
+/// Of the display; 0 before any slot.
+std::int64_t period_of(const LoopFacts& facts) {
+  const auto hz = facts.rate.measured_hz;
+  return hz ? std::llround(1e9 / *hz) : facts.last.period_ns;
+}
+
+}  // namespace
+
+FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
+    : gl_(sim::GlContext::make_headless()), drive_(drive) {
+  if (drive == SlotDrive::Caller) {
+    session_ = std::make_unique<HeadsetSession>(gl_, choice);
+  } else {
+    slots_gl_.emplace(gl_.make_shared());
+    thread_ = std::thread([this, choice] { run(choice); });
+    std::unique_lock held(mutex_);
+    changed_.wait(held, [this] { return session_ || error_; });
+    if (error_) {
+      stopping_ = true;
+      held.unlock();
+      changed_.notify_all();
+      thread_.join();
+      std::rethrow_exception(error_);
+    }
+  }
+  const PictureSize size = session_->picture_size();
+  for (std::size_t i = 0; i < PictureTurns::count; ++i) {
+    canvases_.push_back(std::make_unique<sim::Offscreen>(size.width, size.height));
+    if (choice.page_width_px > 0)
+      pages_.push_back(std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px));
+  }
+}
+
+FrameLoop::~FrameLoop() {
+  {
+    const std::lock_guard held(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+/// The thread's. The session lives and ends on it, in its context.
+void FrameLoop::run(const HeadsetChoice& choice) {
+  std::unique_ptr<HeadsetSession> made;
+  try {
+    const study::RealTimeScheduling real_time;
+    slots_gl_->make_current();
+    made = std::make_unique<HeadsetSession>(*slots_gl_, choice);
+    {
+      const std::lock_guard held(mutex_);
+      session_ = std::move(made);
+    }
+    changed_.notify_all();
+    draw_slots();
+  } catch (...) {
+    const std::lock_guard held(mutex_);
+    error_ = std::current_exception();
+    running_ = false;
+  }
+  changed_.notify_all();
+  std::unique_lock held(mutex_);
+  if (session_) changed_.wait(held, [this] { return stopping_; });
+  held.unlock();
+  session_.reset();
+  slots_gl_->release();
+}
+
+void FrameLoop::draw_slots() {
+  for (;;) {
+    const bool turned = turn_slot();
+    std::unique_lock held(mutex_);
+    if (!turned) changed_.wait_for(held, std::chrono::milliseconds(1), [this] { return stopping_; });
+    if (stopping_) return;
+  }
+}
+
+/// False where frames must not come now.
+bool FrameLoop::turn_slot() {
+  const std::vector<HeadsetEvent> events = session_->poll();
+  {
+    const std::lock_guard held(mutex_);
+    events_.insert(events_.end(), events.begin(), events.end());
+    facts_.state = session_->state();
+    running_ = session_->running();
+    if (!running_) return false;
+  }
+  const HeadsetSlot slot = session_->wait();
+  session_->begin(slot);
+  session_->end(slot, take_in({slot, session_->views(slot), session_->input(slot)}));
+  return true;
+}
+
+/// What the slot shows.
+HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
+  const HeadsetSlot& slot = record.slot;
+  const RateMeter& meter = session_->meter();
+  HeadsetRate rate{facts_.rate.told_hz, meter.hz()};
+  // The runtime's word may lie before the rate has settled.
+  if (rate.measured_hz && !facts_.rate.measured_hz) rate = session_->rate();
+  HeadsetLayers out;
+  {
+    const std::lock_guard held(mutex_);
+    facts_.rate = rate;
+    facts_.trusted = session_->times_convert() && meter.repeated() == 0 && meter.off_grid() == 0;
+    facts_.last = slot;
+    last_system_ns_ = system_ns();
+    ++slots_;
+    if (records_.size() >= most_records)
+      records_.erase(records_.begin(), records_.begin() + most_records / 2);
+    records_.push_back(record);
+    if (picture_turns_.waits() && slot.predicted_ns >= due_ns_ - period_of(facts_) / 2) {
+      picture_turns_.take();
+      shown_views_ = waiting_views_;
+      came_on_ = slot;
+    }
+    if (page_turns_.waits()) {
+      page_turns_.take();
+      shown_place_ = waiting_place_;
+    }
+    unseen_ |= picture_turns_.shows() && !slot.should_render;
+    const std::size_t picture = picture_turns_.read(), page = page_turns_.read();
+    if (picture_turns_.shows()) out.picture = canvases_[picture].get();
+    if (page_turns_.shows()) out.page = pages_[page].get();
+    out.views = shown_views_;
+    out.light = light_at(slot.predicted_ns);
+    out.place = shown_place_;
+  }
+  changed_.notify_all();
+  return out;
+}
+
+void FrameLoop::turn() {
+  if (drive_ == SlotDrive::Caller) {
+    const auto since = std::chrono::steady_clock::now();
+    while (!turn_slot()) {
+      if (!events_.empty()) return;  // one may say that no slot comes any more
+      if (std::chrono::steady_clock::now() - since > most_idle)
+        throw base::Error("headset", "nobody wears it", "put it on and continue with vip-study resume");
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return;
+  }
+  std::unique_lock held(mutex_);
+  changed_.wait_for(held, one_wait, [this, before = slots_] { return slots_ > before || error_; });
+  // Events that came before say better what happened.
+  if (error_ && events_.empty()) std::rethrow_exception(error_);
+}
+
+LoopFacts FrameLoop::facts() const {
+  const std::lock_guard held(mutex_);
+  return facts_;
+}
+
+std::int64_t FrameLoop::period_ns() const { return period_of(facts()); }
+
+std::int64_t FrameLoop::next_ns() const {
+  const std::lock_guard held(mutex_);
+  const std::int64_t next_ns = facts_.last.predicted_ns + period_of(facts_);
+  return drive_ == SlotDrive::Caller || running_ ? next_ns : next_ns + system_ns() - last_system_ns_;
+}
+
+std::int64_t FrameLoop::now_ns() const {
+  if (drive_ == SlotDrive::Caller) return next_ns();
+  const std::lock_guard held(mutex_);
+  const std::int64_t period_ns = period_of(facts_), gone_ns = system_ns() - last_system_ns_;
+  const std::int64_t counted_ns = running_ ? std::clamp<std::int64_t>(gone_ns, 0, period_ns) : gone_ns;
+  return facts_.last.predicted_ns + period_ns + counted_ns;
+}
+
+EyeViews FrameLoop::views_at(std::int64_t at_ns) {
+  const HeadsetSlot last = facts().last;
+  return session_->views_at(last.runtime_time + at_ns - last.predicted_ns);
+}
+
+const sim::Offscreen& FrameLoop::canvas() const {
+  const std::lock_guard held(mutex_);
+  return *canvases_[picture_turns_.free()];
+}
+
+const sim::Offscreen& FrameLoop::page() const {
+  const std::lock_guard held(mutex_);
+  return *pages_.at(page_turns_.free());
+}
+
+HeadsetSlot FrameLoop::show(const EyeViews& views, std::int64_t due_ns) {
+  if (drive_ == SlotDrive::Thread) glFinish();  // the other context reads it
+  {
+    const std::lock_guard held(mutex_);
+    picture_turns_.post();
+    waiting_views_ = views;
+    due_ns_ = due_ns;
+  }
+  for (;;) {
+    turn();
+    const std::lock_guard held(mutex_);
+    if (!picture_turns_.waits()) return came_on_;
+    if (running_ && !error_) continue;
+    // Nobody sees it: the headset is off.
+    picture_turns_.clear();
+    unseen_ = true;
+    return {.predicted_ns = due_ns};
+  }
+}
+
+void FrameLoop::clear() {
+  const std::lock_guard held(mutex_);
+  picture_turns_.clear();
+}
+
+void FrameLoop::show_page(const HeadsetPage& place) {
+  if (drive_ == SlotDrive::Thread) glFinish();
+  const std::lock_guard held(mutex_);
+  page_turns_.post();
+  waiting_place_ = place;
+}
+
+void FrameLoop::hide_page() {
+  const std::lock_guard held(mutex_);
+  page_turns_.clear();
+}
+
+std::vector<HeadsetEvent> FrameLoop::take_events() {
+  const std::lock_guard held(mutex_);
+  return std::exchange(events_, {});
+}
+
+std::vector<HeadsetRecord> FrameLoop::take_records() {
+  const std::lock_guard held(mutex_);
+  return std::exchange(records_, {});
+}
+
+bool FrameLoop::take_unseen() {
+  const std::lock_guard held(mutex_);
+  return std::exchange(unseen_, false);
+}
+
+float FrameLoop::light_at(std::int64_t at_ns) const {
+  const double held_s = 1e-9 * static_cast<double>(at_ns - came_on_.predicted_ns);
+  return static_cast<float>(std::clamp(1 - (held_s - most_held_s) / fade_s, 0.0, 1.0));
+}
+
+}  // namespace apps
