@@ -72,8 +72,9 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
 void take_headset(SessionSetup& setup, const RunOptions& options, const study::Protocol& protocol) {
   const bool person = options.observer.empty();
   const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
-  auto headset = std::make_unique<HeadsetDisplay>(setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread,
-                                                  person ? choice_for_person(ways) : HeadsetChoice());
+  const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
+  const HeadsetChoice choice = person ? choice_for_person(ways) : HeadsetChoice{};
+  auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
     if (!display->take_spoilt()) return others();

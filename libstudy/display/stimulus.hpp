@@ -88,6 +88,9 @@ class Display {
   /// Shows what was rendered at scheduled_ns, or as soon after it as it can; returns when it was handed over.
   /// Waits on the session's clock.
   virtual PresentTimes present(std::int64_t scheduled_ns, Clock& clock) = 0;
+  /// What was presented stays on until until_ns; returns then or before. For displays that draw it again and
+  /// again meanwhile.
+  virtual void hold(std::int64_t /*until_ns*/, Clock&) {}
   /// A presentation is over, or was cut: nothing of it is shown any more.
   virtual void clear() {}
 };

@@ -89,8 +89,12 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   const std::int64_t length_ns = std::accumulate(intervals_ns.begin(), intervals_ns.end(), std::int64_t{0});
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
+  std::int64_t making_ns = 0;  // that a frame takes lately
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
+    if (i > 0) display.hold(first_ns + onset_ns - 2 * making_ns, clock);
+    const std::int64_t begun_ns = clock.now_ns();
     FrameRecord record = make_frame(static_cast<std::int64_t>(i), onset_ns, course, stimulus, display);
+    making_ns = std::max(clock.now_ns() - begun_ns, making_ns - making_ns / 8);
     if (i == 0) first_ns = display.first_onset(clock.now_ns() + lead_ns);
     if (i > 0 && clock.now_ns() - first_ns > length_ns + bounds.overrun_ns) {
       played.cut = static_cast<std::int64_t>(intervals_ns.size() - i);
@@ -107,6 +111,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   }
   const std::int64_t last_ns = placed_ns(played.frames.back().times, display.grade());
   const std::int64_t planned_end_ns = first_ns + length_ns;
+  display.hold(planned_end_ns, clock);
   clock.wait_until(last_ns < planned_end_ns ? planned_end_ns : last_ns + intervals_ns.back());
   played.end_ns = clock.now_ns();
   return played;

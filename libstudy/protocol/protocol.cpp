@@ -88,6 +88,7 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
   protocol.content = read_content(root.table("content"));
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));
+  if (root.has("headset")) protocol.headset = read_headset(root.table("headset"));
   protocol.blocks = read_blocks(root, protocol.design, protocol.language, use);
   return protocol;
 }

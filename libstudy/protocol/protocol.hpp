@@ -12,6 +12,7 @@
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/block.hpp"
 #include "libstudy/protocol/design.hpp"
+#include "libstudy/protocol/headset_rules.hpp"
 
 namespace study {
 
@@ -27,6 +28,7 @@ struct Protocol {
   PacingRules pacing;
   ContentRules content;
   TimingTolerance timing;
+  HeadsetRules headset;
   bool accept_approximate = false;
   /// Also compare stimuli whose pictures differ in renderer, size or angle, as baked and live ones can.
   bool accept_mixed_pictures = false;

@@ -29,6 +29,7 @@ Design read_design(const base::TomlTable& table);
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing);
 /// A list of words, none empty or twice.
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
+HeadsetRules read_headset(const base::TomlTable& table);
 PacingRules read_pacing(const base::TomlTable& table, const Design& design);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);

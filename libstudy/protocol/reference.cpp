@@ -26,6 +26,7 @@ meets `groups` of them, one after another.)"},
       {"pacing", "[pacing]", "How a mean and a standard deviation become the intervals of frames."},
       {"content", "[content]", "How the process elapses with the frames."},
       {"timing", "[timing]", "What a trial must meet to pass. The table may be left out."},
+      {"headset", "[headset]", "How a headset shows the stimuli. The table may be left out."},
       {"block", "[[block]]", R"(The blocks of a session in their order. Kinds:
 
 | kind | what it is |
@@ -99,6 +100,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"", "pacing", "table", "", "", "how frames are timed"},
       {"", "content", "table", "", "", "how the process elapses"},
       {"", "timing", "table", "", "all its defaults", "what a trial must meet"},
+      {"", "headset", "table", "", "all its defaults", "how a headset shows it; nothing to a desktop"},
       {"", "block", "tables", "", "", "the session, 200 blocks at most"},
 
       {"design", "timing", "text", "\"settings\", \"native\", \"equal\", \"table2\"", "",
@@ -169,6 +171,23 @@ const std::vector<KeyReference>& protocol_reference() {
       {"timing", "overrun_s", "number", "[0, 3600]", "duration_s, at least 5",
        "a showing that goes on for longer than this past its planned end is cut and has failed; its "
        "questions are asked, s"},
+
+      {"headset", "hold", "text", "\"image\", \"state\", \"head_locked\"", "\"image\"",
+       "what a picture does that stays on while the head moves. image: it stays where it was drawn, as in "
+       "the "
+       "paper. state: the fluid stands still and is drawn anew in each period, which hides judder of the "
+       "head "
+       "and so changes what is rated. head_locked: it moves with the head. Data of different modes are not "
+       "pooled"},
+      {"headset", "acknowledge", "list of texts", "\"head_locked\"", where_needed,
+       "that head_locked makes people sick; needed for it"},
+      {"headset", "hold_margin_deg", "number", "[0, 30]", "0",
+       "held images reach this far beyond the eyes' view on each side, at as many pixels: a turning head "
+       "sees no "
+       "edge"},
+      {"headset", "world_scale", "number", "[0.01, 100]", "1", "metres of the room for a metre of the scene"},
+      {"headset", "refresh_hz", "number", "[10, 1000]", "as it is",
+       "asked of the headset, Hz; without it nothing begins"},
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "

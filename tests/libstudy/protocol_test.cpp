@@ -227,6 +227,25 @@ TEST(Protocol, SsqHasTheSixteenSymptoms) {
   }
 }
 
+TEST(Protocol, AHeadsetsRulesAreRead) {
+  using study::Hold;
+  const std::string pilot = shipped("ptpe_pilot");
+  const auto with = [&](const std::string& keys) {
+    return study::parse_protocol(pilot + "\n[headset]\n" + keys, "p.toml").headset;
+  };
+  EXPECT_EQ(study::parse_protocol(pilot, "p.toml").headset.hold, Hold::Image);
+  const study::HeadsetRules rules = with("hold_margin_deg = 7.5\nworld_scale = 2\nrefresh_hz = 90\n");
+  EXPECT_EQ(rules.hold_margin_deg, 7.5);
+  EXPECT_EQ(rules.world_scale, 2);
+  EXPECT_EQ(rules.refresh_hz, 90);
+  EXPECT_EQ(with("hold = \"state\"").hold, Hold::State);
+  EXPECT_EQ(with("hold = \"head_locked\"\nacknowledge = [\"head_locked\"]").hold, Hold::HeadLocked);
+  EXPECT_THAT([&] { with("hold = \"head_locked\""); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("acknowledge")));
+  EXPECT_THAT([&] { with("hold = \"state\"\nhold_margin_deg = 5"); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("hold_margin_deg")));
+}
+
 TEST(Protocol, OverrideMarksTestDataAndChangesTheHash) {
   auto protocol = parsed("ptpe_pilot");
   const std::string original = protocol.sha256;

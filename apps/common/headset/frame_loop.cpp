@@ -138,7 +138,7 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
     records_.push_back(record);
     if (picture_turns_.waits() && slot.predicted_ns >= due_ns_ - period_of(facts_) / 2) {
       picture_turns_.take();
-      shown_views_ = waiting_views_;
+      shown_from_ = waiting_from_;
       came_on_ = slot;
     }
     if (page_turns_.waits()) {
@@ -149,7 +149,8 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
     const std::size_t picture = picture_turns_.read(), page = page_turns_.read();
     if (picture_turns_.shows()) out.picture = canvases_[picture].get();
     if (page_turns_.shows()) out.page = pages_[page].get();
-    out.views = shown_views_;
+    out.views = shown_from_.views;
+    out.in_head = shown_from_.in_head;
     out.light = light_at(slot.predicted_ns);
     out.place = shown_place_;
   }
@@ -195,9 +196,15 @@ std::int64_t FrameLoop::now_ns() const {
   return facts_.last.predicted_ns + period_ns + counted_ns;
 }
 
-EyeViews FrameLoop::views_at(std::int64_t at_ns) {
+EyeViews FrameLoop::views_at(std::int64_t at_ns) { return session_->views_at(runtime_time_of(at_ns)); }
+
+EyeViews FrameLoop::views_in_head(std::int64_t at_ns) {
+  return session_->views_in_head(runtime_time_of(at_ns));
+}
+
+std::int64_t FrameLoop::runtime_time_of(std::int64_t at_ns) const {
   const HeadsetSlot last = facts().last;
-  return session_->views_at(last.runtime_time + at_ns - last.predicted_ns);
+  return last.runtime_time + at_ns - last.predicted_ns;
 }
 
 const sim::Offscreen& FrameLoop::canvas() const {
@@ -210,12 +217,12 @@ const sim::Offscreen& FrameLoop::page() const {
   return *pages_.at(page_turns_.free());
 }
 
-HeadsetSlot FrameLoop::show(const EyeViews& views, std::int64_t due_ns) {
+HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
   if (drive_ == SlotDrive::Thread) glFinish();  // the other context reads it
   {
     const std::lock_guard held(mutex_);
     picture_turns_.post();
-    waiting_views_ = views;
+    waiting_from_ = from;
     due_ns_ = due_ns;
   }
   for (;;) {

@@ -29,6 +29,12 @@ struct HeadsetRecord {
   HeadsetInput input;
 };
 
+/// What a picture was drawn from.
+struct HeldViews {
+  EyeViews views;
+  bool in_head = false;  ///< see HeadsetLayers
+};
+
 /// How the session stood when its last slot was over.
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
@@ -59,14 +65,15 @@ class FrameLoop {
   void turn();
   /// Of the display, ns; 0 before any slot.
   std::int64_t period_ns() const;
-  /// Where the eyes will be, on the session's clock.
+  /// Where the eyes will be, on the session's clock; in the world, or in the head's own space.
   EyeViews views_at(std::int64_t at_ns);
+  EyeViews views_in_head(std::int64_t at_ns);
 
   /// To draw both eyes' picture into, as HeadsetLayers has it; ask again for each picture.
   const sim::Offscreen& canvas() const;
   /// Shows the canvas as it was drawn, from the slot that is the nearest to due_ns or the next one after
   /// that, until another picture is shown or clear(). Waits until it is on; returns its slot.
-  HeadsetSlot show(const EyeViews& views, std::int64_t due_ns);
+  HeadsetSlot show(const HeldViews& from, std::int64_t due_ns);
   void clear();
   /// The same of the page.
   const sim::Offscreen& page() const;
@@ -87,6 +94,7 @@ class FrameLoop {
   bool turn_slot();
   HeadsetLayers take_in(const HeadsetRecord& record);
   float light_at(std::int64_t at_ns) const;
+  std::int64_t runtime_time_of(std::int64_t at_ns) const;
 
   sim::GlContext gl_;
   std::optional<sim::GlContext> slots_gl_;  ///< of the thread; shares objects with gl_
@@ -97,7 +105,7 @@ class FrameLoop {
   mutable std::mutex mutex_;  ///< for everything below
   std::condition_variable changed_;
   PictureTurns picture_turns_, page_turns_;
-  EyeViews shown_views_, waiting_views_;
+  HeldViews shown_from_, waiting_from_;
   HeadsetPage shown_place_, waiting_place_;
   std::int64_t due_ns_ = 0;  ///< of the picture that waits
   HeadsetSlot came_on_;      ///< of the picture that is shown

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "stats/base/error.hpp"
@@ -17,9 +19,20 @@ constexpr std::chrono::seconds most_idle{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
 
-study::EyeView to_study(const EyeView& eye, int x_px) {
+/// A rate is kept when it is met within this share.
+constexpr double same_rate = 0.02;
+bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
+
+HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) {
+  choice.refresh_hz = rules.refresh_hz;
+  return choice;
+}
+
+/// A place of the room in the scene.
+study::EyeView to_study(const EyeView& eye, int x_px, double world_scale) {
   study::EyeView out;
-  for (std::size_t k = 0; k < 3; ++k) out.position_m[k] = static_cast<double>(eye.pose.place_m[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    out.position_m[k] = static_cast<double>(eye.pose.place_m[k]) / world_scale;
   for (std::size_t k = 0; k < 4; ++k) out.orientation[k] = static_cast<double>(eye.pose.turn[k]);
   out.left_rad = static_cast<double>(eye.fov.left);
   out.right_rad = static_cast<double>(eye.fov.right);
@@ -31,16 +44,33 @@ study::EyeView to_study(const EyeView& eye, int x_px) {
   return out;
 }
 
+/// The same eyes with a margin around what they see.
+void widen(EyeViews& views, double margin_deg) {
+  constexpr float most = 1.55f;  // a plane ends before a right angle
+  const auto margin = static_cast<float>(margin_deg * std::numbers::pi / 180);
+  for (EyeView& eye : views) {
+    eye.fov.left = std::max(eye.fov.left - margin, -most);
+    eye.fov.right = std::min(eye.fov.right + margin, most);
+    eye.fov.up = std::min(eye.fov.up + margin, most);
+    eye.fov.down = std::max(eye.fov.down - margin, -most);
+  }
+}
+
 }  // namespace
 
-HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice)
-    : loop_(choice, drive), slots_by_thread_(drive == SlotDrive::Thread) {
+HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, const study::HeadsetRules& rules)
+    : rules_(rules), loop_(with_rate(choice, rules), drive), slots_by_thread_(drive == SlotDrive::Thread) {
   await([this] { return focused(); }, "nobody wears it, or another program has its focus",
         "put it on, and close what lies before this program");
-  await([this] { return facts().rate.measured_hz.has_value(); }, "its predicted times show no steady rate",
-        "choose a fixed refresh rate in the headset's software");
+  const auto measured = [this] { return facts().rate.measured_hz; };
+  const auto meets = [&] { return !rules.refresh_hz || near_rate(*measured(), *rules.refresh_hz); };
+  await([&] { return measured() && meets(); },
+        rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
+                         : "its predicted times show no steady rate",
+        "choose that refresh rate, and a fixed one, in the headset's software");
   const HeadsetRate rate = facts().rate;
-  refresh_hz_ = rate.told_hz.value_or(*rate.measured_hz);
+  refresh_hz_ =
+      rate.told_hz && near_rate(*rate.told_hz, *rate.measured_hz) ? *rate.told_hz : *rate.measured_hz;
 }
 
 void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
@@ -104,18 +134,23 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
   return take_records();
 }
 
-/// Both eyes into the canvas, as they will be at at_ns.
-EyeViews HeadsetDisplay::draw(std::int64_t at_ns) {
+/// Both eyes into the canvas, as they will be at at_ns; none where the runtime does not know.
+std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
-  const EyeViews views = loop_.views_at(at_ns);
+  EyeViews views = loop_.views_at(at_ns);
+  if (!can_be_shown(views)) return {};
+  widen(views, rules_.hold_margin_deg);
   const sim::Offscreen& canvas = loop_.canvas();
-  const std::array<study::EyeView, 2> eyes{to_study(views[0], 0), to_study(views[1], views[0].width_px)};
-  if (can_be_shown(views)) pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
-  if (!slots_by_thread_) return views;
+  const std::array<study::EyeView, 2> eyes{to_study(views[0], 0, rules_.world_scale),
+                                           to_study(views[1], views[0].width_px, rules_.world_scale)};
+  pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
+  const bool in_head = rules_.hold == study::Hold::HeadLocked;
+  const HeldViews from{in_head ? loop_.views_in_head(at_ns) : views, in_head};
+  if (!slots_by_thread_) return from;
   glFinish();
   const std::chrono::nanoseconds taken = std::chrono::steady_clock::now() - begun;
   draw_ns_ = std::max<std::int64_t>(taken.count(), draw_ns_ - draw_ns_ / 8);
-  return views;
+  return from;
 }
 
 void HeadsetDisplay::render(study::Stimulus& stimulus) {
@@ -127,11 +162,11 @@ void HeadsetDisplay::render(study::Stimulus& stimulus) {
 study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Clock& clock) {
   playing_ = true;
   clock.wait_until(scheduled_ns - lead_ns());
-  const EyeViews views = draw(scheduled_ns);
+  const auto from = draw(scheduled_ns);
   study::PresentTimes times;
   times.submitted_ns = slots_by_thread_ ? study::RealClock().now_ns() : scheduled_ns;
-  if (can_be_shown(views)) {
-    times.predicted_display_ns = loop_.show(views, scheduled_ns).predicted_ns;
+  if (from) {
+    times.predicted_display_ns = loop_.show(*from, scheduled_ns).predicted_ns;
   } else {
     spoilt_ = true;
     clock.wait_until(scheduled_ns);
@@ -139,6 +174,17 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
   }
   heed();
   return times;
+}
+
+void HeadsetDisplay::hold(std::int64_t until_ns, study::Clock&) {
+  if (rules_.hold != study::Hold::State || !playing_) return;
+  while (loop_.next_ns() < until_ns - loop_.period_ns() / 2) {
+    const std::int64_t at_ns = loop_.next_ns();
+    const auto from = draw(at_ns);
+    if (!from) return;
+    loop_.show(*from, at_ns);
+    heed();
+  }
 }
 
 void HeadsetDisplay::clear() {

@@ -4,23 +4,26 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/common/headset/frame_loop.hpp"
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
+#include "libstudy/protocol/headset_rules.hpp"
 
 namespace apps {
 
-/// Shows a picture for as long as the schedule says, in every slot that the runtime gives: an old picture
-/// keeps the pose that it was drawn from (hold mode `image`), and black is a slot without a picture. Destroy
-/// stimuli that drew on it first. All calls on the thread that made it.
+/// Shows a picture for as long as the schedule says, in every slot that the runtime gives; what it does while
+/// the head moves is the rules' hold mode. Black is a slot without a picture. Destroy stimuli that drew on it
+/// first. All calls on the thread that made it.
 class HeadsetDisplay final : public study::Display {
  public:
-  /// Connects, waits until the headset is worn and the rate has settled. base::Error for what is not there,
-  /// and for a headset that nobody puts on.
-  explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {});
+  /// Connects, waits until the headset is worn and has settled at its rate. base::Error for what is not
+  /// there, a headset that nobody puts on, and one that does not take the rules' rate.
+  explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {},
+                          const study::HeadsetRules& rules = {});
 
   std::string description() const override;
   /// C; D where the runtime's times do not convert, repeat or leave their grid.
@@ -31,6 +34,8 @@ class HeadsetDisplay final : public study::Display {
   /// Only remembers it: it is drawn as late as it can be, from where the head will be when it comes on.
   void render(study::Stimulus& stimulus) override;
   study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
+  /// Draws what is shown anew for each slot; Hold::State alone.
+  void hold(std::int64_t until_ns, study::Clock& clock) override;
   void clear() override;
 
   /// When what is handed over now would be seen, on the runtime's clock, ns: that of the next slot, which
@@ -65,8 +70,9 @@ class HeadsetDisplay final : public study::Display {
   std::int64_t lead_ns() const;
   void heed();
   void await(const std::function<bool()>& ready, const char* problem, const char* mend);
-  EyeViews draw(std::int64_t at_ns);
+  std::optional<HeldViews> draw(std::int64_t at_ns);
 
+  study::HeadsetRules rules_;
   FrameLoop loop_;
   study::Stimulus* pending_ = nullptr;
   double refresh_hz_ = 0;

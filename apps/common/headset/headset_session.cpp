@@ -73,6 +73,7 @@ struct HeadsetSession::Parts {
   WatchedThread watched;
 
   XrFrameState wait_frame();
+  EyeViews locate(std::int64_t runtime_time, const Space& space) const;
   XrCompositionLayerProjectionView layer_view(const EyeView& eye, const Swapchain& swapchain) const;
 };
 
@@ -114,8 +115,33 @@ XrCompositionLayerProjectionView HeadsetSession::Parts::layer_view(const EyeView
   return view;
 }
 
+EyeViews HeadsetSession::Parts::locate(std::int64_t runtime_time, const Space& space) const {
+  XrViewLocateInfo info{};
+  info.type = XR_TYPE_VIEW_LOCATE_INFO;
+  info.viewConfigurationType = stereo_views;
+  info.displayTime = runtime_time;
+  info.space = space.get();
+  XrViewState state{};
+  state.type = XR_TYPE_VIEW_STATE;
+  std::array<XrView, 2> found{};
+  for (XrView& view : found) view.type = XR_TYPE_VIEW;
+  std::uint32_t count = 0;
+  session.call<PFN_xrLocateViews>("xrLocateViews", session.get(), &info, &state, 2u, &count, found.data());
+  EyeViews out;
+  for (std::size_t eye = 0; eye < out.size(); ++eye) {
+    const XrFovf& fov = found[eye].fov;
+    out[eye] = {pose_of(found[eye].pose, state.viewStateFlags),
+                {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown},
+                sizes[eye].width,
+                sizes[eye].height};
+  }
+  return out;
+}
+
 HeadsetSession::HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& choice)
-    : parts_(std::make_unique<Parts>(gl, choice)) {}
+    : parts_(std::make_unique<Parts>(gl, choice)) {
+  if (choice.refresh_hz) request_rate(*choice.refresh_hz);
+}
 HeadsetSession::~HeadsetSession() = default;
 
 std::string HeadsetSession::description() const {
@@ -163,27 +189,11 @@ void HeadsetSession::begin(const HeadsetSlot&) {
 }
 
 EyeViews HeadsetSession::views_at(std::int64_t runtime_time) {
-  XrViewLocateInfo info{};
-  info.type = XR_TYPE_VIEW_LOCATE_INFO;
-  info.viewConfigurationType = stereo_views;
-  info.displayTime = runtime_time;
-  info.space = parts_->world.get();
-  XrViewState state{};
-  state.type = XR_TYPE_VIEW_STATE;
-  std::array<XrView, 2> found{};
-  for (XrView& view : found) view.type = XR_TYPE_VIEW;
-  std::uint32_t count = 0;
-  parts_->session.call<PFN_xrLocateViews>("xrLocateViews", parts_->session.get(), &info, &state, 2u, &count,
-                                          found.data());
-  EyeViews out;
-  for (std::size_t eye = 0; eye < out.size(); ++eye) {
-    const XrFovf& fov = found[eye].fov;
-    out[eye] = {pose_of(found[eye].pose, state.viewStateFlags),
-                {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown},
-                eye_size(eye).width,
-                eye_size(eye).height};
-  }
-  return out;
+  return parts_->locate(runtime_time, parts_->world);
+}
+
+EyeViews HeadsetSession::views_in_head(std::int64_t runtime_time) {
+  return parts_->locate(runtime_time, parts_->head);
 }
 
 HeadsetInput HeadsetSession::input(const HeadsetSlot& slot) {
@@ -213,7 +223,7 @@ void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
       views[eye] = parts.layer_view(shown.views[eye], *parts.swapchains[eye]);
     }
     projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
-    projection.space = parts.world.get();
+    projection.space = (shown.in_head ? parts.head : parts.world).get();
     projection.viewCount = static_cast<std::uint32_t>(views.size());
     projection.views = views.data();
     layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));

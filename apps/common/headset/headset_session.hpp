@@ -21,6 +21,7 @@ struct HeadsetChoice {
   bool eye_gaze = false;                      ///< asks for eye tracking; only with the participant's consent
   double patience_s = 10;                     ///< a wait of the runtime that lasts longer ends the session
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
+  std::optional<double> refresh_hz{};         ///< asked for; see request_rate()
 };
 
 /// A picture's turn on the display.
@@ -44,6 +45,7 @@ struct HeadsetLayers {
   /// black.
   const sim::Offscreen* picture = nullptr;
   EyeViews views{};                      ///< what it was drawn from
+  bool in_head = false;                  ///< the views are in the head's space: it moves with the head
   float light = 1;                       ///< by which its levels are multiplied, [0, 1]
   const sim::Offscreen* page = nullptr;  ///< of the size that was chosen; before the picture. None: no page
   HeadsetPage place{};                   ///< of the page
@@ -85,6 +87,8 @@ class HeadsetSession {
   EyeViews views(const HeadsetSlot& slot) { return views_at(slot.runtime_time); }
   /// The same at any time of the runtime's; from any thread.
   EyeViews views_at(std::int64_t runtime_time);
+  /// The same in the head's own space.
+  EyeViews views_in_head(std::int64_t runtime_time);
   HeadsetInput input(const HeadsetSlot& slot);
   /// Of an eye, 0 left, 1 right.
   PictureSize eye_size(std::size_t eye) const;

@@ -29,32 +29,41 @@ bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate 
 }  // namespace
 
 double RateMeter::period_of_latest() const {
-  const auto typical = static_cast<double>(median(latest_));
+  std::vector<std::int64_t> steps_ns;
+  for (const Step& step : latest_) steps_ns.push_back(step.ns);
+  const auto typical = static_cast<double>(median(steps_ns));
   double periods = 0;
-  for (const std::int64_t step : latest_) periods += whole_periods(step, typical);
-  return static_cast<double>(std::accumulate(latest_.begin(), latest_.end(), std::int64_t{0})) / periods;
+  for (const std::int64_t step_ns : steps_ns) periods += whole_periods(step_ns, typical);
+  return static_cast<double>(std::accumulate(steps_ns.begin(), steps_ns.end(), std::int64_t{0})) / periods;
 }
 
-void RateMeter::count(std::int64_t step_ns) {
-  const double whole = whole_periods(step_ns, period_ns_);
-  counted_ns_ += step_ns;
+void RateMeter::count(Step& step) {
+  const double whole = whole_periods(step.ns, period_ns_);
+  counted_ns_ += step.ns;
   counted_periods_ += static_cast<std::int64_t>(whole);
-  dropped_ += static_cast<std::int64_t>(whole) - 1;
-  off_grid_ += std::abs(static_cast<double>(step_ns) / period_ns_ - whole) > on_grid;
+  step.dropped = static_cast<std::int64_t>(whole) - 1;
+  step.off_grid = std::abs(static_cast<double>(step.ns) / period_ns_ - whole) > on_grid;
+  dropped_ += step.dropped;
+  off_grid_ += step.off_grid;
 }
 
 std::optional<RateChange> RateMeter::settle() {
   const double period_ns = period_of_latest();
   if (period_ns_ != 0) {
     if (same(period_ns, period_ns_)) return {};
-    // Old and new steps are mixed: the new rate is told when it has settled.
+    // Old and new steps are mixed: the new rate is told when it has settled. What they seemed to be beside
+    // the old one says nothing.
+    for (const Step& step : latest_) {
+      dropped_ -= step.dropped;
+      off_grid_ -= step.off_grid;
+    }
     period_ns_ = 0;
     latest_.clear();
     return {};
   }
   period_ns_ = period_ns;
   counted_ns_ = counted_periods_ = 0;
-  for (const std::int64_t step : latest_) count(step);
+  for (Step& step : latest_) count(step);
   const double before_ns = std::exchange(before_ns_, period_ns);
   if (before_ns == 0 || same(period_ns, before_ns)) return {};
   return RateChange{1e9 / before_ns, 1e9 / period_ns};
@@ -66,9 +75,9 @@ std::optional<RateChange> RateMeter::add(std::int64_t predicted_ns) {
   const std::int64_t step_ns = predicted_ns - *before;
   repeated_ += step_ns <= 0;
   if (++steps_ <= first_steps || step_ns <= 0) return {};
-  if (period_ns_ != 0) count(step_ns);
   if (latest_.size() == window) latest_.erase(latest_.begin());
-  latest_.push_back(step_ns);
+  latest_.push_back({step_ns});
+  if (period_ns_ != 0) count(latest_.back());
   return latest_.size() == window ? settle() : std::nullopt;
 }
 

@@ -30,8 +30,13 @@ class RateMeter {
   std::int64_t off_grid() const { return off_grid_; }
 
  private:
+  struct Step {
+    std::int64_t ns = 0;
+    std::int64_t dropped = 0, off_grid = 0;  ///< as it was counted
+  };
+
   double period_of_latest() const;
-  void count(std::int64_t step_ns);
+  void count(Step& step);
   std::optional<RateChange> settle();
 
   std::optional<std::int64_t> last_ns_;
@@ -40,7 +45,7 @@ class RateMeter {
   int steps_ = 0;                                      ///< since frames run
   std::int64_t counted_ns_ = 0, counted_periods_ = 0;  ///< since it was settled
   std::int64_t dropped_ = 0, repeated_ = 0, off_grid_ = 0;
-  std::vector<std::int64_t> latest_;  ///< steps, ns
+  std::vector<Step> latest_;
 };
 
 }  // namespace apps
