@@ -209,6 +209,9 @@ void add_run_command(CLI::App& app) {
                  "Where frames go: a window (a person's), drawn without a window, a headset by OpenXR on the "
                  "virtual clock, or nowhere (an observer's)")
       ->check(CLI::IsMember({"window", "headless", "openxr", "none"}));
+  sub.add_option("--answer", command->run.answer,
+                 "With what a person answers in a headset, commas between: ray (a hand points), stick, dwell "
+                 "(one looks at it for a second), keyboard (this terminal's); default: ray,stick,keyboard");
   sub.add_option(
          "--gaze", command->run.gaze,
          "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "

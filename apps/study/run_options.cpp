@@ -53,6 +53,7 @@ std::string format_run_options(const RunOptions& options) {
                                 {"monitor", options.monitor},
                                 {"bake", options.bake},
                                 {"backend", options.backend},
+                                {"answer", options.answer},
                                 {"gaze", options.gaze},
                                 {"accept_slow", options.accept_slow},
                                 {"station", options.station},
@@ -77,6 +78,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.monitor = monitor_of(json, place);
     options.bake = json.at("bake");
     options.backend = json.at("backend");
+    options.answer = json.value("answer", "");
     options.gaze = json.at("gaze");
     options.accept_slow = json.value("accept_slow", false);
     options.station = json.at("station");

@@ -15,6 +15,7 @@ struct RunOptions {
   int monitor = 0;                      ///< of a window; 0: the primary one
   std::string bake;                     ///< absolute path of the bake played; empty = none
   std::string backend = "auto";
+  std::string answer;        ///< of a person in a headset: see AnswerWays
   std::string gaze;          ///< "fixed": the middle of the picture, "mouse", or "none": not known
   bool accept_slow = false;  ///< live cells that this machine does not show at their setting are played
   std::string station;

@@ -110,6 +110,7 @@ class Steering {
       terminal_.emplace(*console_);
     } else {
       progress_.emplace("session steps", units_left(run));
+      if (setup.listen) setup.listen();
     }
   }
 

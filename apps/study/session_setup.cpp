@@ -3,6 +3,7 @@
 #include "apps/common/headless_display.hpp"
 #include "apps/common/headset/headset_display.hpp"
 #include "apps/study/cell_features.hpp"
+#include "apps/study/headset/headset_person.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "libstudy/display/null.hpp"
@@ -23,15 +24,15 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 }
 
 void check_together(const RunOptions& options, const study::Protocol& protocol) {
-  if (options.display == "openxr" && options.observer.empty())
-    throw base::Error("--display openxr", "shows no pages to a person yet",
-                      "name an --observer, or use --display window");
+  if (!options.answer.empty() && (options.display != "openxr" || !options.observer.empty()))
+    throw base::Error("--answer", "is for a person in a headset", "leave it out, or use --display openxr");
   if (options.display == "openxr" && options.gaze != "fixed" && options.gaze != "none")
     throw base::Error("--gaze " + options.gaze, "is not read from a headset yet", "use --gaze fixed or none");
-  if (options.observer.empty() && options.display != "window")
+  const bool shows_pages = options.display == "window" || options.display == "openxr";
+  if (options.observer.empty() && !shows_pages)
     throw base::Error("--display " + options.display, "shows nothing to a person",
                       "use --display window, or name an --observer");
-  if (options.observer.empty() && options.clock != "real")
+  if (options.observer.empty() && options.display == "window" && options.clock != "real")
     throw base::Error("--clock virtual", "does not wait for a person", "use --clock real");
   if (options.display == "window" && options.clock != "real")
     throw base::Error("--clock virtual", "does not wait for a window", "use --clock real");
@@ -68,9 +69,12 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
 }
 
 /// Its slots are the clock.
-void take_headset(SessionSetup& setup, const study::Protocol& protocol) {
+void take_headset(SessionSetup& setup, const RunOptions& options, const study::Protocol& protocol) {
+  const bool person = options.observer.empty();
+  const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
   const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
-  auto headset = std::make_unique<HeadsetDisplay>(drive, HeadsetChoice{}, protocol.headset);
+  const HeadsetChoice choice = person ? choice_for_person(ways) : HeadsetChoice{};
+  auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
     if (!display->take_spoilt()) return others();
@@ -81,6 +85,13 @@ void take_headset(SessionSetup& setup, const study::Protocol& protocol) {
     } while (!display->focused());
     return study::Wish::NotShown;
   };
+  if (person) {
+    HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);
+    setup.participant = std::move(parts.participant);
+    setup.wish = std::move(parts.wish);
+    setup.idle = std::move(parts.idle);
+    setup.listen = std::move(parts.listen);
+  }
   setup.display = std::move(headset);
 }
 
@@ -145,7 +156,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.screen = window.screen;
     size = window.size;
   } else if (options.display == "openxr") {
-    take_headset(setup, protocol);
+    take_headset(setup, options, protocol);
   } else {
     setup.display = make_display(options);
   }

@@ -25,12 +25,13 @@ struct SessionSetup {
   std::unique_ptr<CellStimuli> stimuli;
   std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
   WindowWish wish;                              ///< the window's or the headset's, or empty
-  std::function<std::optional<double>()> idle;  ///< the window's, or empty
-  std::function<void()> open_mirror;            ///< likewise
-  std::function<void()> poll;                   ///< likewise
-  std::optional<ScreenFacts> screen;            ///< likewise
-  std::vector<FramedScene> scenes;              ///< as the display frames them; none: nothing is drawn
-  MeasuredReport rates;                         ///< of live cells on this station; none: nothing was measured
+  std::function<std::optional<double>()> idle;  ///< likewise
+  std::function<void()> listen;       ///< from now on the terminal's keys answer a headset's pages, or empty
+  std::function<void()> open_mirror;  ///< the window's, or empty
+  std::function<void()> poll;         ///< likewise
+  std::optional<ScreenFacts> screen;  ///< likewise
+  std::vector<FramedScene> scenes;    ///< as the display frames them; none: nothing is drawn
+  MeasuredReport rates;               ///< of live cells on this station; none: nothing was measured
 
   /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
   /// test data.

@@ -23,15 +23,21 @@ class HeadsetRuns : public ::testing::Test {
   Ended run(const std::vector<std::string>& arguments, const Environment& environment) {
     std::vector<std::string> all{bin + "/vip-study"};
     all.insert(all.end(), arguments.begin(), arguments.end());
-    return run_program(all, [&] {
-      for (const char* name :
-           {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS"})
-        ::unsetenv(name);
-      ::setenv("VIP_XR_LOG", log().c_str(), 1);
-      ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
-      ::setenv("XR_LOADER_DEBUG", "none", 1);
-      for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-    });
+    return run_program(all, [&] { prepare(environment); });
+  }
+  /// In the child that becomes the program.
+  void prepare(const Environment& environment) const {
+    for (const char* name :
+         {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS"})
+      ::unsetenv(name);
+    ::setenv("VIP_XR_LOG", log().c_str(), 1);
+    ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
+    ::setenv("XR_LOADER_DEBUG", "none", 1);
+    for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  /// The simulated headset of this profile.
+  Environment simulated(const std::string& profile) const {
+    return {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}};
   }
   /// vip-study headset on a runtime whose caller must keep the specification.
   Ended on(const std::string& profile, std::vector<std::string> arguments = {}) {
@@ -41,8 +47,7 @@ class HeadsetRuns : public ::testing::Test {
   /// vip-study likewise.
   Ended study(const std::string& profile, const std::vector<std::string>& arguments) {
     std::filesystem::remove(log());
-    Ended ended =
-        run(arguments, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
+    Ended ended = run(arguments, simulated(profile));
     EXPECT_THAT(calls(), ::testing::Not(::testing::HasSubstr("BREACH")));
     return ended;
   }

@@ -89,6 +89,7 @@ Actions::~Actions() {
 void Actions::make_actions(bool eye_gaze) {
   const std::vector<XrPath> hands(hands_.begin(), hands_.end());
   select_ = make_action(session_, set_, XR_ACTION_TYPE_BOOLEAN_INPUT, "select", "Select");
+  menu_ = make_action(session_, set_, XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Ask to stop");
   stick_ = make_action(session_, set_, XR_ACTION_TYPE_VECTOR2F_INPUT, "choose", "Choose");
   aim_ = make_action(session_, set_, XR_ACTION_TYPE_POSE_INPUT, "aim", "Point", hands);
   if (eye_gaze) gaze_ = make_action(session_, set_, XR_ACTION_TYPE_POSE_INPUT, "gaze", "Gaze");
@@ -96,20 +97,25 @@ void Actions::make_actions(bool eye_gaze) {
 
 void Actions::suggest(bool eye_gaze) const {
   struct Device {
-    std::string profile, select, stick;
+    std::string profile, select, menu, stick;
   };
   // The simple controller is every runtime's; it has no stick.
-  for (const Device& device :
-       std::vector<Device>{{"khr/simple_controller", "/input/select/click", ""},
-                           {"oculus/touch_controller", "/input/trigger/value", "/input/thumbstick"},
-                           {"valve/index_controller", "/input/trigger/value", "/input/thumbstick"},
-                           {"microsoft/motion_controller", "/input/trigger/value", "/input/thumbstick"},
-                           {"htc/vive_controller", "/input/trigger/click", "/input/trackpad"}}) {
+  for (const Device& device : std::vector<Device>{
+           {"khr/simple_controller", "/input/select/click", "/input/menu/click", ""},
+           {"oculus/touch_controller", "/input/trigger/value", "", "/input/thumbstick"},
+           {"valve/index_controller", "/input/trigger/value", "/input/b/click", "/input/thumbstick"},
+           {"microsoft/motion_controller", "/input/trigger/value", "/input/menu/click", "/input/thumbstick"},
+           {"htc/vive_controller", "/input/trigger/click", "/input/menu/click", "/input/trackpad"}}) {
     std::vector<Binding> bindings;
     for (const std::string hand : {"/user/hand/left", "/user/hand/right"}) {
       bindings.push_back({select_, hand + device.select});
       bindings.push_back({aim_, hand + "/input/aim/pose"});
+      if (!device.menu.empty()) bindings.push_back({menu_, hand + device.menu});
       if (!device.stick.empty()) bindings.push_back({stick_, hand + device.stick});
+    }
+    if (device.menu.empty()) {  // its hands differ; the left one's menu may be the system's
+      bindings.push_back({menu_, "/user/hand/left/input/y/click"});
+      bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }
     suggest_profile(session_, "/interaction_profiles/" + device.profile, bindings);
   }
@@ -163,14 +169,21 @@ std::optional<HeadsetGaze> Actions::read_gaze(const Space& world, XrTime time) {
   return out;
 }
 
+XrActionStateBoolean Actions::read_button(XrAction action) const {
+  const XrActionStateGetInfo info = ask(action);
+  XrActionStateBoolean state{};
+  state.type = XR_TYPE_ACTION_STATE_BOOLEAN;
+  session_.call<PFN_xrGetActionStateBoolean>("xrGetActionStateBoolean", session_.get(), &info, &state);
+  return state;
+}
+
 HeadsetHands Actions::read_hands(const Space& world, XrTime time) const {
   HeadsetHands out;
-  const XrActionStateGetInfo ask_select = ask(select_), ask_stick = ask(stick_);
-  XrActionStateBoolean select{};
-  select.type = XR_TYPE_ACTION_STATE_BOOLEAN;
-  session_.call<PFN_xrGetActionStateBoolean>("xrGetActionStateBoolean", session_.get(), &ask_select, &select);
+  const XrActionStateBoolean select = read_button(select_), menu = read_button(menu_);
   out.select = select.isActive && select.currentState;
+  out.menu = menu.isActive && menu.currentState;
   out.select_began = out.select && select.changedSinceLastSync;
+  const XrActionStateGetInfo ask_stick = ask(stick_);
   XrActionStateVector2f stick{};
   stick.type = XR_TYPE_ACTION_STATE_VECTOR2F;
   session_.call<PFN_xrGetActionStateVector2f>("xrGetActionStateVector2f", session_.get(), &ask_stick, &stick);

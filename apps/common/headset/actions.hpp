@@ -29,6 +29,7 @@ class Actions {
   bool sync() const;
   XrActionStateGetInfo ask(XrAction action, XrPath hand = XR_NULL_PATH) const;
   bool is_active(XrAction pose, XrPath hand = XR_NULL_PATH) const;
+  XrActionStateBoolean read_button(XrAction action) const;
   std::optional<HeadsetGaze> read_gaze(const Space& world, XrTime time);
   HeadsetHands read_hands(const Space& world, XrTime time) const;
 
@@ -36,7 +37,8 @@ class Actions {
   RuntimeClock& clock_;
   std::array<XrPath, 2> hands_{};
   XrActionSet set_ = XR_NULL_HANDLE;
-  XrAction gaze_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE, aim_ = XR_NULL_HANDLE;
+  XrAction gaze_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
+           aim_ = XR_NULL_HANDLE;
   std::vector<Space> aims_;
   std::unique_ptr<Space> gaze_space_;
 };

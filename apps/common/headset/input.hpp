@@ -21,6 +21,7 @@ struct HeadsetGaze {
 struct HeadsetHands {
   bool select = false;                            ///< is pressed
   bool select_began = false;                      ///< was pressed since the last reading
+  bool menu = false;                              ///< likewise is pressed
   std::array<float, 2> stick{};                   ///< right and up, [-1, 1]; 0 without a stick
   std::array<std::optional<HeadsetPose>, 2> aim;  ///< left and right; along direction_of()
 };

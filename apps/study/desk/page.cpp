@@ -130,9 +130,12 @@ void PageState::minus(std::int64_t now_ns) {
 }
 
 void PageState::erase(std::int64_t now_ns) {
-  if (focus_ == size() || questions_[focus_].kind != AnswerKind::Number) return;
+  if (focus_ == size()) return;
   PageItem& item = items_[focus_];
   if (item.typed.empty()) return;
+  const auto follows = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
+  while (item.typed.size() > 1 && follows(item.typed.back()))
+    item.typed.pop_back();  // of one letter in UTF-8
   item.typed.pop_back();
   mark_changed(item, now_ns);
 }
@@ -162,15 +165,23 @@ void PageState::click_confirm(std::int64_t now_ns) {
 }
 
 void PageState::write(std::size_t question, const std::string& words, std::int64_t now_ns) {
-  if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return;
-  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return;
+  if (put(question, words, now_ns)) items_[question].input = study::AnswerInput::Keyboard;
+}
+
+bool PageState::put(std::size_t question, const std::string& words, std::int64_t now_ns) {
+  if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return false;
+  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return false;
   items_[question].typed = words;
   mark_changed(items_[question], now_ns);
-  items_[question].input = study::AnswerInput::Keyboard;
+  return true;
+}
+
+void PageState::type(const std::string& letters, std::int64_t now_ns) {
+  if (focus_ < size()) put(focus_, items_[focus_].typed + letters, now_ns);
 }
 
 void PageState::leave_out(std::int64_t from_ns, std::int64_t to_ns) {
-  left_out_ns_ += to_ns - from_ns;
+  left_out_ns_ += std::max<std::int64_t>(0, to_ns - std::max(from_ns, shown_ns_));
   guarded_from_ns_ = to_ns;
 }
 

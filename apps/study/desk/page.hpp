@@ -46,9 +46,12 @@ class PageState {
   void click_question(std::size_t question, std::int64_t now_ns);
   /// Goes to the first question that keeps the page open, if there is one.
   void click_confirm(std::int64_t now_ns);
+  /// More letters for a Text that has the focus; Erase takes the last one.
+  void type(const std::string& letters, std::int64_t now_ns);
   /// What stands in the field of a Text; it was typed at the keyboard.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
-  /// Time that did not pass on the page, such as in a dialog above it; whatever follows is guarded anew.
+  /// Time that did not pass on the page, such as in a dialog above it, as far as the page was there; whatever
+  /// follows is guarded anew.
   void leave_out(std::int64_t from_ns, std::int64_t to_ns);
 
   std::size_t size() const { return questions_.size(); }
@@ -78,6 +81,7 @@ class PageState {
   void enter(std::int64_t now_ns);
   void choose(std::size_t question, int score, std::int64_t now_ns);
   void erase(std::int64_t now_ns);
+  bool put(std::size_t question, const std::string& words, std::int64_t now_ns);
   void mark_changed(PageItem& item, std::int64_t now_ns) const;
   void step_focus(int by);
   bool is_missing(std::size_t question) const;

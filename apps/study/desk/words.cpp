@@ -18,6 +18,12 @@ DeskWords english() {
   words.held = "Please wait. It goes on in a moment.";
   words.corner = "Esc: stop";
   words.begin = "You may stop at any time: press the key Esc.";
+  words.corner_by_hand = "Stop";
+  words.begin_by_hand =
+      "You may stop at any time: hold the menu button for a second, or choose Stop on a page.";
+  words.by_ray = "To answer, point at a button and press the trigger.";
+  words.by_stick = "To answer, push the stick from button to button and press the trigger.";
+  words.by_dwell = "To answer, look at a button until its ring is full.";
   words.one_open = "1 question is still open";
   words.many_open = "{} questions are still open";
   words.wait = "in {} s";
@@ -77,6 +83,14 @@ DeskWords german() {
   words.held = "Bitte warten Sie. Es geht gleich weiter.";
   words.corner = "Esc: abbrechen";
   words.begin = "Sie können jederzeit abbrechen: drücken Sie die Taste Esc.";
+  words.corner_by_hand = "Abbrechen";
+  words.begin_by_hand =
+      "Sie können jederzeit abbrechen: halten Sie die Menütaste eine Sekunde lang, oder wählen Sie Abbrechen "
+      "auf einer Seite.";
+  words.by_ray = "Zeigen Sie zum Antworten auf eine Schaltfläche und drücken Sie den Abzug.";
+  words.by_stick =
+      "Gehen Sie zum Antworten mit dem Stick von Schaltfläche zu Schaltfläche und drücken Sie den Abzug.";
+  words.by_dwell = "Sehen Sie zum Antworten eine Schaltfläche an, bis ihr Ring voll ist.";
   words.one_open = "1 Frage ist noch offen";
   words.many_open = "{} Fragen sind noch offen";
   words.wait = "in {} s";

@@ -19,12 +19,14 @@ struct DeskChoice {
 
 struct DeskWords {
   std::string go_on, confirm, finish, rest, pause, ready;
-  std::string first, second;        ///< of two stimuli
-  std::string held_title, held;     ///< while the experimenter pauses
-  std::string corner, begin;        ///< how to stop: on every page, and as a sentence on the first
-  std::string one_open, many_open;  ///< "{}" stands for how many
-  std::string wait;                 ///< "{}" stands for seconds
-  std::string range;                ///< two "{}"
+  std::string first, second;                  ///< of two stimuli
+  std::string held_title, held;               ///< while the experimenter pauses
+  std::string corner, begin;                  ///< how to stop: on every page, and as a sentence on the first
+  std::string corner_by_hand, begin_by_hand;  ///< the same in a headset
+  std::string by_ray, by_stick, by_dwell;     ///< how to answer there, as sentences
+  std::string one_open, many_open;            ///< "{}" stands for how many
+  std::string wait;                           ///< "{}" stands for seconds
+  std::string range;                          ///< two "{}"
   std::string optional;
   std::string digits, arrows, tab;  ///< how to answer
   DeskChoice stop;

@@ -4,12 +4,16 @@
 
 namespace apps {
 
+namespace {
+
+/// 0 to 9, of either block of digits; -1: another key.
 int digit_of(int key) {
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
   if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;
   return -1;
 }
 
+/// None: a key without a meaning on a page.
 std::optional<PageKey> page_key(int key, bool shift) {
   switch (key) {
     case GLFW_KEY_LEFT:
@@ -33,10 +37,24 @@ std::optional<PageKey> page_key(int key, bool shift) {
   }
 }
 
+/// Lines that a key scrolls down; 0: it scrolls nothing.
 float lines_of(int key) {
   if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
   if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;
   return 0;
+}
+
+}  // namespace
+
+PageEvent event_of(int key, bool shift) {
+  PageEvent event;
+  event.key = page_key(key, shift);
+  event.digit = digit_of(key);
+  event.minus = key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT;
+  event.stop = key == GLFW_KEY_ESCAPE;
+  event.lines = lines_of(key);
+  event.text_only = key != GLFW_KEY_PAGE_DOWN && key != GLFW_KEY_PAGE_UP;
+  return event;
 }
 
 }  // namespace apps

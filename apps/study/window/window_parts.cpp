@@ -1,14 +1,23 @@
 #include "apps/study/window_parts.hpp"
 
 #include "apps/study/desk/mouse_gaze.hpp"
+#include "apps/study/pages/page_participant.hpp"
 #include "apps/study/window/participant_window.hpp"
 #include "apps/study/window/window_display.hpp"
-#include "apps/study/window/window_participant.hpp"
 #include "libsim/render/gl_context.hpp"
 
 namespace apps {
 
 namespace {
+
+/// The window and its pages, which live as long as either is held.
+struct WindowPages {
+  explicit WindowPages(const ParticipantWindowOptions& options, const std::string& language)
+      : window(options), pages(window, language, clock) {}
+  study::RealClock clock;  // a window's session has no other
+  ParticipantWindow window;
+  Pages pages;
+};
 
 /// The window tells it of the mouse as long as both live.
 class WindowMouse final : public study::GazeSource {
@@ -28,7 +37,7 @@ class WindowMouse final : public study::GazeSource {
 
  private:
   std::shared_ptr<ParticipantWindow> window_;
-  study::RealClock clock_;  // a window's session has no other
+  study::RealClock clock_;
   MouseGaze mouse_;
 };
 
@@ -39,8 +48,9 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   chosen.width_px = options.width_px;
   chosen.height_px = options.height_px;
   chosen.monitor = options.monitor;
-  chosen.language = protocol.language;
-  const auto window = std::make_shared<ParticipantWindow>(chosen);
+  const auto both = std::make_shared<WindowPages>(chosen, protocol.language);
+  const std::shared_ptr<ParticipantWindow> window(both, &both->window);
+  const std::shared_ptr<Pages> pages(both, &both->pages);
   auto display = std::make_unique<WindowDisplay>(window);
 
   WindowParts parts;
@@ -48,14 +58,14 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   parts.screen = display->facts();
   parts.size = {window->size().width, window->size().height};
   parts.display = std::move(display);
-  parts.person = std::make_unique<WindowParticipant>(window, protocol.blocks.back().id,
-                                                     [screen] { screen->find_beat(); });
+  parts.person =
+      std::make_unique<PageParticipant>(pages, protocol.blocks.back().id, [screen] { screen->find_beat(); });
   parts.gaze = [window](int, int) { return window->mouse(); };
   parts.mouse = std::make_unique<WindowMouse>(window);
   parts.poll = [window] { window->poll(0); };
   parts.idle = [window] { return window->window().idle_s(); };
   parts.open_mirror = [window] { window->open_mirror(); };
-  parts.wish = [window](const std::function<study::Wish()>& others) { return window->wish(others); };
+  parts.wish = [pages](const std::function<study::Wish()>& others) { return pages->wish(others); };
   return parts;
 }
 

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "apps/study/desk/page.hpp"
 #include "apps/study/desk/words.hpp"
-#include "apps/study/window/gui.hpp"
+#include "apps/study/pages/gui.hpp"
+#include "apps/study/pages/pad.hpp"
 
 namespace apps {
 
@@ -26,10 +28,14 @@ class PageView {
 
   /// Draws into the current frame of the Gui.
   void draw(PageState& state, std::int64_t now_ns);
+  /// A key of the page, or of the pad that it shows.
+  void press(PageState& state, PageKey key, std::int64_t now_ns);
   /// Moves a long text by lines; down is positive.
   void scroll(float lines) { scroll_lines_ += lines; }
   /// Whether a field has the keyboard, so that letters and Enter are its own.
   bool typing(const PageState& state) const;
+  /// Whether letters go to the question that has the focus.
+  static bool fills_words(const PageState& state);
 
  private:
   void draw_body(PageState& state, std::int64_t now_ns);
@@ -42,15 +48,27 @@ class PageView {
   void draw_list(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_number(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_words(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_pad(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_matrix(PageState& state, std::size_t first, std::size_t end, std::int64_t now_ns);
   void draw_footer(PageState& state, std::int64_t now_ns);
+  void draw_scroll_buttons(float room);
   void look_at_mouse(bool counts);
-  /// Whether the last thing drawn lies under a mouse that was put there.
+  /// Whether the last thing drawn lies under a pointer that was put there.
   bool hovered() const;
+  Pad* pad_of(const PageState& state);
   void follow_focus(const PageState& state, std::size_t i, float top);
   /// A button with a score on it; true when it was clicked.
   bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
                     float height, bool left_aligned);
+  struct Target {
+    const char* kind;  ///< with row and column its name
+    std::size_t row;
+    int column;
+    float width, height;
+    bool chosen = false, marked = false, left_aligned = false;
+  };
+  /// A button at ImGui's cursor; true when it was clicked.
+  bool target(const Target& what, const std::string& label);
 
   Gui& gui_;
   const DeskWords& words_;
@@ -68,6 +86,8 @@ class PageView {
   std::size_t seen_focus_ = 0;            ///< to which was scrolled
   std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard
   std::string edited_;                    ///< its content, with room to grow
+  std::optional<Pad> pad_;                ///< of the question that has the focus
+  std::size_t pad_question_ = 0;
 };
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-#include "apps/study/window/page_view.hpp"
+#include "apps/study/pages/page_view.hpp"
 
 #include <fmt/core.h>
 #include <imgui.h>
@@ -34,8 +34,24 @@ std::size_t end_of_table(const PageState& state, std::size_t first) {
 
 }  // namespace
 
-bool PageView::typing(const PageState& state) const {
+bool PageView::fills_words(const PageState& state) {
   return state.focus() < state.size() && state.question(state.focus()).kind == AnswerKind::Text;
+}
+
+bool PageView::typing(const PageState& state) const { return !gui_.by_hand() && fills_words(state); }
+
+Pad* PageView::pad_of(const PageState& state) {
+  if (!gui_.by_hand() || state.focus() == state.size()) return nullptr;
+  const Question& question = state.question(state.focus());
+  if (question.kind != AnswerKind::Number && question.kind != AnswerKind::Text) return nullptr;
+  if (!pad_ || pad_question_ != state.focus()) pad_.emplace(question);
+  pad_question_ = state.focus();
+  return &*pad_;
+}
+
+void PageView::press(PageState& state, PageKey key, std::int64_t now_ns) {
+  Pad* pad = pad_of(state);
+  if (!pad || !pad->press(key, state, now_ns)) state.press(key, now_ns);
 }
 
 void PageView::draw(PageState& state, std::int64_t now_ns) {
@@ -53,9 +69,11 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::BeginChild(layer_, {screen.x, bottom - top}, false, ImGuiWindowFlags_NoNav);
   draw_body(state, now_ns);
   const bool more = ImGui::GetScrollY() < ImGui::GetScrollMaxY() - 1;
+  const bool long_page = more || ImGui::GetScrollY() > 0;
   ImGui::EndChild();
   if (more) draw_centred("\u2193", {(screen.x + column_) / 2, bottom}, size, colour::dim);
   draw_footer(state, now_ns);
+  if (long_page && gui_.by_hand()) draw_scroll_buttons(bottom - top);
   ImGui::End();
   ImGui::PopFont();
   ImGui::PopStyleVar();
@@ -68,7 +86,7 @@ void PageView::look_at_mouse(bool counts) {
     mouse_x_ = at.x;
     mouse_y_ = at.y;
   }
-  pointed_ = pointed_ || at.x != mouse_x_ || at.y != mouse_y_;
+  pointed_ = pointed_ || gui_.by_hand() || at.x != mouse_x_ || at.y != mouse_y_;
   if (!counts) armed_ = false;
   if (counts && !ImGui::IsMouseDown(0) && !ImGui::IsMouseReleased(0)) armed_ = true;
 }
@@ -146,6 +164,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(from, to, !open ? colour::panel : (hovered() ? colour::hovered : colour::button),
                      0.3F * size);
+  if (open && ImGui::IsItemHovered()) gui_.point_at(ImGui::GetID("on"));
   if (open && (state.focus() == state.size() || state.size() == 1))
     list.AddRect(from, to, colour::text, 0.3F * size, 0, std::max(2.0F, 0.07F * size));
   const std::string& usual = state.size() == 0 ? words_.go_on : words_.confirm;
@@ -161,7 +180,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   if (missing == 0 && wait > 0) why = fmt::format(fmt::runtime(words_.wait), wait);
   draw_centred(why, {screen.x / 2, from.y - 1.3F * size}, column_, colour::dim);
   std::string how;
-  if (state.focus() < state.size()) {
+  if (state.focus() < state.size() && !gui_.by_hand()) {
     const Question& question = state.question(state.focus());
     const bool listed = question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
     if (listed) how = one_digit_does(question) ? words_.digits : words_.arrows;
@@ -169,6 +188,19 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   }
   draw_centred(how, {screen.x / 2, to.y + 0.35F * size}, column_, colour::faint);
   draw_corner(gui_, text_.corner);
+}
+
+/// At the right of the button to go on: most of a page up or down.
+void PageView::draw_scroll_buttons(float room) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float size = gui_.size_px(), side = 2 * size, gap = 0.4F * size;
+  const float lines = 0.8F * room / (3 * size);
+  for (const bool down : {false, true}) {
+    const float from_right = (down ? 1.0F : 2.0F) * (side + gap);
+    ImGui::SetCursorScreenPos({screen.x - from_right, screen.y - 3.7F * size});
+    const Target button{"scroll", 0, down ? 1 : 0, side, side};
+    if (target(button, down ? "\u2193" : "\u2191")) scroll(down ? lines : -lines);
+  }
 }
 
 }  // namespace apps

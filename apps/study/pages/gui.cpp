@@ -1,12 +1,8 @@
-#include "apps/study/window/gui.hpp"
+#include "apps/study/pages/gui.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+#include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 #include <fmt/core.h>
-
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -22,7 +18,7 @@ const unsigned background = IM_COL32(38, 38, 40, 255), panel = IM_COL32(48, 48, 
                button = IM_COL32(70, 71, 75, 255), hovered = IM_COL32(90, 92, 97, 255),
                chosen = IM_COL32(38, 112, 186, 255), text = IM_COL32(232, 232, 232, 255),
                dim = IM_COL32(168, 168, 170, 255), faint = IM_COL32(140, 140, 143, 255),
-               warning = IM_COL32(236, 168, 92, 255);
+               warning = IM_COL32(236, 168, 92, 255), black = IM_COL32(0, 0, 0, 255);
 }  // namespace colour
 
 namespace {
@@ -35,8 +31,7 @@ const ImWchar glyphs[] = {0x20,   0x24F,  0x370,  0x52F,  0x1E00, 0x1EFF, 0x2010
                           0x20AC, 0x2190, 0x2193, 0x2212, 0x2212, 0x2264, 0x2265, 0};
 const ImWchar digits[] = {0x20, 0x3A, 0};
 
-ImFont* add_font(const std::string& file, float size, const ImWchar* ranges) {
-  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+ImFont* add_font(ImFontAtlas& atlas, const std::string& file, float size, const ImWchar* ranges) {
   ImFontConfig config;
   config.OversampleH = 1;
   config.OversampleV = 1;
@@ -45,6 +40,11 @@ ImFont* add_font(const std::string& file, float size, const ImWchar* ranges) {
   }
   config.SizePixels = size;
   return atlas.AddFontDefault(&config);
+}
+
+float x_height_of(const ImFont& font) {
+  const ImFontGlyph& glyph = *font.FindGlyph('x');
+  return glyph.Y1 - glyph.Y0;
 }
 
 }  // namespace
@@ -62,46 +62,89 @@ std::string find_font() {
   return std::filesystem::exists(found) ? found : std::string();
 }
 
-Gui::Gui(GLFWwindow* window, int height_px) {
-  context_ = ImGui::CreateContext();
+TypeSizes type_for_screen(int height_px) {
+  const auto height = static_cast<float>(height_px);
+  return {std::clamp(std::round(body_share * height), 14.0F, 72.0F),
+          std::clamp(std::round(title_share * height), 20.0F, 110.0F),
+          std::clamp(std::round(huge_share * height), 40.0F, 300.0F)};
+}
+
+TypeSizes type_for_x_height(float x_height_px) {
+  constexpr float tried = 100;
+  ImFontAtlas atlas;
+  const ImWchar letter[] = {'x', 'x', 0};
+  const ImFont* font = add_font(atlas, find_font(), tried, letter);
+  atlas.Build();
+  // Glyphs end at whole pixels.
+  const float body = std::ceil(tried * (x_height_px + 1) / x_height_of(*font));
+  return {body, std::round(body * title_share / body_share), std::round(body * huge_share / body_share)};
+}
+
+Gui::Gui(const TypeSizes& type, Host host)
+    : host_(std::move(host)), context_(ImGui::CreateContext()), size_px_(type.body) {
   ImGui::SetCurrentContext(context_);
   ImGui::GetIO().IniFilename = nullptr;
-  const auto height = static_cast<float>(height_px);
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   const std::string file = find_font();
-  size_px_ = std::clamp(std::round(body_share * height), 14.0F, 72.0F);
-  body_ = add_font(file, size_px_, glyphs);
-  title_ = add_font(file, std::clamp(std::round(title_share * height), 20.0F, 110.0F), glyphs);
-  huge_ = add_font(file, std::clamp(std::round(huge_share * height), 40.0F, 300.0F), digits);
+  body_ = add_font(atlas, file, type.body, glyphs);
+  title_ = add_font(atlas, file, type.title, glyphs);
+  huge_ = add_font(atlas, file, type.huge, digits);
+  atlas.Build();
   ImGui::StyleColorsDark();
-  ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 
 Gui::~Gui() {
   ImGui::SetCurrentContext(context_);
   ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext(context_);
 }
+
+float Gui::x_height_px() const { return x_height_of(*body_); }
 
 void Gui::begin(unsigned clear_colour) {
   ImGui::SetCurrentContext(context_);
   ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  host_.look();
   ImGui::NewFrame();
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(clear_colour);
+  clear_ = {colour.x, colour.y, colour.z};
+  pointed_at_ = 0;
+  clear();
+}
+
+void Gui::clear() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, host_.framebuffer());
   const ImVec2 size = ImGui::GetIO().DisplaySize, scale = ImGui::GetIO().DisplayFramebufferScale;
   glViewport(0, 0, static_cast<int>(size.x * scale.x), static_cast<int>(size.y * scale.y));
   glDisable(GL_SCISSOR_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  const ImVec4 clear = ImGui::ColorConvertU32ToFloat4(clear_colour);
-  glClearColor(clear.x, clear.y, clear.z, 1);
+  glClearColor(clear_[0], clear_[1], clear_[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
 void Gui::end() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Gui::dim(float share) {
+  ImGui::SetCurrentContext(context_);
+  ImDrawData* drawn = ImGui::GetDrawData();
+  if (!drawn) return;
+  for (float& part : clear_) part *= share;
+  const auto dimmed = [share](ImU32 colour, int shift) {
+    const auto level = static_cast<float>((colour >> shift) & 0xFFU);
+    return static_cast<ImU32>(std::lround(level * share)) << shift;
+  };
+  for (int i = 0; i < drawn->CmdListsCount; ++i) {
+    for (ImDrawVert& vertex : drawn->CmdLists[i]->VtxBuffer) {
+      vertex.col = (vertex.col & IM_COL32_A_MASK) | dimmed(vertex.col, IM_COL32_R_SHIFT) |
+                   dimmed(vertex.col, IM_COL32_G_SHIFT) | dimmed(vertex.col, IM_COL32_B_SHIFT);
+    }
+  }
+  clear();
+  ImGui_ImplOpenGL3_RenderDrawData(drawn);
 }
 
 void draw_wrapped(const std::string& words, unsigned colour) {
@@ -162,12 +205,13 @@ float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWord
 }
 
 /// In the middle of the window, the digits as large as the words allow.
-void draw_on_black(const Gui& gui, const char* left, const PauseWords& words, const std::string& corner) {
+void draw_on_black(Gui& gui, const char* left, const PauseWords& words, const std::string& corner) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(screen);
   ImGui::Begin("countdown", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoInputs);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground |
+                   (gui.by_hand() ? ImGuiWindowFlags_NoNav : ImGuiWindowFlags_NoInputs));
   // What is drawn below the window is measured and not seen.
   const auto height = [&](ImFont* font) {
     return draw_pause(gui, font, left, words, 2 * screen.y) - 2 * screen.y;
@@ -182,17 +226,27 @@ void draw_on_black(const Gui& gui, const char* left, const PauseWords& words, co
 
 }  // namespace
 
-void draw_corner(const Gui& gui, const std::string& words) {
-  const float size = gui.size_px();
-  const ImVec2 at{0.8F * size, ImGui::GetIO().DisplaySize.y - 1.35F * size};
-  ImGui::GetWindowDrawList()->AddText(at, colour::faint, words.c_str());
+void draw_corner(Gui& gui, const std::string& words) {
+  const float size = gui.size_px(), bottom = ImGui::GetIO().DisplaySize.y;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (!gui.by_hand() || words.empty())
+    return list.AddText({0.8F * size, bottom - 1.35F * size}, colour::faint, words.c_str());
+  const ImVec2 extent = ImGui::CalcTextSize(words.c_str());
+  const ImVec2 from{0.6F * size, bottom - 2.6F * size};
+  const ImVec2 to{from.x + extent.x + 1.2F * size, from.y + 2 * size};
+  ImGui::SetCursorScreenPos(from);
+  if (ImGui::InvisibleButton("stop", {to.x - from.x, to.y - from.y})) gui.wish_stop();
+  const bool hovered = ImGui::IsItemHovered();
+  if (hovered) gui.point_at(ImGui::GetID("stop"));
+  list.AddRectFilled(from, to, hovered ? colour::hovered : colour::panel, 0.25F * size);
+  list.AddText({from.x + 0.6F * size, from.y + 0.5F * size}, colour::dim, words.c_str());
 }
 
-void draw_countdown(const Gui& gui, const PauseWords& words, int left_s, const std::string& corner) {
+void draw_countdown(Gui& gui, const PauseWords& words, int left_s, const std::string& corner) {
   draw_on_black(gui, fmt::format("{}:{:02}", left_s / 60, left_s % 60).c_str(), words, corner);
 }
 
-void draw_words(const Gui& gui, const PauseWords& words, const std::string& corner) {
+void draw_words(Gui& gui, const PauseWords& words, const std::string& corner) {
   draw_on_black(gui, nullptr, words, corner);
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/study/desk/console_text.hpp"
-#include "apps/study/window/page_view.hpp"
+#include "apps/study/pages/page_view.hpp"
 
 namespace apps {
 
@@ -35,28 +35,33 @@ void PageView::draw_question(PageState& state, std::size_t i, std::int64_t now_n
   follow_focus(state, i, top);
 }
 
+bool PageView::target(const Target& what, const std::string& label) {
+  const float size = gui_.size_px(), round = 0.25F * size;
+  const ImVec2 from = ImGui::GetCursorScreenPos(), to{from.x + what.width, from.y + what.height};
+  ImGui::PushID(static_cast<int>(what.row));
+  ImGui::PushID(what.column);
+  const bool clicked = ImGui::InvisibleButton(what.kind, {what.width, what.height});
+  const bool reached = ImGui::GetMousePos().y > pinned_until_;
+  if (reached && ImGui::IsItemHovered()) gui_.point_at(ImGui::GetID(what.kind));
+  ImGui::PopID();
+  ImGui::PopID();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, to, what.chosen ? colour::chosen : (hovered() ? colour::hovered : colour::button),
+                     round);
+  if (what.marked) list.AddRect(from, to, colour::text, round, 0, std::max(2.0F, 0.09F * size));
+  const float wrap = what.left_aligned ? what.width - 1.2F * size : 0;
+  const ImVec2 extent = ImGui::CalcTextSize(label.c_str(), nullptr, false, wrap);
+  const ImVec2 at{what.left_aligned ? from.x + 0.6F * size : from.x + (what.width - extent.x) / 2,
+                  from.y + (what.height - extent.y) / 2};
+  list.AddText(nullptr, 0, at, colour::text, label.c_str(), nullptr, wrap);
+  return clicked && armed_ && reached;
+}
+
 bool PageView::score_button(const PageState& state, std::size_t i, int score, const std::string& label,
                             float width, float height, bool left_aligned) {
-  const float size = gui_.size_px(), round = 0.25F * size;
-  const ImVec2 from = ImGui::GetCursorScreenPos(), to{from.x + width, from.y + height};
-  ImGui::PushID(static_cast<int>(i));
-  ImGui::PushID(score);
-  const bool clicked = ImGui::InvisibleButton("score", {width, height});
-  ImGui::PopID();
-  ImGui::PopID();
   const PageItem& item = state.item(i);
-  const bool chosen = item.chosen == score;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, to, chosen ? colour::chosen : (hovered() ? colour::hovered : colour::button),
-                     round);
-  if (item.cursor == score && state.focus() == i)
-    list.AddRect(from, to, colour::text, round, 0, std::max(2.0F, 0.09F * size));
-  const float wrap = left_aligned ? width - 1.2F * size : 0;
-  const ImVec2 extent = ImGui::CalcTextSize(label.c_str(), nullptr, false, wrap);
-  const ImVec2 at{left_aligned ? from.x + 0.6F * size : from.x + (width - extent.x) / 2,
-                  from.y + (height - extent.y) / 2};
-  list.AddText(nullptr, 0, at, colour::text, label.c_str(), nullptr, wrap);
-  return clicked && armed_ && ImGui::GetMousePos().y > pinned_until_;
+  const bool marked = item.cursor == score && state.focus() == i;
+  return target({"score", i, score, width, height, item.chosen == score, marked, left_aligned}, label);
 }
 
 void PageView::draw_scale(PageState& state, std::size_t i, std::int64_t now_ns) {
@@ -115,6 +120,7 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   ImGui::SetCursorScreenPos(from);
   ImGui::PushID(static_cast<int>(i));
   if (ImGui::InvisibleButton("number", {width, height})) state.click_question(i, now_ns);
+  if (ImGui::IsItemHovered()) gui_.point_at(ImGui::GetID("number"));
   ImGui::PopID();
   const bool focused = state.focus() == i, wrong = state.out_of_range(i);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -133,14 +139,41 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   if (caret) list.AddLine({after, y}, {after, y + size}, colour::text, 2);
   list.AddText({to.x + size, y}, wrong ? colour::warning : colour::dim,
                fmt::format(fmt::runtime(words_.range), question.scale_min, question.scale_max).c_str());
+  if (focused) draw_pad(state, i, now_ns);
 }
 
-/// A field while it has the focus, else its words in a box.
+/// Keys below a field, where there is no keyboard.
+void PageView::draw_pad(PageState& state, std::size_t i, std::int64_t now_ns) {
+  const Pad* pad = pad_of(state);
+  if (!pad) return;
+  const float size = gui_.size_px(), gap = 0.2F * size, cell = column_ / 11;
+  const ImVec2 begun = ImGui::GetCursorScreenPos();
+  const auto& rows = pad->rows();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t column = 0; column < rows[row].size(); ++column) {
+      const std::string& key = rows[row][column];
+      ImGui::SetCursorScreenPos({begun.x + static_cast<float>(column) * cell,
+                                 begun.y + 0.4F * size + static_cast<float>(row) * 2.1F * size});
+      const Target button{"key",
+                          i,
+                          static_cast<int>(20 * row + column),
+                          cell - gap,
+                          2.1F * size - gap,
+                          false,
+                          pad->marked(row, column)};
+      if (!target(button, key)) continue;
+      pad->type(key, state, now_ns);
+      return;  // the focus may be elsewhere now
+    }
+  }
+}
+
+/// A field while it has the focus and the keyboard, else its words in a box.
 void PageView::draw_words(PageState& state, std::size_t i, std::int64_t now_ns) {
   const float size = gui_.size_px();
   const ImVec2 box{column_, 4.5F * size};
   ImGui::PushID(static_cast<int>(i));
-  if (state.focus() == i) {
+  if (state.focus() == i && !gui_.by_hand()) {
     const bool begins = editing_ != i;
     if (begins) {
       edited_ = state.item(i).typed;
@@ -158,12 +191,14 @@ void PageView::draw_words(PageState& state, std::size_t i, std::int64_t now_ns) 
     if (editing_ == i) editing_ = state.size();
     const ImVec2 from = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("words", box)) state.click_question(i, now_ns);
+    if (ImGui::IsItemHovered()) gui_.point_at(ImGui::GetID("words"));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(from, {from.x + box.x, from.y + box.y}, colour::panel);
     list.AddText(nullptr, 0, {from.x + 0.5F * size, from.y + 0.4F * size}, colour::text,
                  state.item(i).typed.c_str(), nullptr, box.x - size);
   }
   ImGui::PopID();
+  if (state.focus() == i) draw_pad(state, i, now_ns);
 }
 
 void PageView::draw_matrix(PageState& state, std::size_t first, std::size_t end, std::int64_t now_ns) {

@@ -1,20 +1,19 @@
 #pragma once
-/// A person in front of the window.
+/// A person in front of pages.
 
 #include <memory>
 
-#include "apps/study/window/participant_window.hpp"
+#include "apps/study/pages/pages.hpp"
 #include "libstudy/session/participant.hpp"
 
 namespace apps {
 
-class WindowParticipant final : public study::Participant {
+class PageParticipant final : public study::Participant {
  public:
   /// last_block: id of the protocol's. before_stimulus: called at the end of each black pause, when a
   /// stimulus may follow.
-  WindowParticipant(std::shared_ptr<ParticipantWindow> window, std::string last_block,
-                    std::function<void()> before_stimulus)
-      : window_(std::move(window)),
+  PageParticipant(std::shared_ptr<Pages> pages, std::string last_block, std::function<void()> before_stimulus)
+      : pages_(std::move(pages)),
         last_block_(std::move(last_block)),
         before_stimulus_(std::move(before_stimulus)) {}
 
@@ -33,7 +32,7 @@ class WindowParticipant final : public study::Participant {
   /// ends.
   PageText page_of(const study::Block& block);
 
-  std::shared_ptr<ParticipantWindow> window_;
+  std::shared_ptr<Pages> pages_;
   std::string last_block_;
   bool begun_ = false;  ///< a page of the session was shown
   std::function<void()> before_stimulus_;

@@ -1,0 +1,35 @@
+#include "apps/study/headset/headset_person.hpp"
+
+#include "apps/study/headset/headset_surface.hpp"
+#include "apps/study/pages/page_participant.hpp"
+
+namespace apps {
+
+namespace {
+
+/// The surface and its pages, which live as long as either is held.
+struct HeadsetPages {
+  HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const std::string& language,
+               const study::Clock& clock)
+      : surface(display, ways), pages(surface, language, clock) {}
+  HeadsetSurface surface;
+  Pages pages;
+};
+
+}  // namespace
+
+HeadsetChoice choice_for_person(const AnswerWays& ways) { return choice_for_pages(ways); }
+
+HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways,
+                                  const study::Protocol& protocol, const study::Clock& clock) {
+  const auto both = std::make_shared<HeadsetPages>(display, ways, protocol.language, clock);
+  const std::shared_ptr<Pages> pages(both, &both->pages);
+  HeadsetPerson person;
+  person.participant = std::make_unique<PageParticipant>(pages, protocol.blocks.back().id, [] {});
+  person.wish = [pages](const std::function<study::Wish()>& others) { return pages->wish(others); };
+  person.idle = [both] { return both->surface.idle_s(); };
+  person.listen = [both] { both->surface.listen(); };
+  return person;
+}
+
+}  // namespace apps

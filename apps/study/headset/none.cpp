@@ -1,0 +1,17 @@
+#include "apps/study/headset/headset_person.hpp"
+#include "stats/base/error.hpp"
+
+namespace apps {
+
+HeadsetChoice choice_for_person(const AnswerWays&) {
+  throw base::Error("--display openxr", "this build has no pages for a person (it found no Dear ImGui)",
+                    "name an --observer, or install libimgui-dev and build again");
+}
+
+HeadsetPerson make_headset_person(HeadsetDisplay&, const AnswerWays& ways, const study::Protocol&,
+                                  const study::Clock&) {
+  choice_for_person(ways);
+  return {};
+}
+
+}  // namespace apps

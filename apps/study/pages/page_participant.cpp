@@ -1,0 +1,78 @@
+#include "apps/study/pages/page_participant.hpp"
+
+#include <cmath>
+
+namespace apps {
+
+namespace {
+// Longer than it takes to find the beat of a screen of 50 Hz.
+constexpr std::int64_t before_stimulus_ns = 250'000'000;
+}  // namespace
+
+PageText PageParticipant::page_of(const study::Block& block) {
+  PageText page{block.title, block.text};
+  if (!begun_) page.text += (page.text.empty() ? "" : "\n\n") + pages_->beginning();
+  begun_ = true;
+  if (block.id == last_block_) page.button = pages_->words().finish;
+  return page;
+}
+
+void PageParticipant::read(const study::Block& block, double least_s, study::Clock&,
+                           const study::Check& check) {
+  pages_->run_page(page_of(block), {}, least_s, check);
+  if (block.id == last_block_) begun_ = false;
+}
+
+std::vector<study::TimedAnswer> PageParticipant::ask(const study::Block& block,
+                                                     std::span<const study::Question> questions,
+                                                     const study::Occasion&, study::Clock&,
+                                                     const study::Check& check) {
+  auto answers = pages_->run_page(page_of(block), questions, 0, check);
+  if (block.id == last_block_) begun_ = false;
+  return answers;
+}
+
+void PageParticipant::pause(const study::Pause& pause, study::Clock&, const study::Check& check) {
+  const DeskWords& words = pages_->words();
+  const std::int64_t until_ns = pages_->now_ns() + std::llround(1e9 * pause.seconds);
+  const auto said = [&pause](const std::string& usual) {
+    return PauseWords{pause.title.empty() && pause.text.empty() ? usual : pause.title, pause.text};
+  };
+  switch (pause.kind) {
+    case study::PauseKind::Black:
+      pages_->wait({}, until_ns - before_stimulus_ns, check);
+      before_stimulus_();
+      return pages_->wait({}, until_ns, check);
+    case study::PauseKind::Rest:
+      return pages_->wait(said(words.rest), until_ns, check);
+    case study::PauseKind::Break:
+      pages_->wait(said(words.pause), until_ns, check);
+      pages_->run_page({words.ready, ""}, {}, 0, check);
+      return;
+    case study::PauseKind::First:
+    case study::PauseKind::Second: {
+      const bool first = pause.kind == study::PauseKind::First;
+      const auto over = [&] { return pages_->now_ns() >= until_ns; };
+      return pages_->show_words({first ? words.first : words.second, ""}, over, check);
+    }
+    case study::PauseKind::Held:
+      return pages_->show_words({words.held_title, words.held}, pause.over, check);
+  }
+}
+
+void PageParticipant::tell(study::Notice notice, double least_s, study::Clock&, const study::Check& check) {
+  const DeskPage& page = pages_->words().page(notice);
+  pages_->set_over(true);
+  pages_->run_page({page.title, page.text, page.button}, {}, least_s, check);
+  if (notice == study::Notice::Over) return;
+  // Another person's session may follow.
+  pages_->set_over(false);
+  begun_ = false;
+}
+
+bool PageParticipant::offer(study::Offer offer, study::Clock&, const study::Check& check) {
+  const bool first = pages_->choose_first(pages_->words().choice(offer), check);
+  return offer == study::Offer::StayOut ? !first : first;
+}
+
+}  // namespace apps
