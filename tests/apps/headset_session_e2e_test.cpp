@@ -165,6 +165,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   };
   refuse("headset=unavailable", {}, "no headset is connected");
   refuse("opaque=0", {}, "world");
+  refuse("clock=real", {}, "use --clock real");
   refuse("", {"--gaze", "tracked"}, "is not read from a headset yet");
   const std::string pictures = folder_ / "pictures.bake";
   const auto baked =

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 #include "stats/base/error.hpp"
@@ -68,9 +69,21 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
                          : "its predicted times show no steady rate",
         "choose that refresh rate, and a fixed one, in the headset's software");
+  if (drive == SlotDrive::Caller) check_time_stands_still();
   const HeadsetRate rate = facts().rate;
   refresh_hz_ =
       rate.told_hz && near_rate(*rate.told_hz, *rate.measured_hz) ? *rate.told_hz : *rate.measured_hz;
+}
+
+/// A runtime whose time goes on by itself would drop slots while the program computes.
+void HeadsetDisplay::check_time_stands_still() {
+  turn();
+  const std::int64_t before_ns = facts().last.predicted_ns;
+  std::this_thread::sleep_for(std::chrono::nanoseconds(5 * loop_.period_ns()));
+  turn();
+  if (facts().last.predicted_ns - before_ns > 3 * loop_.period_ns())
+    throw base::Error("--clock virtual", "the headset's time does not wait for the program",
+                      "use --clock real");
 }
 
 void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
