@@ -29,22 +29,6 @@ HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) 
   return choice;
 }
 
-/// A place of the room in the scene.
-study::EyeView to_study(const EyeView& eye, int x_px, double world_scale) {
-  study::EyeView out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out.position_m[k] = static_cast<double>(eye.pose.place_m[k]) / world_scale;
-  for (std::size_t k = 0; k < 4; ++k) out.orientation[k] = static_cast<double>(eye.pose.turn[k]);
-  out.left_rad = static_cast<double>(eye.fov.left);
-  out.right_rad = static_cast<double>(eye.fov.right);
-  out.up_rad = static_cast<double>(eye.fov.up);
-  out.down_rad = static_cast<double>(eye.fov.down);
-  out.x_px = x_px;
-  out.width_px = eye.width_px;
-  out.height_px = eye.height_px;
-  return out;
-}
-
 /// The same eyes with a margin around what they see.
 void widen(EyeViews& views, double margin_deg) {
   constexpr float most = 1.55f;  // a plane ends before a right angle
@@ -154,8 +138,8 @@ std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
   const sim::Offscreen& canvas = loop_.canvas();
-  const std::array<study::EyeView, 2> eyes{to_study(views[0], 0, rules_.world_scale),
-                                           to_study(views[1], views[0].width_px, rules_.world_scale)};
+  const std::array<study::EyeView, 2> eyes{study_view(views[0], 0, rules_.world_scale),
+                                           study_view(views[1], views[0].width_px, rules_.world_scale)};
   pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
   const bool in_head = rules_.hold == study::Hold::HeadLocked;
   const HeldViews from{in_head ? loop_.views_in_head(at_ns) : views, in_head};
