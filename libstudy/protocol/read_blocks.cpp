@@ -100,7 +100,7 @@ void read_trials(const base::TomlTable& table, const Design& design, Block& bloc
 }
 
 void read_validation(const base::TomlTable& table, Block& block) {
-  block.count = static_cast<int>(table.integer_or("count", 3, {1, 20}));
+  block.count = static_cast<int>(table.integer_or("tries", 3, {1, 20}));
   block.extent_deg = table.number_or("extent_deg", 10, {1, 30});
   if (table.has("max_accuracy_deg")) block.max_accuracy_deg = table.number("max_accuracy_deg", {0.1, 20});
 }

@@ -206,7 +206,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "others, s"},
       {"block", "count", "whole number", "[1, 1000]", where_needed,
        "needed by practice, repeat and catch: trials or pages; for repeat and catch at most the trials of "
-       "the design. gaze_validation: tries, at most 20; 3 unless said"},
+       "the design"},
+      {"block", "tries", "whole number", "[1, 20]", "3", "gaze_validation: at most so many"},
       {"block", "extent_deg", "number", "[1, 30]", "10",
        "gaze_validation: of the outer targets from the middle one, across and up, degrees"},
       {"block", "max_accuracy_deg", "number", "[0.1, 20]", "any",

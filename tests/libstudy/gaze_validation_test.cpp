@@ -82,7 +82,7 @@ struct Validated : test::OneSession {
     std::string text = test::asking_protocol().text;
     text.insert(text.find("[[block]]\nkind = \"stimulus\""),
                 "[[block]]\nkind = \"gaze_validation\"\nid = \"look\"\nextent_deg = 8\n"
-                "max_accuracy_deg = 1.5\ncount = 2\n\n");
+                "max_accuracy_deg = 1.5\ntries = 2\n\n");
     return parse_protocol(text, "validating.toml");
   }
   void run() {
