@@ -73,7 +73,7 @@ TEST_F(HeadsetTasksE2e, Task2RunsFromConsentToThanks) {
 TEST_F(HeadsetTasksE2e, APairIsAnsweredByARay) {
   std::string targets = "targets=0.5:0.26";
   for (int y = 30; y < 92; y += 4) targets += ",0.5:0." + std::to_string(y);
-  const auto ended = session("point=page;hold=0.2;at=8000:exit;" + targets,
+  const auto ended = session("point=page;hold=0.3;at=8000:exit;" + targets,
                              shortened("task2", {"LoRes", "HiRes"}), {"--participant", "P01"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
