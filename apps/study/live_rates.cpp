@@ -44,14 +44,22 @@ const FramedScene& framed(int cell, const MeasuringPlace& place) {
   throw std::logic_error("measure_live: a scene that was not framed");
 }
 
+/// How the display shows a cell: a headset frames nothing.
+std::string look_of(int cell, const MeasuringPlace& place) {
+  if (place.scenes.empty()) return place.display.description();
+  const FramedScene& scene = framed(cell, place);
+  std::ostringstream out;
+  out << scene.view.viewport.width << 'x' << scene.view.viewport.height << ", camera "
+      << scene.framing.camera_deg << ", eye " << scene.framing.visual_deg.value_or(0);
+  return out.str();
+}
+
 /// Everything that the times depend on: what is computed, how it is seen, on what, and how far.
 std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, const MeasuredStimulus& one,
                    const std::string& description, const MeasuringPlace& place) {
   const study::Cell& cell = first_cell(protocol, one);
-  const FramedScene& scene = framed(one.cells.front(), place);
   std::ostringstream key;
-  key << description << "; " << scene.view.viewport.width << 'x' << scene.view.viewport.height << ", camera "
-      << scene.framing.camera_deg << ", eye " << scene.framing.visual_deg.value_or(0) << "; from step "
+  key << description << "; " << look_of(one.cells.front(), place) << "; from step "
       << protocol.content.start_frame << " by " << protocol.content.content_step_s << " s";
   for (const int index : one.cells) {
     const auto& setting = protocol.design.cells.at(static_cast<std::size_t>(index)).setting;
@@ -69,12 +77,15 @@ void tell_length(const study::Protocol& protocol, const std::vector<const Measur
                  const MeasuringPlace& place) {
   double seconds = 0;
   for (const MeasuredStimulus* one : open) seconds += longest_measuring_s(protocol, *one);
-  const auto& drawn = place.scenes.front().view.viewport;
+  std::string where = "in the headset";
+  if (!place.scenes.empty()) {
+    const auto& drawn = place.scenes.front().view.viewport;
+    where = "at " + std::to_string(drawn.width) + "x" + std::to_string(drawn.height);
+  }
   std::fprintf(
       stderr,
-      "%s: measuring %zu live stimul%s at %dx%d, up to %s and their making, once for this station and "
-      "build\n",
-      protocol.name.c_str(), open.size(), open.size() == 1 ? "us" : "i", drawn.width, drawn.height,
+      "%s: measuring %zu live stimul%s %s, up to %s and their making, once for this station and build\n",
+      protocol.name.c_str(), open.size(), open.size() == 1 ? "us" : "i", where.c_str(),
       base::duration_words(seconds).c_str());
 }
 

@@ -1,5 +1,6 @@
 #include "libstudy/session/frame_journal.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -19,15 +20,28 @@ FrameJournal::FrameJournal(Store& store, std::int64_t presentation, std::int64_t
 
 FrameJournal::~FrameJournal() { stop(); }
 
-void FrameJournal::add(const FrameRecord& frame, const std::vector<GazeSample>& gaze) {
+void FrameJournal::add(const FrameRecord& frame, const Recorded& recorded) {
   if (failed_) std::rethrow_exception(failure_);
   const std::lock_guard lock(mutex_);
   pending_.frames.push_back(frame);
-  pending_.gaze.insert(pending_.gaze.end(), gaze.begin(), gaze.end());
+  onsets_ns_.push_back(placed_ns(frame.times, TimingGrade::Compositor));
+  keep(recorded);
 }
 
-void FrameJournal::write_gaze(const std::vector<GazeSample>& gaze) {
-  if (!gaze.empty()) store_.add_gaze(presentation_, start_ns_, origin_, gaze);
+void FrameJournal::keep(const Recorded& recorded) {
+  pending_.gaze.insert(pending_.gaze.end(), recorded.gaze.begin(), recorded.gaze.end());
+  for (const SlotRecord& slot : recorded.slots) pending_.slots.push_back({slot, frame_at(slot.predicted_ns)});
+}
+
+std::optional<std::int64_t> FrameJournal::frame_at(std::int64_t predicted_ns) const {
+  const auto after = std::upper_bound(onsets_ns_.begin(), onsets_ns_.end(), predicted_ns);
+  if (after == onsets_ns_.begin()) return {};
+  return after - onsets_ns_.begin() - 1;
+}
+
+void FrameJournal::write(const Unwritten& recorded) {
+  if (!recorded.slots.empty()) store_.add_slots(presentation_, start_ns_, recorded.slots);
+  if (!recorded.gaze.empty()) store_.add_gaze(presentation_, start_ns_, origin_, recorded.gaze);
 }
 
 void FrameJournal::write_in_background() {
@@ -40,7 +54,7 @@ void FrameJournal::write_in_background() {
     lock.unlock();
     try {
       if (!chunk.frames.empty()) store_.add_frames(presentation_, start_ns_, chunk.frames);
-      write_gaze(chunk.gaze);
+      write(chunk);
     } catch (...) {
       failure_ = std::current_exception();
       failed_ = true;
@@ -60,12 +74,13 @@ void FrameJournal::stop() {
   writer_.join();
 }
 
-std::vector<FrameRecord> FrameJournal::finish(const std::vector<GazeSample>& last) {
+std::vector<FrameRecord> FrameJournal::finish(const Recorded& last) {
   stop();
   if (failed_) std::rethrow_exception(failure_);
-  pending_.gaze.insert(pending_.gaze.end(), last.begin(), last.end());
-  write_gaze(std::exchange(pending_.gaze, {}));
-  return std::move(pending_.frames);
+  keep(last);
+  Unwritten left = std::exchange(pending_, {});
+  write(left);
+  return std::move(left.frames);
 }
 
 }  // namespace study

@@ -1,15 +1,18 @@
 #pragma once
-/// Keeps the frames and the gaze of a running trial without touching the disk between two frames.
+/// Keeps the frames of a running trial, and what is recorded beside them, without touching the disk between
+/// two frames.
 
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "libstudy/pacing/pacer.hpp"
+#include "libstudy/session/recording.hpp"
 #include "libstudy/store/store.hpp"
 
 namespace study {
@@ -18,6 +21,7 @@ namespace study {
 struct Unwritten {
   std::vector<FrameRecord> frames;
   std::vector<GazeSample> gaze;
+  std::vector<ShownSlot> slots;
 };
 
 /// In the background a thread commits what has gathered every half second, so that a killed program loses
@@ -31,15 +35,18 @@ class FrameJournal {
   FrameJournal(const FrameJournal&) = delete;
   FrameJournal& operator=(const FrameJournal&) = delete;
 
-  /// Takes one frame and the gaze until then, in memory. Throws what stopped the thread, such as a full disk.
-  void add(const FrameRecord& frame, const std::vector<GazeSample>& gaze);
-  /// Ends the thread, commits the gaze that is left and `last`, and gives back the frames that are not yet in
-  /// the store.
-  std::vector<FrameRecord> finish(const std::vector<GazeSample>& last);
+  /// Takes one frame and what was recorded until then, in memory. Throws what stopped the thread, such as a
+  /// full disk.
+  void add(const FrameRecord& frame, const Recorded& recorded);
+  /// Ends the thread, commits what is left of the recording and `last`, and gives back the frames that are
+  /// not yet in the store.
+  std::vector<FrameRecord> finish(const Recorded& last);
 
  private:
   void write_in_background();
-  void write_gaze(const std::vector<GazeSample>& gaze);
+  void write(const Unwritten& recorded);
+  void keep(const Recorded& recorded);
+  std::optional<std::int64_t> frame_at(std::int64_t predicted_ns) const;
   void stop();
 
   Store& store_;
@@ -48,6 +55,7 @@ class FrameJournal {
   std::mutex mutex_;
   std::condition_variable wake_;
   Unwritten pending_;
+  std::vector<std::int64_t> onsets_ns_;  ///< of the frames so far, as predicted
   bool stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libstudy/session/farewell.hpp"
+#include "libstudy/session/recording.hpp"
 #include "libstudy/session/trial_player.hpp"
 #include "stats/base/error.hpp"
 
@@ -110,6 +111,7 @@ std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& s
                                   const SessionParts& parts, const SessionHooks& hooks) {
   const Running running{protocol, session, parts, hooks};
   check_personal(running);
+  record_headset(running);
   SessionRun run(running);
   const std::optional<Ending> ending = run.go();
   if (ending && hooks.ends) hooks.ends(*ending);

@@ -37,6 +37,7 @@ struct SessionParts {
   bool virtual_clock = false;
   /// Recorded while a stimulus is shown to who allows it. Without: nothing is measured.
   GazeSource* gaze = nullptr;
+  SlotSource* slots = nullptr;  ///< the headset, where there is one
 };
 
 /// What happened to a unit, told once it is committed. Answers themselves stay in the store.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libstudy/session/frame_journal.hpp"
+#include "libstudy/session/recording.hpp"
 
 namespace study {
 
@@ -35,26 +36,6 @@ std::vector<Question> questions_of(const Protocol& protocol, const std::vector<s
   }
   return out;
 }
-
-/// The gaze of one presentation, where there is a source and the participant allows it: asked anew each time.
-class RecordedGaze {
- public:
-  explicit RecordedGaze(const Running& run)
-      : source_(run.parts.gaze && run.parts.store.allows_gaze(run.session.id) ? run.parts.gaze : nullptr) {
-    if (source_) source_->start();
-  }
-  ~RecordedGaze() {
-    if (source_) source_->stop();
-  }
-  RecordedGaze(const RecordedGaze&) = delete;
-  RecordedGaze& operator=(const RecordedGaze&) = delete;
-
-  GazeOrigin origin() const { return source_ ? source_->origin() : GazeOrigin::Mouse; }
-  std::vector<GazeSample> take() { return source_ ? source_->take() : std::vector<GazeSample>(); }
-
- private:
-  GazeSource* source_;
-};
 
 /// Takes what was shown off the display, however it ends.
 class Cleared {
@@ -167,8 +148,9 @@ void TrialPlayer::show(Showing& showing, int interval) {
   const Cell& what = cell(showing.unit, interval);
   ShownStimulus shown{cell_index(*showing.unit.trial, interval), what, {}, 0, 0};
   const std::int64_t start_ns = run_.now_ns();
-  const std::int64_t presentation = run_.parts.store.begin_presentation(
-      run_.session.id, showing.unit.trial_id, showing.attempt, interval, shown.cell, start_ns);
+  const std::int64_t presentation =
+      run_.parts.store.begin_presentation(run_.session.id, showing.unit.trial_id, showing.attempt, interval,
+                                          shown.cell, start_ns, Recording::followed(run_));
   showing.verdicts.push_back(present(presentation, start_ns, what,
                                      showing.intervals[static_cast<std::size_t>(interval)], *showing.ready,
                                      shown));
@@ -189,12 +171,13 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
                                    ShownStimulus& shown) const {
   const SessionParts& parts = run_.parts;
   const Cleared cleared(parts.display);
-  RecordedGaze gaze(run_);
-  FrameJournal journal(parts.store, presentation, start_ns, gaze.origin(), !parts.virtual_clock);
+  Recording recording(run_);
+  FrameJournal journal(parts.store, presentation, start_ns, recording.origin(), !parts.virtual_clock);
   const auto each = [&](const FrameRecord& frame) {
-    journal.add(frame, gaze.take());
+    journal.add(frame, recording.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);
     heed(run_, true);
+    recording.require_gaze();
   };
   try {
     const double duration_s = cell.setting.duration_s;
@@ -205,7 +188,9 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
             ? play_native(duration_s, content, stimulus, parts.display, parts.clock, bounds.overrun_ns, each)
             : play_trial(intervals, content, stimulus, parts.display, parts.clock, bounds, each);
     const TimingVerdict verdict = judge(cell, played);
-    parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(gaze.take()), verdict);
+    const Recorded last = recording.take();
+    recording.require_gaze();
+    parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(last), verdict);
     shown.realised = verdict.realised;
     shown.longest_ms = verdict.longest_ms;
     shown.play_speed = play_speed(played, verdict.grade);

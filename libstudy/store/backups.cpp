@@ -35,7 +35,10 @@ constexpr const char* of_presentation =
 /// Children first.
 constexpr Dependant dependants[] = {
     {"permission_change", of_session, 3},
+    {"gaze_validation", of_session, 5},
     {"gaze", of_presentation, 3},
+    {"head", of_presentation, 5},
+    {"slot", of_presentation, 5},
     {"event", of_session},
     {"note", of_session, 2},
     {"response", of_trial, 1, 1},
@@ -43,6 +46,8 @@ constexpr Dependant dependants[] = {
     {"frame", of_presentation},
     {"presentation", of_trial},
     {"framing", of_session, 4},
+    {"headset", of_session, 5},
+    {"ipd", of_session, 5},
     {"unit", of_session, 2},
     {"trial", of_session},
     {"session", of_session},

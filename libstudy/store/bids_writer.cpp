@@ -67,13 +67,18 @@ Json described(const std::string& meaning, const std::string& unit) {
   return {{"Description", with_n_a(meaning)}, {"Units", unit}};
 }
 
-std::string stem_of(const LabelledSession& session) {
+std::string stem_of(const LabelledSession& session, const std::string& data_type) {
   const std::string sub = "sub-" + session.subject, ses = "ses-" + session.session;
-  return sub + "/" + ses + "/beh/" + sub + "_" + ses + "_task-" + session.protocol;
+  return sub + "/" + ses + "/" + data_type + "/" + sub + "_" + ses + "_task-" + session.protocol;
 }
 
 void Writer::table(const std::string& name, const Table& rows) {
   text(name, lines_of(rows, 0));
+  files.push_back({name, static_cast<std::int64_t>(rows.size()) - 1});
+}
+
+void Writer::bare_table(const std::string& name, const Table& rows) {
+  text(name, lines_of(rows, 1));
   files.push_back({name, static_cast<std::int64_t>(rows.size()) - 1});
 }
 

@@ -2,6 +2,7 @@
 /// Parts of export_bids(): tables and sidecars in a draft, and when things happened in a session.
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,7 +28,7 @@ Json described(const std::string& meaning);
 Json described(const std::string& meaning, const std::string& unit);
 
 /// Folder and beginning of the name of a session's files.
-std::string stem_of(const LabelledSession& session);
+std::string stem_of(const LabelledSession& session, const std::string& data_type = "beh");
 
 /// Puts files into a draft and remembers the tables.
 class Writer {
@@ -35,6 +36,8 @@ class Writer {
   explicit Writer(const ExportDraft& draft) : draft_(draft) {}
 
   void table(const std::string& name, const Table& rows);
+  /// Without a header line.
+  void bare_table(const std::string& name, const Table& rows);
   /// Without a header line, compressed by gzip: the same table gives the same bytes.
   void compressed_table(const std::string& name, const Table& rows);
   void text(const std::string& name, const std::string& text);
@@ -59,6 +62,16 @@ class SessionTime {
   std::optional<std::int64_t> zero_ns_;
   std::int64_t end_ns_ = 0;
 };
+
+/// When each presentation of a session began, from the first stimulus.
+std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std::int64_t session);
+/// Of the usual interval, Hz: between two stimuli nothing is recorded. 0: fewer than two times.
+double rate_hz(const std::vector<std::int64_t>& times_ns);
+
+/// What the headset of a session was, and the distances between the eyes; empty: none was worn.
+Json headset_of(sqlite::Connection& database, std::int64_t session);
+/// How the head moved, as a recording of motion ("motion/..._tracksys-headset_motion.tsv").
+void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
 /// Where the participant of a session looked: samples of an eye tracker as a recording of the eye
 /// ("recording-eye1_physio.tsv.gz"), the mouse, which is none, as behaviour ("acq-mouse_beh.tsv").

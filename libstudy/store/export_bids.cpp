@@ -31,7 +31,7 @@ constexpr const char* events_sql =
     "c.n_star, c.mean_fps, c.sd_fps, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.longest_ms, "
     "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, w.counts, w.why_not, "
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
-    "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), u.unit_id, "
+    "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), p.gaze_source, u.unit_id, "
     "t.second_cell IS NOT NULL "
     "FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
     "JOIN showing w USING (presentation_id) JOIN session s ON s.session_id = t.session_id "
@@ -66,7 +66,10 @@ Json event_columns() {
       {"counts", described(showing_counts_meaning)},
       {"why_not", described(showing_why_not_meaning)},
       {"active_fraction", described(showing_active_meaning)},
-      {"tau_fps", described(showing_tau_meaning, "frames/s")}};
+      {"tau_fps", described(showing_tau_meaning, "frames/s")},
+      {"gaze_source",
+       described("what the fluid followed: tracked, head (straight ahead of it), mouse, fixed, "
+                 "fixation or none; n/a: not known")}};
 }
 
 Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
@@ -82,10 +85,10 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
     const std::int64_t onset_ns = time.onset_of(row.integer(0), end_ns);
     std::vector<std::string> line{bids::seconds(onset_ns),
                                   end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
-    for (int i = 2; i <= 24; ++i) line.push_back(field(row, i));
-    const bool judged = row.integer(5) == row.integer(26);
+    for (int i = 2; i <= 25; ++i) line.push_back(field(row, i));
+    const bool judged = row.integer(5) == row.integer(27);
     for (const Item& item : asked) {
-      auto [score, seconds] = judged ? answer_of(database, row.integer(25), item.id, row.integer(4))
+      auto [score, seconds] = judged ? answer_of(database, row.integer(26), item.id, row.integer(4))
                                      : std::pair<std::string, std::string>{"n/a", "n/a"};
       line.push_back(score);
       line.push_back(seconds);
@@ -122,6 +125,8 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
       presentation["ScreenSize"] = {width_m, width_m * height / width};
     }
   }
+  if (Json worn = bids::headset_of(database, session.id); !worn.empty())
+    presentation["HeadMountedDisplay"] = std::move(worn);
   columns["StimulusPresentation"] = presentation;
   writer.json(stem + ".json", columns);
 }
@@ -135,7 +140,7 @@ Json session_columns() {
           {"test_data", described("1: never pooled with real data")},
           {"observer", described("simulated observer that answered; n/a: a person")},
           {"station", described("where it was recorded")},
-          {"gaze_source", described("tracked, mouse, fixed, fixation or none")},
+          {"gaze_source", described("tracked, head, mouse, fixed, fixation or none, as planned")},
           {"state", described("open, done, or how it ended early")}};
 }
 
@@ -198,7 +203,9 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
   write_people(*database, sessions, writer);
   for (const LabelledSession& session : sessions) {
     write_events(*database, session, writer);
-    if (gaze) bids::write_gaze(*database, session, writer);
+    if (!gaze) continue;
+    bids::write_gaze(*database, session, writer);
+    bids::write_motion(*database, session, writer);
   }
   bids::write_phenotypes(*database, sessions, writer);
   database->execute("COMMIT");

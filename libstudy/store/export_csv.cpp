@@ -23,7 +23,7 @@ struct Table {
   const char* order;        // makes equal databases equal files
   const char* left = "";    // column left out
   bool free_words = false;  // written on demand alone
-  bool gaze = false;        // likewise
+  bool gaze = false;        // likewise: of whom gaze may be recorded
 };
 
 constexpr std::array tables{
@@ -34,11 +34,16 @@ constexpr std::array tables{
     Table{"run", "runs.csv", "run_id"},
     Table{"session", "sessions.csv", "session_id"},
     Table{"framing", "framings.csv", "framing_id"},
+    Table{"headset", "headsets.csv", "headset_id"},
+    Table{"ipd", "ipds.csv", "ipd_id"},
     Table{"unit", "units.csv", "unit_id"},
     Table{"trial", "trials.csv", "trial_id"},
     Table{"presentation", "presentations.csv", "presentation_id"},
     Table{"frame", "frames.csv", "presentation_id, frame_index"},
+    Table{"slot", "slots.csv", "presentation_id, slot_index"},
+    Table{"head", "heads.csv", "presentation_id, slot_index", "", false, true},
     Table{"gaze", "gaze.csv", "presentation_id, sample_index", "", false, true},
+    Table{"gaze_validation", "gaze_validations.csv", "session_id, validation, point", "", false, true},
     Table{"response", "responses.csv", "response_id", "words"},
     Table{"response", "words.csv", "response_id", "", true},
     Table{"note", "notes.csv", "note_id", "", true},

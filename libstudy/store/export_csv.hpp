@@ -14,7 +14,7 @@ namespace study {
 /// What is written on demand alone.
 struct CsvChoice {
   bool words = false;  ///< free words of participants and the experimenter's notes: words.csv, notes.csv
-  bool gaze = false;   ///< gaze.csv
+  bool gaze = false;   ///< gaze.csv, heads.csv, gaze_validations.csv
 };
 
 /// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from

@@ -32,6 +32,7 @@ constexpr std::array page_columns{
     RatingColumn{"question", "question", "question", "code"},
     RatingColumn{"score", "response", "response", "score"},
     RatingColumn{"response_time_s", "response", "response", "response_time_s"},
+    RatingColumn{"input", "response", "response", "input"},
 };
 
 std::string pages_sql(std::int64_t session) {

@@ -25,6 +25,8 @@ const std::vector<Table> followed{
     {"run", {"run_id"}},
     {"session", {"session_id"}},
     {"framing", {"framing_id"}, false, "s.participant, s.uid AS session", of_session},
+    {"headset", {"headset_id"}, false, "s.participant, s.uid AS session", of_session},
+    {"ipd", {"ipd_id"}, false, "s.participant, s.uid AS session", of_session},
     {"trial", {"trial_id"}, true, "s.participant, s.uid AS session", of_session},
     {"unit", {"unit_id"}, true, "s.participant, s.uid AS session", of_session},
     {"presentation",

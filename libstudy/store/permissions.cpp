@@ -1,5 +1,7 @@
 #include "libstudy/store/permissions.hpp"
 
+#include <array>
+
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/backups.hpp"
 #include "libstudy/store/chores.hpp"
@@ -18,9 +20,13 @@ using sqlite::Transaction;
 
 namespace {
 
-constexpr const char* gaze_of_person =
+/// What is recorded only of who allows gaze, the gaze itself first; ?1 is the person.
+constexpr std::array gaze_of_person{
     "gaze WHERE presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
-    "JOIN session USING (session_id) WHERE person = ?)";
+    "JOIN session USING (session_id) WHERE person = ?1)",
+    "head WHERE presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
+    "JOIN session USING (session_id) WHERE person = ?1)",
+    "gaze_validation WHERE session_id IN (SELECT session_id FROM session WHERE person = ?1)"};
 
 std::string person_of(Connection& database, const std::string& participant) {
   Statement here(database, "SELECT person FROM session WHERE participant = ?");
@@ -58,7 +64,8 @@ void write_changes(Connection& database, const std::string& person, const Permis
   if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
   if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
   if (wish.gaze && !*wish.gaze) {
-    Statement(database, std::string("DELETE FROM ") + gaze_of_person).bind_all(person).run();
+    for (const char* rows : gaze_of_person)
+      Statement(database, std::string("DELETE FROM ") + rows).bind_all(person).run();
     ChorePlan(database).rewrite();
   }
   journal.write();
@@ -66,15 +73,21 @@ void write_changes(Connection& database, const std::string& person, const Permis
   journal.kept();
 }
 
-std::int64_t count_gaze(Connection& database, const std::string& person) {
-  Statement row(database, std::string("SELECT count(*) FROM ") + gaze_of_person);
+std::int64_t count_rows(Connection& database, const std::string& rows, const std::string& person) {
+  Statement row(database, "SELECT count(*) FROM " + rows);
   return row.bind_all(person).step() ? row.integer(0) : 0;
 }
 
+/// Of any schema.
 bool holds_gaze(const fs::path& path, const std::string& person) {
   Connection backup(path, Open::Read);
-  const bool any = backup.integer("SELECT count(*) FROM sqlite_schema WHERE name = 'gaze'") > 0;
-  return any && count_gaze(backup, person) > 0;
+  Statement there(backup, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?");
+  for (const std::string rows : gaze_of_person) {
+    const bool any = there.bind_all(rows.substr(0, rows.find(' '))).step();
+    there.reset();
+    if (any && count_rows(backup, rows, person) > 0) return true;
+  }
+  return false;
 }
 
 /// One that cannot be read may hold it.
@@ -126,7 +139,7 @@ PermissionChange change_permissions(const fs::path& path, const std::string& par
   const std::string person = person_of(*database, participant);
   const bool no_gaze = wish.gaze && !*wish.gaze, no_sharing = wish.sharing && !*wish.sharing;
   PermissionChange done;
-  if (no_gaze) done.gaze_deleted = count_gaze(*database, person);
+  if (no_gaze) done.gaze_deleted = count_rows(*database, gaze_of_person.front(), person);
   write_changes(*database, person, wish);
   if (no_gaze) {
     done.left = clean_up(*database).left;
@@ -151,12 +164,19 @@ SharingCount count_sharing(Connection& database) {
 }
 
 void drop_unallowed_gaze(Connection& database) {
+  for (const char* table : {"gaze", "head"}) {
+    database.execute(
+        std::string("DELETE FROM ") + table +
+        " WHERE presentation_id IN (SELECT presentation_id FROM presentation p JOIN trial t USING (trial_id) "
+        "JOIN permission g ON g.session_id = t.session_id AND g.what = 'gaze' WHERE g.granted IS NOT 1 OR "
+        "EXISTS (SELECT 1 FROM permission_change c WHERE c.session_id = t.session_id AND c.what = 'gaze' AND "
+        "c.granted = 0 AND c.utc >= p.started_utc))");
+  }
+  // Of no time of day: one refusal in any copy is enough.
   database.execute(
-      "DELETE FROM gaze WHERE presentation_id IN (SELECT presentation_id FROM presentation p "
-      "JOIN trial t USING (trial_id) JOIN permission g ON g.session_id = t.session_id AND g.what = 'gaze' "
-      "WHERE g.granted IS NOT 1 OR EXISTS (SELECT 1 FROM permission_change c WHERE c.session_id = "
-      "t.session_id "
-      "AND c.what = 'gaze' AND c.granted = 0 AND c.utc >= p.started_utc))");
+      "DELETE FROM gaze_validation WHERE session_id IN (SELECT session_id FROM permission WHERE what = "
+      "'gaze' AND granted IS NOT 1) OR session_id IN (SELECT session_id FROM permission_change WHERE what = "
+      "'gaze' AND granted = 0)");
 }
 
 }  // namespace study

@@ -1,6 +1,7 @@
 #pragma once
 /// What people allowed: answered on the consent page (gaze_kept, data_shared), or changed later by the
-/// experimenter. gaze: where they look is recorded here; sharing: they stand in public exports.
+/// experimenter. gaze: where they look and how their head moves is recorded here; sharing: they stand in
+/// public exports.
 
 #include <cstdint>
 #include <filesystem>
@@ -40,9 +41,9 @@ struct PermissionChange {
 };
 
 /// Writes down, for all sessions of a participant, what is allowed from now on; an answer that is given later
-/// on a consent page counts again. Without gaze the samples there are go, and where they stood is
-/// overwritten. May be repeated, to finish what was cut short. base::Error as read_permissions(), or the
-/// database is in use.
+/// on a consent page counts again. Without gaze the samples, head poses and validations there are go,
+/// and where they stood is overwritten. May be repeated, to finish what was cut short. base::Error as
+/// read_permissions(), or the database is in use.
 PermissionChange change_permissions(const std::filesystem::path& database, const std::string& participant,
                                     const PermissionWish& wish);
 

@@ -16,7 +16,9 @@ constexpr std::array columns{
     RatingColumn{"observer", "session", "session", "observer"},
     RatingColumn{"clock", "session", "session", "clock"},
     RatingColumn{"station", "session", "session", "station"},
-    RatingColumn{"gaze_source", "session", "session", "gaze_source"},
+    RatingColumn{"gaze_source", "session", "session", "gaze_source",
+                 "coalesce(shown_1.gaze_source, session.gaze_source)",
+                 "what the fluid followed: tracked, head, mouse, fixed, fixation or none", "TEXT"},
     RatingColumn{"position", "trial", "trial", "position"},
     RatingColumn{"block", "unit", "unit", "block"},
     RatingColumn{"block_kind", "unit", "unit", "kind"},
@@ -36,6 +38,7 @@ constexpr std::array columns{
     RatingColumn{"question", "question", "question", "code"},
     RatingColumn{"score", "response", "response", "score"},
     RatingColumn{"response_time_s", "response", "response", "response_time_s"},
+    RatingColumn{"input", "response", "response", "input"},
     RatingColumn{
         "attempt", "response", "response", "attempt", "judgement.attempt",
         "showing of the trial that was judged; without an answer the last one played and not set aside"},

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -75,7 +76,10 @@ bool is_response(const Table& table) { return table.name == std::string("respons
 
 }  // namespace
 
-bool is_large(const std::string& table) { return table == "frame" || table == "gaze"; }
+bool is_large(const std::string& table) {
+  constexpr std::array names{"frame", "slot", "head", "gaze", "gaze_validation"};
+  return std::find(names.begin(), names.end(), table) != names.end();
+}
 
 Rebuild::Rebuild(Connection& target, const JournalContent& journal, Salvage& told)
     : target_(target), journal_(journal), told_(told), shapes_(shapes_of(target)) {

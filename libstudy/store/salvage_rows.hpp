@@ -14,7 +14,8 @@ namespace study::salvaging {
 
 using RowsByTable = std::map<std::string, std::vector<Values>>;
 
-/// Tables with rows by the thousand for each trial: never held in memory.
+/// Tables with rows by the thousand for each trial, never held in memory, and all that the journal does not
+/// follow.
 bool is_large(const std::string& table);
 
 /// Fills an empty database of the newest schema, table by table, parents first: what stands in the database,

@@ -165,6 +165,7 @@ void Connection::fail(int code, const std::string& message, int system_error) co
                   "use a file and a folder that you may write to");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
+    case SQLITE_PROTOCOL:  // of the log, which SQLite tries to take for ten seconds
       throw LockedOut(path_.string(), "is locked by " + lock_holder(path_), "close it there, then " + go_on_);
     default:
       throw error("database error: " + message, "report this with the file");

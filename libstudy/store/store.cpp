@@ -1,5 +1,7 @@
 #include "libstudy/store/store.hpp"
 
+#include <array>
+
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/chores.hpp"
@@ -22,6 +24,12 @@ const char* state_name(EarlyEnd how) {
   if (how == EarlyEnd::Refused) return "refused";
   if (how == EarlyEnd::NotEligible) return "not eligible";
   return how == EarlyEnd::Stopped ? "stopped" : "dropped out";
+}
+
+std::optional<std::string> input_name(const std::optional<AnswerInput>& input) {
+  constexpr std::array names{"keyboard", "mouse", "gamepad", "ray", "stick", "dwell", "observer"};
+  if (!input) return {};
+  return names.at(static_cast<std::size_t>(*input));
 }
 
 std::optional<std::string> words_of(const Answer& answer) {
@@ -86,11 +94,12 @@ void Store::commit(Transaction& transaction) {
 }
 
 std::int64_t Store::begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
-                                       int cell, std::int64_t start_ns) {
+                                       int cell, std::int64_t start_ns,
+                                       const std::optional<std::string>& gaze_source) {
   Transaction transaction(*database_);
   const std::string now = base::utc_now();
   Statement& begin = statements_->begin;
-  const std::int64_t id = begin.bind_all(trial, attempt, interval, cell, now, start_ns).run();
+  const std::int64_t id = begin.bind_all(trial, attempt, interval, cell, now, start_ns, gaze_source).run();
   Statement(*database_, "UPDATE session SET started_utc = ? WHERE session_id = ? AND started_utc IS NULL")
       .bind_all(now, session)
       .run();
@@ -142,7 +151,7 @@ void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attemp
   for (const KeptAnswer& kept : answers) {
     const Answer& answer = kept.answer.answer;
     insert.bind_all(session, unit.id, attempt, kept.question, answer.score, words_of(answer),
-                    kept.answer.response_time_s, now);
+                    kept.answer.response_time_s, now, input_name(kept.answer.input));
     const bool taken = insert.step();
     insert.reset();
     if (!taken) {

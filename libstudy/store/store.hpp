@@ -15,6 +15,7 @@
 
 #include "libstudy/design/plan.hpp"
 #include "libstudy/display/gaze.hpp"
+#include "libstudy/display/headset.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/sqlite.hpp"
@@ -51,7 +52,7 @@ struct SessionPlan {
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
   std::optional<std::string> ptpe;   ///< the PTPE file in full
-  std::string gaze_source = "none";  ///< "tracked", "mouse", "fixed", "fixation" or "none"
+  std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
   std::string station;               ///< where it is recorded
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come
@@ -107,6 +108,21 @@ struct Ending {
   std::string reason;  ///< may be empty
 };
 
+/// A slot, and the frame that was on in it; none: black.
+struct ShownSlot {
+  SlotRecord slot;
+  std::optional<std::int64_t> frame;
+};
+
+/// What a validation of the eye tracker found at one of its targets.
+struct ValidatedPoint {
+  std::int64_t clock_ns = 0;                  ///< when its samples began
+  double azimuth_deg = 0, elevation_deg = 0;  ///< of the target
+  std::int64_t samples = 0, valid = 0;        ///< taken, and of those valid
+  std::optional<double> accuracy_deg;         ///< none: no valid sample
+  std::optional<double> sd_deg, rms_s2s_deg;  ///< precision; none: too few samples
+};
+
 /// What a question was answered with, ready to be kept.
 struct KeptAnswer {
   std::string question;  ///< id
@@ -139,6 +155,10 @@ class Store {
   /// For a session that is resumed: how the display frames its scenes now, where that is not as it was. What
   /// is shown from now on is known by it.
   void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
+  /// What headset a session is played on, where that does not stand already as it is.
+  void add_headset(std::int64_t session, const HeadsetFacts& headset);
+  /// The distance between the eyes from now on, mm, where it is more than 0.2 mm from the last one.
+  void add_ipd(std::int64_t session, std::int64_t clock_ns, double ipd_mm);
 
   /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
   std::vector<OpenRun> open_runs();
@@ -147,9 +167,11 @@ class Store {
   /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
 
-  /// Commits that a stimulus is about to be shown; returns the presentation's id.
+  /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: what the fluid
+  /// follows; none: as the session was planned.
   std::int64_t begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
-                                  int cell, std::int64_t start_ns);
+                                  int cell, std::int64_t start_ns,
+                                  const std::optional<std::string>& gaze_source = {});
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
@@ -164,6 +186,11 @@ class Store {
   /// participant allows it.
   void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
                 std::span<const GazeSample> samples);
+  /// Commits slots of a presentation, after those that it has. base::Error, with nothing kept, for a head's
+  /// pose unless the participant allows gaze to be recorded.
+  void add_slots(std::int64_t presentation, std::int64_t start_ns, std::span<const ShownSlot> slots);
+  /// Commits a validation of the eye tracker, after those of the session. base::Error as add_gaze().
+  void add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed);
   /// Commits the rest of the frames and the verdict; where nothing was scheduled (nominal mean 0) it
   /// is kept of a trial that was cut alone.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
@@ -222,6 +249,8 @@ class Store {
   void mark_ended(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
   void mark_excluded(std::int64_t session, std::int64_t trial, const std::string& reason);
   void set_trial_aside(std::int64_t session, std::int64_t trial);
+  void require_gaze_allowed(std::int64_t session);
+  std::int64_t session_of(std::int64_t presentation);
   void answer_over_change(std::int64_t session, const std::string& question, const std::string& now);
   bool set_aside(const OpenUnit& unit, int attempt);
   std::int64_t trial_unit(std::int64_t trial);

@@ -16,7 +16,11 @@ using sqlite::Statement;
 namespace {
 
 constexpr const char* sessions_sql =
-    "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, gaze_source, station, "
+    "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, "
+    "coalesce((SELECT min(p.gaze_source) FROM presentation p JOIN trial t USING (trial_id) WHERE "
+    "t.session_id = "
+    "session.session_id AND p.state = 'played' AND p.gaze_source <> session.gaze_source), gaze_source), "
+    "station, "
     "display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
     "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
     "iif(f.framing_id IS NULL, 'not known', printf('camera %.4g degrees, eye ', camera_angle_deg) || "

@@ -62,7 +62,9 @@ struct TaskSession {
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
   std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
-  std::string gaze_source;  ///< "tracked", "mouse", "fixed", "fixation" or "none"
+  /// "tracked", "head", "mouse", "fixed", "fixation" or "none"; of showings that differ, another one than was
+  /// planned.
+  std::string gaze_source;
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;

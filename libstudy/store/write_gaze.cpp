@@ -1,4 +1,5 @@
 /// What a participant allows, as the session writes it, and gaze where it is allowed.
+#include <array>
 #include <tuple>
 
 #include "libstudy/store/store.hpp"
@@ -15,27 +16,42 @@ bool Store::allows_gaze(std::int64_t session) {
   return row.bind_all(session).step();
 }
 
+/// Of a presentation that is being shown.
+std::int64_t Store::session_of(std::int64_t presentation) {
+  Statement row(*database_,
+                "SELECT session_id FROM presentation JOIN trial USING (trial_id) WHERE presentation_id = ?");
+  return row.bind_all(presentation).step() ? row.integer(0) : 0;
+}
+
+void Store::require_gaze_allowed(std::int64_t session) {
+  if (allows_gaze(session)) return;
+  throw base::Error(path_.string(), "takes no gaze of a participant who has not allowed it",
+                    "ask gaze_kept on a page of kind consent");
+}
+
 void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
                      std::span<const GazeSample> samples) {
   Transaction transaction(*database_);
-  Statement insert(
-      *database_,
-      "INSERT INTO gaze SELECT p.presentation_id, coalesce((SELECT max(sample_index) + 1 FROM gaze "
-      "WHERE presentation_id = ?1), 0), ?2, ?3, ?4, ?5, ?6, ?7 FROM presentation p "
-      "JOIN trial t USING (trial_id) WHERE p.presentation_id = ?1 AND EXISTS (SELECT 1 FROM "
-      "permission a WHERE a.session_id = t.session_id AND a.what = 'gaze' AND a.granted = 1) "
-      "RETURNING sample_index");
+  require_gaze_allowed(session_of(presentation));
+  Statement insert(*database_,
+                   "INSERT INTO gaze SELECT ?1, coalesce((SELECT max(sample_index) + 1 FROM gaze WHERE "
+                   "presentation_id = ?1), 0), ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14");
+  constexpr std::array names{"tracker", "head", "mouse"};
   for (const GazeSample& sample : samples) {
     std::optional<double> x, y;
     if (sample.point) std::tie(x, y) = *sample.point;
-    insert.bind_all(presentation, origin == GazeOrigin::Tracker ? "tracker" : "mouse",
-                    sample.sampled_ns - start_ns, sample.device_ns, sample.valid ? 1 : 0, x, y);
-    const bool taken = insert.step();
-    insert.reset();
-    if (!taken) {
-      throw base::Error(path_.string(), "takes no gaze of a participant who has not allowed it",
-                        "ask gaze_kept on a page of kind consent");
+    std::optional<int> tracked;
+    if (sample.tracked) tracked = *sample.tracked ? 1 : 0;
+    std::array<std::optional<double>, 3> from, along;
+    for (std::size_t k = 0; sample.ray && k < 3; ++k) {
+      from[k] = sample.ray->origin_m[k];
+      along[k] = sample.ray->direction[k];
     }
+    insert
+        .bind_all(presentation, names.at(static_cast<std::size_t>(origin)), sample.sampled_ns - start_ns,
+                  sample.device_ns, sample.valid ? 1 : 0, x, y, tracked, from[0], from[1], from[2], along[0],
+                  along[1], along[2])
+        .run();
   }
   commit(transaction);
 }

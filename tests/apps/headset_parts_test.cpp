@@ -70,7 +70,22 @@ TEST(HeadsetRate, AChangeIsToldOnceWhenItHasSettled) {
     EXPECT_NEAR(changes[0].from_hz, 90, 1e-3);
     EXPECT_NEAR(changes[0].to_hz, 1e9 / static_cast<double>(step_ns), 0.5);
     EXPECT_NEAR(*meter.hz(), 1e9 / static_cast<double>(step_ns), 0.5);
+    EXPECT_EQ(meter.off_grid(), 0);
+    EXPECT_EQ(meter.dropped(), 0);
   }
+}
+
+TEST(HeadsetRate, IsTheDisplaysWhereMostSlotsAreLeftOut) {
+  RateMeter meter;
+  std::int64_t now_ns = 0;
+  for (int i = 0; i < 20; ++i) {
+    add_slots(meter, now_ns, 2, 2 * at_90_hz);
+    add_slots(meter, now_ns, 1, at_90_hz);
+  }
+  ASSERT_TRUE(meter.hz());
+  EXPECT_NEAR(*meter.hz(), 90, 1e-3);
+  EXPECT_GT(meter.dropped(), 30);
+  EXPECT_EQ(meter.off_grid(), 0);
 }
 
 TEST(HeadsetRate, APauseIsNoDroppedSlot) {

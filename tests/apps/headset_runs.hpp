@@ -23,6 +23,13 @@ class HeadsetRuns : public ::testing::Test {
   Ended run(const std::vector<std::string>& arguments, const Environment& environment) {
     std::vector<std::string> all{bin + "/vip-study"};
     all.insert(all.end(), arguments.begin(), arguments.end());
+    return run_any(all, environment);
+  }
+  /// Any program on a runtime.
+  Ended run_program_in_headset(const std::vector<std::string>& all, const std::string& profile) {
+    return run_any(all, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
+  }
+  Ended run_any(const std::vector<std::string>& all, const Environment& environment) {
     return run_program(all, [&] { prepare(environment); });
   }
   /// In the child that becomes the program.

@@ -45,6 +45,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
       const auto at = text.find("\n" + key + " = ") + 1;
       text.replace(at, text.find('\n', at) - at, key + " = " + value);
     };
+    set("n_star", R"(["64"])");
     set("mean_fps", means);
     set("sd_fps", sds);
     set("accept_approximate", "true");
@@ -143,15 +144,15 @@ TEST_F(HeadsetSessionE2e, DroppedSlotsMakeAFrameLate) {
   EXPECT_THAT(ended.out, Not(HasSubstr("1 of 1 trials pass")));
 }
 
-TEST_F(HeadsetSessionE2e, SessionsRunInRealTimeToo) {
+TEST_F(HeadsetSessionE2e, LiveFluidRunsInRealTime) {
   const std::string protocol = pilot("[10]", "[0]");
-  const auto ended =
-      study("size=32x32;clock=real;rates=20;rate=20",
-            {"run", protocol, "--db", database_, "--observer", "random", "--display", "openxr", "--clock",
-             "real", "--stimulus", dam_, "--participants", "1", "--trial-seconds", "1"});
+  const auto ended = study("size=32x32;clock=real;rates=20;rate=20",
+                           {"run", protocol, "--db", database_, "--observer", "random", "--display", "openxr",
+                            "--clock", "real", "--participants", "1", "--trial-seconds", "1"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
   EXPECT_THAT(ended.out, HasSubstr(" C "));
+  EXPECT_THAT(ended.err, HasSubstr("measuring 1 live stimulus in the headset"));
 }
 
 TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
@@ -165,6 +166,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   };
   refuse("headset=unavailable", {}, "no headset is connected");
   refuse("opaque=0", {}, "world");
+  refuse("clock=real", {}, "use --clock real");
   refuse("", {"--gaze", "tracked"}, "is not read from a headset yet");
   const std::string pictures = folder_ / "pictures.bake";
   const auto baked =

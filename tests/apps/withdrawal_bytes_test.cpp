@@ -33,7 +33,8 @@ constexpr const char* code = "QXJ7";
 constexpr const char* leaver = "QXJ7-north";
 constexpr const char* secret = "zebra-of-the-north";
 constexpr std::int64_t telling_ns = 0x0102a3b4c5d6e7f8;
-constexpr double telling_x = 0.123456789012345;
+constexpr double telling_x = 0.123456789012345, telling_place = 0.234567890123456,
+                 telling_ipd = 61.2345678901234;
 
 /// As SQLite stores eight bytes.
 template <class Number>
@@ -154,6 +155,14 @@ void take_part(study::Store& store, const study::OpenSession& session) {
   const study::GazePoint point{leaves ? telling_x : 0.5, 0.75};
   const study::GazeSample sample{start_ns + 1, {}, true, point};
   store.add_gaze(id, start_ns, study::GazeOrigin::Tracker, {&sample, 1});
+  if (leaves) {
+    const study::HeadPose head{{telling_place, 0, 0}, {0, 0, 0, 1}, true, true, true, true};
+    const study::ShownSlot slot{{start_ns + 2, 11, true, head, telling_ipd}, 0};
+    const study::ValidatedPoint validated{start_ns, 0, 0, 9, 9, telling_place, {}, {}};
+    store.add_slots(id, start_ns, {&slot, 1});
+    store.add_ipd(session.id, start_ns, telling_ipd);
+    store.add_validation(session.id, {&validated, 1}, true);
+  }
   store.end_presentation(id, start_ns, start_ns + 5, study::test::frames(start_ns, 50),
                          study::test::verdict());
   store.exclude_trial(session.id, trial->trial_id, words);
@@ -244,7 +253,8 @@ TEST_F(WithdrawalBytes, OfThePersonAreNowhereAndOfAllOthersAsTheyWere) {
   auto telling = traces(leaver);
   ASSERT_EQ(telling.size(), 3u);  // two sessions of one person
   for (std::string& one : telling) one.pop_back();
-  telling.insert(telling.end(), {leaver, secret, stored(telling_ns), stored(telling_x), "0.123456789012345"});
+  telling.insert(telling.end(), {leaver, secret, stored(telling_ns), stored(telling_x), "0.123456789012345",
+                                 stored(telling_place), "0.234567890123456", stored(telling_ipd)});
   const auto holders = files_with(folder.path(), leaver);
   for (const char* file : {"s.db", "s.db.personal", "s.db.answers.jsonl", "s.db.v3-then.bak", "out/r.json",
                            "out/t.json", "out/tables/task2_choices.csv", "out/csv/sessions.csv"})

@@ -17,7 +17,10 @@ class BidsRules {
     rules.check_description();
     for (const std::string& name : rules.files_) {
       rules.check_name(name);
-      if (name.ends_with(".tsv")) rules.check_table(name);
+      if (name.ends_with("_motion.tsv"))
+        rules.check_motion(name);
+      else if (name.ends_with(".tsv"))
+        rules.check_table(name);
       if (name.ends_with("_events.tsv")) rules.check_events(name);
       if (name.ends_with("_sessions.tsv")) rules.check_sessions(name);
       if (name.starts_with("phenotype/") && name.ends_with(".tsv")) rules.check_phenotype(name);
@@ -75,13 +78,15 @@ class BidsRules {
 
   void check_name(const std::string& name) {
     const std::string label = "[0-9a-zA-Z]+";
-    const std::string folder = "sub-(" + label + ")/ses-(" + label + ")/beh/";
+    const std::string session = "sub-(" + label + ")/ses-(" + label + ")/", folder = session + "beh/";
     const std::string stem = "sub-\\1_ses-\\2_task-" + label;
     const std::vector<std::string> allowed{
-        "README(\\.md)?|dataset_description\\.json|participants\\.(tsv|json)", "phenotype/[^/]+\\.(tsv|json)",
+        "README(\\.md)?|dataset_description\\.json|participants\\.(tsv|json)",
+        "phenotype/[^/]+\\.(tsv|json)",
         "sub-(" + label + ")/sub-\\1_sessions\\.(tsv|json)",
         folder + stem + "(_acq-" + label + ")?_(events|beh)\\.(tsv|json)",
-        folder + stem + "(_recording-" + label + ")?_physio\\.(tsv\\.gz|json)"};
+        folder + stem + "(_recording-" + label + ")?_physio\\.(tsv\\.gz|json)",
+        session + "motion/" + stem + "_tracksys-" + label + "_(motion\\.(tsv|json)|channels\\.tsv)"};
     for (const std::string& pattern : allowed) {
       if (std::regex_match(name, std::regex(pattern))) return;
     }
@@ -99,7 +104,10 @@ class BidsRules {
       require(std::count(row.begin(), row.end(), "") == 0, name, "a field without a value is n/a");
     }
     for (const std::string& column : rows[0]) {
-      const bool of_standard = column == "participant_id" || column == "session_id";
+      const bool of_standard =
+          column == "participant_id" || column == "session_id" ||
+          (name.ends_with("_channels.tsv") &&
+           one_of(column, {"name", "component", "type", "tracked_point", "units", "description"}));
       require(of_standard || (meaning.contains(column) && meaning[column].value("Description", "") != ""),
               name, "column " + column + " is described");
     }
@@ -168,6 +176,26 @@ class BidsRules {
               "column " + column.dump() + " is described");
     require(one_of(json.value("PhysioType", Json()), {"generic", "eyetrack"}), name, "PhysioType");
     if (json.value("PhysioType", "") == "eyetrack") check_eye(name, json);
+  }
+
+  void check_motion(const std::string& name) {
+    const Json json = json_at(folder_ / sidecar_of(name));
+    require(json.value("TaskName", "") != "", name, "TaskName");
+    require(positive(json.value("SamplingFrequency", Json())), name, "SamplingFrequency");
+    const std::string stem = name.substr(0, name.rfind('_'));
+    const Rows channels = tsv_rows(text(stem + "_channels.tsv"));
+    const std::vector<std::string> first{"name", "component", "type", "tracked_point", "units"};
+    require(std::equal(first.begin(), first.end(), channels[0].begin()), name, "its channels' columns");
+    for (std::size_t i = 1; i < channels.size(); ++i) {
+      require(one_of(channels[i][1], {"x", "y", "z", "quat_x", "quat_y", "quat_z", "quat_w", "n/a"}), name,
+              "component " + channels[i][1]);
+      require(one_of(channels[i][2], {"POS", "ORNT", "LATENCY", "MISC"}), name, "type " + channels[i][2]);
+    }
+    for (const auto& row : tsv_rows(text(name))) {
+      require(row.size() + 1 == channels.size(), name, "every line has a field of each channel");
+      for (const std::string& field : row)
+        require(field == "n/a" || is_number(field), name, "no header, numbers alone: " + field);
+    }
   }
 
   void check_eye(const std::string& name, const Json& json) {

@@ -146,10 +146,10 @@ TEST(Gaze, IsCommittedInTheBackgroundWithTheFrames) {
   FrameJournal journal(store, 1, 0, GazeOrigin::Mouse, true);
   const auto gaze_rows = [&] { return test::column(folder / "study.db", "SELECT sampled_ns FROM gaze"); };
   FrameRecord frame = test::frames(0, 51).back();
-  journal.add(frame, {{11, {}, true, GazePoint{0, 0}}, {12, {}, false, {}}});
+  journal.add(frame, {{{11, {}, true, GazePoint{0, 0}}, {12, {}, false, {}}}, {}});
   while (gaze_rows().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_THAT(gaze_rows(), ElementsAre("11", "12"));
-  EXPECT_THAT(journal.finish({{13, {}, false, {}}}), IsEmpty());
+  EXPECT_THAT(journal.finish({{{13, {}, false, {}}}, {}}), IsEmpty());
   EXPECT_THAT(gaze_rows(), ElementsAre("11", "12", "13"));
 }
 

@@ -106,7 +106,8 @@ TEST(Permission, GoesWithWhoWithdraws) {
         "INSERT INTO permission_change (session_id, what, granted, utc) "
         "SELECT session_id, 'gaze', 0, 'now' FROM session");
     database.execute(
-        "INSERT INTO gaze SELECT presentation_id, 0, 'mouse', 0, NULL, 1, 0.5, 0.5 FROM presentation");
+        "INSERT INTO gaze (presentation_id, sample_index, source, sampled_ns, device_ns, valid, x, y) "
+        "SELECT presentation_id, 0, 'mouse', 0, NULL, 1, 0.5, 0.5 FROM presentation");
   }
   withdraw(path, "P01");
   const std::string whose = " JOIN session USING (session_id)";

@@ -152,8 +152,10 @@ TEST_F(GazeExport, IsWrittenOnRequestAlone) {
   EXPECT_THAT(files_with(folder_ / "bids", {"physio", "acq-mouse"}), IsEmpty());
   export_csv(path_, folder_ / "csv", {.words = false, .gaze = true});
   EXPECT_THAT(test::bytes_of(folder_ / "csv/gaze.csv"),
-              ::testing::StartsWith("presentation_id,sample_index,source,sampled_ns,device_ns,valid,x,y\r\n"
-                                    "1,0,tracker,10000000,3,1,0.25,0.5\r\n1,1,tracker,20000000,4,0,,\r\n"));
+              ::testing::StartsWith("presentation_id,sample_index,source,sampled_ns,device_ns,valid,x,y,"
+                                    "tracked,origin_x_m,origin_y_m,origin_z_m,direction_x,direction_y,"
+                                    "direction_z\r\n1,0,tracker,10000000,3,1,0.25,0.5,,,,,,,\r\n"
+                                    "1,1,tracker,20000000,4,0,,,,,,,,,\r\n"));
   EXPECT_THAT(test::bytes_of(folder_ / "csv/dictionary.csv"), HasSubstr("\ngaze.csv,source,TEXT,"));
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 #include "stats/base/error.hpp"
@@ -26,22 +27,6 @@ bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_
 HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) {
   choice.refresh_hz = rules.refresh_hz;
   return choice;
-}
-
-/// A place of the room in the scene.
-study::EyeView to_study(const EyeView& eye, int x_px, double world_scale) {
-  study::EyeView out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out.position_m[k] = static_cast<double>(eye.pose.place_m[k]) / world_scale;
-  for (std::size_t k = 0; k < 4; ++k) out.orientation[k] = static_cast<double>(eye.pose.turn[k]);
-  out.left_rad = static_cast<double>(eye.fov.left);
-  out.right_rad = static_cast<double>(eye.fov.right);
-  out.up_rad = static_cast<double>(eye.fov.up);
-  out.down_rad = static_cast<double>(eye.fov.down);
-  out.x_px = x_px;
-  out.width_px = eye.width_px;
-  out.height_px = eye.height_px;
-  return out;
 }
 
 /// The same eyes with a margin around what they see.
@@ -68,9 +53,21 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
                          : "its predicted times show no steady rate",
         "choose that refresh rate, and a fixed one, in the headset's software");
+  if (drive == SlotDrive::Caller) check_time_stands_still();
   const HeadsetRate rate = facts().rate;
   refresh_hz_ =
       rate.told_hz && near_rate(*rate.told_hz, *rate.measured_hz) ? *rate.told_hz : *rate.measured_hz;
+}
+
+/// A runtime whose time goes on by itself would drop slots while the program computes.
+void HeadsetDisplay::check_time_stands_still() {
+  turn();
+  const std::int64_t before_ns = facts().last.predicted_ns;
+  std::this_thread::sleep_for(std::chrono::nanoseconds(5 * loop_.period_ns()));
+  turn();
+  if (facts().last.predicted_ns - before_ns > 3 * loop_.period_ns())
+    throw base::Error("--clock virtual", "the headset's time does not wait for the program",
+                      "use --clock real");
 }
 
 void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
@@ -141,8 +138,8 @@ std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
   const sim::Offscreen& canvas = loop_.canvas();
-  const std::array<study::EyeView, 2> eyes{to_study(views[0], 0, rules_.world_scale),
-                                           to_study(views[1], views[0].width_px, rules_.world_scale)};
+  const std::array<study::EyeView, 2> eyes{study_view(views[0], 0, rules_.world_scale),
+                                           study_view(views[1], views[0].width_px, rules_.world_scale)};
   pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
   const bool in_head = rules_.hold == study::Hold::HeadLocked;
   const HeldViews from{in_head ? loop_.views_in_head(at_ns) : views, in_head};

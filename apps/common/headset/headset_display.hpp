@@ -69,6 +69,7 @@ class HeadsetDisplay final : public study::Display {
  private:
   std::int64_t lead_ns() const;
   void heed();
+  void check_time_stands_still();
   void await(const std::function<bool()>& ready, const char* problem, const char* mend);
   std::optional<HeldViews> draw(std::int64_t at_ns);
 

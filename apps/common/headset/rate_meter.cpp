@@ -11,17 +11,28 @@ namespace {
 
 constexpr int first_steps = 8;
 constexpr std::size_t window = 16;
+constexpr double multiple = 0.2;  // periods beside a whole number of them
+constexpr double most = 0.7;
 constexpr double same_rate = 0.04;  // share of a period within which two measures are of one rate
 constexpr double on_grid = 0.1;     // periods
 
-std::int64_t median(std::vector<std::int64_t> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double whole_periods(std::int64_t step_ns, double period_ns) {
   return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));
+}
+
+/// The shortest step of which most others are whole multiples, as far as jitter lets them: where many slots
+/// are left out the usual step holds several periods.
+std::int64_t typical_step(std::vector<std::int64_t> steps_ns) {
+  std::sort(steps_ns.begin(), steps_ns.end());
+  for (const std::int64_t candidate_ns : steps_ns) {
+    const auto fits = std::count_if(steps_ns.begin(), steps_ns.end(), [&](std::int64_t step_ns) {
+      const auto candidate = static_cast<double>(candidate_ns);
+      const double beside = static_cast<double>(step_ns) / candidate - whole_periods(step_ns, candidate);
+      return std::abs(beside) <= multiple;
+    });
+    if (static_cast<double>(fits) >= most * static_cast<double>(steps_ns.size())) return candidate_ns;
+  }
+  return steps_ns[steps_ns.size() / 2];
 }
 
 bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate * b_ns; }
@@ -31,7 +42,7 @@ bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate 
 double RateMeter::period_of_latest() const {
   std::vector<std::int64_t> steps_ns;
   for (const Step& step : latest_) steps_ns.push_back(step.ns);
-  const auto typical = static_cast<double>(median(steps_ns));
+  const auto typical = static_cast<double>(typical_step(steps_ns));
   double periods = 0;
   for (const std::int64_t step_ns : steps_ns) periods += whole_periods(step_ns, typical);
   return static_cast<double>(std::accumulate(steps_ns.begin(), steps_ns.end(), std::int64_t{0})) / periods;

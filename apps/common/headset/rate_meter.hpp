@@ -12,8 +12,9 @@ struct RateChange {
 };
 
 /// Runtimes tell wrong first periods, jitter and leave slots out. The rate comes from settled steps between
-/// predicted times: their median says how many periods each of them holds, their sum over that count is the
-/// period. The first steps never count.
+/// predicted times: the shortest of which most are multiples says how many periods each of them holds, their
+/// sum over that count is the period. The first steps never count, and what a change of the rate seems to
+/// leave out does not either.
 class RateMeter {
  public:
   /// Takes the next slot's predicted time. Tells when the rate has become another than it was.

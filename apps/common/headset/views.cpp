@@ -18,6 +18,21 @@ std::array<float, 3> direction_of(const HeadsetPose& pose) {
   return {-axes[6], -axes[7], -axes[8]};
 }
 
+study::EyeView study_view(const EyeView& eye, int x_px, double world_scale) {
+  study::EyeView out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.position_m[k] = static_cast<double>(eye.pose.place_m[k]) / world_scale;
+  for (std::size_t k = 0; k < 4; ++k) out.orientation[k] = static_cast<double>(eye.pose.turn[k]);
+  out.left_rad = static_cast<double>(eye.fov.left);
+  out.right_rad = static_cast<double>(eye.fov.right);
+  out.up_rad = static_cast<double>(eye.fov.up);
+  out.down_rad = static_cast<double>(eye.fov.down);
+  out.x_px = x_px;
+  out.width_px = eye.width_px;
+  out.height_px = eye.height_px;
+  return out;
+}
+
 sim::View view_of(const EyeView& eye, double near_m, double far_m) {
   sim::View view;
   const auto& [x, y, z] = eye.pose.place_m;

@@ -1,0 +1,66 @@
+#include "libstudy/session/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace study {
+
+namespace {
+
+bool allowed(const Running& run) { return run.parts.store.allows_gaze(run.session.id); }
+
+}  // namespace
+
+Recording::Recording(const Running& run)
+    : run_(run),
+      gaze_(run.parts.gaze && allowed(run) ? run.parts.gaze : nullptr),
+      slots_(run.parts.slots),
+      seen_ns_(run.now_ns()) {
+  if (gaze_) gaze_->start();
+  if (slots_) slots_->start_slots(allowed(run));
+}
+
+Recording::~Recording() {
+  if (gaze_) gaze_->stop();
+  if (slots_) slots_->stop_slots();
+}
+
+Recorded Recording::take() {
+  Recorded out;
+  if (gaze_) out.gaze = gaze_->take();
+  if (slots_) out.slots = slots_->take_slots();
+  if (gaze_ && gaze_->origin() == GazeOrigin::Tracker) watch(out.gaze);
+  for (const SlotRecord& slot : out.slots) {
+    const bool changed = slot.ipd_mm > 0 && !(ipd_mm_ && std::abs(slot.ipd_mm - *ipd_mm_) <= ipd_change_mm);
+    if (!changed) continue;
+    run_.parts.store.add_ipd(run_.session.id, slot.predicted_ns, slot.ipd_mm);
+    ipd_mm_ = slot.ipd_mm;
+  }
+  return out;
+}
+
+void Recording::watch(const std::vector<GazeSample>& samples) {
+  for (const GazeSample& sample : samples) {
+    if (sample.valid) seen_ns_ = std::max(seen_ns_, sample.sampled_ns);
+    lost_ = lost_ || sample.sampled_ns - seen_ns_ > longest_gaze_gap_ns;
+  }
+}
+
+void Recording::require_gaze() const {
+  if (lost_) throw TrialAgain{"the eye tracker lost the eyes for over 100 ms"};
+}
+
+std::string Recording::followed(const Running& run) {
+  const std::string& planned = run.session.plan.gaze_source;
+  if (planned != "tracked" || !run.parts.gaze || allowed(run)) return planned;
+  return run.parts.slots ? "head" : "fixed";
+}
+
+void record_headset(const Running& run) {
+  if (!run.parts.slots) return;
+  run.parts.store.add_headset(run.session.id, run.parts.slots->facts());
+  if (const auto ipd_mm = run.parts.slots->ipd_mm())
+    run.parts.store.add_ipd(run.session.id, run.now_ns(), *ipd_mm);
+}
+
+}  // namespace study

@@ -1,0 +1,65 @@
+#pragma once
+/// What a headset brings in, for tests.
+
+#include <vector>
+
+#include "libstudy/session/session.hpp"
+
+namespace study::test {
+
+inline HeadsetFacts headset_facts() {
+  HeadsetFacts facts;
+  facts.runtime = "a runtime";
+  facts.runtime_version = "1.2.3";
+  facts.headset = "a headset";
+  facts.eyes = {EyeFacts{2064, 2208, -52, 42, 46, -50}, EyeFacts{2060, 2200, -42, 52, 46, -50}};
+  facts.format = "SRGB8_ALPHA8";
+  facts.refresh_told_hz = 90;
+  facts.refresh_measured_hz = 89.5;
+  facts.times_convert = facts.position_tracking = facts.eye_tracking = true;
+  return facts;
+}
+
+/// Place and turn are told by `number`.
+inline HeadPose head_at(double number) {
+  return {{number, 1.5, -0.25}, {0, 0.6, 0, 0.8}, true, true, true, false};
+}
+
+inline SlotRecord slot_at(std::int64_t predicted_ns, double ipd_mm = 63, double head = 0.5) {
+  return {predicted_ns, 11'111'111, true, head_at(head), ipd_mm};
+}
+
+/// One ray ahead and to the right.
+inline GazeSample ray_sample(std::int64_t sampled_ns, double x = 0.6) {
+  return {sampled_ns, sampled_ns, true, GazePoint{0.25, 0.5}, false, GazeRay{{0, 0, 0.01}, {x, 0, -0.8}}};
+}
+
+/// A slot every 10 ms of the clock; the distance between the eyes is what ipd_of says at a time.
+class SlotEvery10ms final : public SlotSource {
+ public:
+  explicit SlotEvery10ms(const Clock& clock) : clock_(clock) {}
+  HeadsetFacts facts() const override { return headset_facts(); }
+  void start_slots(bool with_heads) override {
+    heads_ = with_heads;
+    next_ns_ = clock_.now_ns();
+  }
+  std::vector<SlotRecord> take_slots() override {
+    std::vector<SlotRecord> out;
+    for (; next_ns_ <= clock_.now_ns(); next_ns_ += 10'000'000) {
+      out.push_back(slot_at(next_ns_, ipd_of ? ipd_of(next_ns_) : 63));
+      if (!heads_) out.back().head.reset();
+    }
+    return out;
+  }
+  void stop_slots() override {}
+  std::optional<double> ipd_mm() override { return ipd_of ? ipd_of(clock_.now_ns()) : 63; }
+
+  std::function<double(std::int64_t)> ipd_of;
+
+ private:
+  const Clock& clock_;
+  bool heads_ = false;
+  std::int64_t next_ns_ = 0;
+};
+
+}  // namespace study::test
