@@ -108,6 +108,7 @@ TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByARay) {
   EXPECT_THAT(ended.out, HasSubstr("2 of 2 trials pass"));
   EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"),
               ::testing::ElementsAre("1", "4", "4"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("ray"));
   EXPECT_THAT(column("SELECT test_data FROM session"), ::testing::ElementsAre("1"));
   EXPECT_EQ(page_widths(calls()), std::set<int>{38});
 }
@@ -117,6 +118,7 @@ TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByTheEyesAlone) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
   EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"), ::testing::ElementsAre("1", "4"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("dwell"));
 }
 
 TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
@@ -135,6 +137,7 @@ TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
                              {"--answer", "stick"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"), ::testing::ElementsAre("1", "7"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("stick"));
 }
 
 TEST_F(HeadsetPersonE2e, StopOnThePageEndsTheSession) {
