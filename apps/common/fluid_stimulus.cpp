@@ -165,12 +165,15 @@ void LiveFluid::look() {
   if (!picture_ || !view_) return;
   const int width = view_->viewport.width, height = view_->viewport.height;
   std::optional<std::pair<double, double>> point{{0.5 * width, 0.5 * height}};
-  if (stereo_) {
+  sim::Gaze gaze;
+  if (stereo_ && viewing_.ray) {
+    point.reset();
+    if (const auto ray = viewing_.ray()) gaze = gaze_along(scene_.view, *ray);
+  } else if (stereo_) {
     point = straight_ahead(*view_);
   } else if (viewing_.gaze) {
     point = viewing_.gaze(width, height);
   }
-  sim::Gaze gaze;
   if (point) gaze = gaze_through(*view_, point->first, point->second);
   picture_->look(*simulation_, *view_, gaze, visual_scale_);
 }

@@ -107,7 +107,7 @@ class LiveFluid final : public study::Stimulus {
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture; of two eyes the left one's
-  bool stereo_ = false;            ///< likewise; one looks straight ahead then
+  bool stereo_ = false;            ///< likewise
   double visual_scale_ = 1;        ///< likewise, sim::EyeLook's
 };
 

@@ -42,16 +42,39 @@ sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, 
   return sim::make_view(camera, width_px, height_px);
 }
 
+namespace {
+
+/// From the scene to the space in which a headset's eyes are placed.
+sim::Mat4 to_room(const sim::Camera& camera) {
+  return sim::look_at(camera.eye_m, {camera.target_m[0], camera.eye_m[1], camera.target_m[2]});
+}
+
+}  // namespace
+
+sim::Gaze gaze_along(const sim::Camera& camera, const RoomRay& ray) {
+  const sim::Mat4 to_scene = sim::rigid_inverse(to_room(camera));
+  sim::Gaze gaze;
+  for (std::size_t row = 0; row < 3; ++row) {
+    gaze.origin_m[row] = static_cast<double>(to_scene[12 + row]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double part = static_cast<double>(to_scene[4 * k + row]);
+      gaze.origin_m[row] += part * ray.place_m[k];
+      gaze.direction[row] += part * ray.direction[k];
+    }
+  }
+  gaze.valid = true;
+  return gaze;
+}
+
 sim::View eye_view(const sim::Camera& camera, const study::EyeView& eye) {
   const double left = std::tan(eye.left_rad), right = std::tan(eye.right_rad);
   const double up = std::tan(eye.up_rad), down = std::tan(eye.down_rad);
   if (!(right > left && up > down) || eye.width_px < 1 || eye.height_px < 1) {
     throw base::Error("headset", "an eye's field of view has no area", "restart the headset's runtime");
   }
-  const sim::Vec3d ahead{camera.target_m[0], camera.eye_m[1], camera.target_m[2]};
   sim::View view;
   const sim::Mat4 to_anchor = sim::rigid_pose(eye.position_m, eye.orientation);
-  view.view = sim::multiply(sim::rigid_inverse(to_anchor), sim::look_at(camera.eye_m, ahead));
+  view.view = sim::multiply(sim::rigid_inverse(to_anchor), to_room(camera));
   view.near_m = camera.near_m;
   view.far_m = camera.far_m;
   view.projection = sim::frustum(left, right, down, up, camera.near_m, camera.far_m);

@@ -8,16 +8,25 @@
 #include <utility>
 #include <vector>
 
+#include "libsim/saliency/looks.hpp"
 #include "libsim/view/camera.hpp"
 #include "libstudy/display/canvas.hpp"
 
 namespace apps {
+
+/// A ray in the space that eye_view() places eyes in: where somebody in a headset looks.
+struct RoomRay {
+  std::array<double, 3> place_m{};    ///< metres of the scene
+  std::array<double, 3> direction{};  ///< of any length but 0
+};
 
 /// How a fluid is watched. Empty functions: the gaze rests on the middle of the picture, and the angle that
 /// it fills of the eye's view is not known.
 struct Viewing {
   /// Where one looks in a picture of this width and height, px from its lower left corner; none: not known.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
+  /// Where two eyes look; none: not known. Empty: straight ahead of the left one.
+  std::function<std::optional<RoomRay>()> ray{};
   /// Vertical angle that a picture of this width and height, px, fills of the eye's view, degrees.
   std::function<double(int, int)> visual_angle_deg;
   /// The camera takes that angle, where it is known, instead of the scene's: the picture is a window onto the
@@ -48,6 +57,9 @@ sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, 
 /// horizon is where the person's own is. Angles are the headset's, not the camera's. base::Error for angles
 /// or a rectangle that make no picture, and a camera that looks straight up or down.
 sim::View eye_view(const sim::Camera& camera, const study::EyeView& eye);
+
+/// The same ray in the scene.
+sim::Gaze gaze_along(const sim::Camera& camera, const RoomRay& ray);
 
 /// What is drawn on a canvas: framed_view() of the whole, or eye_view() of each eye.
 std::vector<sim::View> views_on(const sim::Camera& camera, const Viewing& viewing,

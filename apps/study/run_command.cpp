@@ -113,12 +113,6 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
-bool asks_gaze(const study::Protocol& protocol) {
-  const auto all = study::all_questions(protocol);
-  return std::any_of(all.begin(), all.end(),
-                     [](const auto& entry) { return entry.second->id == study::gaze_question; });
-}
-
 Played play(const RunCommand& command, const study::Protocol& protocol, const study::SessionPlan& common,
             const std::vector<std::string>& codes, SessionSetup& setup) {
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
@@ -162,7 +156,7 @@ void run(RunCommand& command) {
   for (const std::string& note : framing_notes(protocol, setup.scenes))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
-    std::fprintf(stderr, "%s: does not ask %s; where the mouse is will not be recorded\n",
+    std::fprintf(stderr, "%s: does not ask %s; where one looks will not be recorded\n",
                  command.protocol.c_str(), study::gaze_question);
   }
 
@@ -214,9 +208,10 @@ void add_run_command(CLI::App& app) {
                  "(one looks at it for a second), keyboard (this terminal's); default: ray,stick,keyboard");
   sub.add_option(
          "--gaze", command->run.gaze,
-         "Where one is taken to look: the middle of the picture, the mouse (recorded where gaze_kept is "
-         "answered with yes), or not known; tracked: an observer's, as if a tracker had told it")
-      ->check(CLI::IsMember({"fixed", "mouse", "none", "tracked"}));
+         "Where one is taken to look: the middle of the picture, the mouse, the head's direction, the "
+         "headset's eye tracker (recorded where gaze_kept is answered with yes), or not known; tracked "
+         "without a headset: an observer's, as if a tracker had told it")
+      ->check(CLI::IsMember({"fixed", "mouse", "head", "tracked", "none"}));
   sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
       ->check(text_up_to(100));
   add_viewing(sub, command->run.screen_width_mm, command->run.viewing_distance_mm,

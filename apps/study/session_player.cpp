@@ -235,6 +235,8 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
                             *setup.participant, store,          personal ? &*personal : nullptr,
                             setup.virtual_clock};
   parts.gaze = setup.gaze.get();
+  parts.slots = setup.slots.get();
+  parts.targets = setup.targets.get();
   std::vector<std::string> warnings;
   for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
   if (setup.rates.too_slow) warnings.emplace_back("live cells: not all reach their setting on this station");

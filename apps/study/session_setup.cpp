@@ -1,7 +1,8 @@
 #include "apps/study/session_setup.hpp"
 
 #include "apps/common/headless_display.hpp"
-#include "apps/common/headset/headset_display.hpp"
+#include "apps/common/headset/headset_recorder.hpp"
+#include "apps/common/headset/headset_targets.hpp"
 #include "apps/study/cell_features.hpp"
 #include "apps/study/headset/headset_person.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
@@ -26,8 +27,12 @@ std::unique_ptr<study::Clock> make_clock(const std::string& word) {
 void check_together(const RunOptions& options, const study::Protocol& protocol) {
   if (!options.answer.empty() && (options.display != "openxr" || !options.observer.empty()))
     throw base::Error("--answer", "is for a person in a headset", "leave it out, or use --display openxr");
-  if (options.display == "openxr" && options.gaze != "fixed" && options.gaze != "none")
-    throw base::Error("--gaze " + options.gaze, "is not read from a headset yet", "use --gaze fixed or none");
+  if (options.gaze == "head" && options.display != "openxr")
+    throw base::Error("--gaze head", "needs a headset", "use --gaze fixed, or --display openxr");
+  if (options.gaze == "tracked" && options.display == "openxr" && !asks_gaze(protocol))
+    throw base::Error(
+        "--gaze tracked", "is not read before somebody allows it, and the protocol does not ask",
+        std::string("ask ") + study::gaze_question + " on its page of kind consent, or use --gaze head");
   const bool shows_pages = options.display == "window" || options.display == "openxr";
   if (options.observer.empty() && !shows_pages)
     throw base::Error("--display " + options.display, "shows nothing to a person",
@@ -38,8 +43,8 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
     throw base::Error("--clock virtual", "does not wait for a window", "use --clock real");
   if (options.gaze == "mouse" && options.display != "window")
     throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
-  if (options.gaze == "tracked" && options.observer.empty())
-    throw base::Error("--gaze tracked", "needs an eye tracker, and none can be read",
+  if (options.gaze == "tracked" && options.display != "openxr" && options.observer.empty())
+    throw base::Error("--gaze tracked", "needs an eye tracker, and only a headset's can be read",
                       "use --gaze fixed or mouse; an --observer may be taken as tracked");
   if (protocol.fixation && options.display != "none" && options.gaze != "fixed")
     throw base::Error("--gaze " + options.gaze,
@@ -68,13 +73,41 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
   }
 }
 
+/// Its eye tracker is asked for where gaze is to be tracked, and not read before somebody allows it. Targets
+/// for its validation stand on a page.
+HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
+  constexpr int target_px = 128;
+  if (options.gaze != "tracked") return choice;
+  choice.eye_gaze = true;
+  if (choice.page_width_px == 0) choice.page_width_px = choice.page_height_px = target_px;
+  return choice;
+}
+
+/// What is recorded of the headset, and what the fluid follows.
+void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionSetup& setup,
+                    Viewing& viewing) {
+  const bool tracked = options.gaze == "tracked";
+  if (tracked && !display.session().has_eye_gaze())
+    throw base::Error("--gaze tracked", "the headset has no eye tracker that its software offers",
+                      "switch eye tracking on in the headset's software, or use --gaze head");
+  const auto recorder = std::make_shared<HeadsetRecorder>(
+      display, tracked ? study::GazeOrigin::Tracker : study::GazeOrigin::Head);
+  setup.slots = recorder;
+  if (tracked) setup.targets = std::make_unique<HeadsetTargets>(display);
+  if (!tracked && options.gaze != "head") return;
+  setup.gaze = recorder;
+  viewing.ray = [recorder] { return recorder->ray(); };
+}
+
 /// Its slots are the clock.
-void take_headset(SessionSetup& setup, const RunOptions& options, const study::Protocol& protocol) {
+void take_headset(const RunOptions& options, const study::Protocol& protocol, SessionSetup& setup,
+                  Viewing& viewing) {
   const bool person = options.observer.empty();
   const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
   const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
-  const HeadsetChoice choice = person ? choice_for_person(ways) : HeadsetChoice{};
+  const HeadsetChoice choice = with_gaze(person ? choice_for_person(ways) : HeadsetChoice{}, options);
   auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
+  record_headset(options, *headset, setup, viewing);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
   setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
     if (!display->take_spoilt()) return others();
@@ -124,6 +157,12 @@ stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::str
 
 }  // namespace
 
+bool asks_gaze(const study::Protocol& protocol) {
+  const auto all = study::all_questions(protocol);
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto& entry) { return entry.second->id == study::gaze_question; });
+}
+
 std::string SessionSetup::departure() const {
   std::string out = stimuli->bakes().departure();
   for (const FramedScene& one : scenes) {
@@ -156,7 +195,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
     setup.screen = window.screen;
     size = window.size;
   } else if (options.display == "openxr") {
-    take_headset(setup, options, protocol);
+    take_headset(options, protocol, setup, viewing);
   } else {
     setup.display = make_display(options);
   }

@@ -23,7 +23,9 @@ struct SessionSetup {
   std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::unique_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
+  std::shared_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
+  std::shared_ptr<study::SlotSource> slots;     ///< of a headset
+  std::unique_ptr<study::GazeTargets> targets;  ///< of an eye tracker
   WindowWish wish;                              ///< the window's or the headset's, or empty
   std::function<std::optional<double>()> idle;  ///< likewise
   std::function<void()> listen;       ///< from now on the terminal's keys answer a headset's pages, or empty
@@ -37,6 +39,9 @@ struct SessionSetup {
   /// test data.
   std::string departure() const;
 };
+
+/// Whether participants are asked for permission to record where they look.
+bool asks_gaze(const study::Protocol& protocol);
 
 /// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives
 /// temporal acceleration. base::Error naming what is missing, wrong or does not go together.

@@ -24,8 +24,10 @@ enum class BlockKind {
   Repeat,        ///< trials shown again: test-retest
   Catch,         ///< pages among the trials, with an answer that attention gives
   Ssq,           ///< Simulator Sickness Questionnaire (Kennedy et al. 1993)
-  Fms,           ///< Fast Motion Sickness scale, 0 to 20 (Keshavarz and Hecht 2011), with a stop rule
-  Debrief        ///< the last text
+  /// Targets to look at: how well the eye tracker does. Left out where none is read, or may be recorded.
+  GazeValidation,
+  Fms,     ///< Fast Motion Sickness scale, 0 to 20 (Keshavarz and Hecht 2011), with a stop rule
+  Debrief  ///< the last text
 };
 
 /// "instructions", "screening", ...
@@ -61,10 +63,14 @@ struct Block {
   std::string text;                 ///< of a page: plain, paragraphs parted by empty lines
   double seconds = 0;               ///< Rest, Break, Black: length. Instructions, Debrief: least time
   std::vector<Question> questions;  ///< of a page; Stimulus: asked in its steps
-  int count = 0;                    ///< Practice, Repeat: trials. Catch: pages, at random places of `like`
-  std::string like;                 ///< Practice, Repeat, Catch: id of a Stimulus block
-  std::vector<TrialStep> steps;     ///< Practice, Stimulus, Repeat: what each trial does
-  double between_groups_s = 0;      ///< Stimulus: a break before each group of the design but the first
+  /// Practice, Repeat: trials. Catch: pages, at random places of `like`. GazeValidation: tries.
+  int count = 0;
+  double extent_deg = 10;  ///< GazeValidation: of the outer targets from the middle, across and up
+  /// GazeValidation: of the mean over the targets; more is tried again, and at last refused. None: any.
+  std::optional<double> max_accuracy_deg;
+  std::string like;              ///< Practice, Repeat, Catch: id of a Stimulus block
+  std::vector<TrialStep> steps;  ///< Practice, Stimulus, Repeat: what each trial does
+  double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
   Interruption on_interruption = Interruption::Resume;  ///< Practice, Stimulus, Repeat: that of Stimulus
 };
 

@@ -12,7 +12,7 @@ struct KindName {
   const char* name;
 };
 
-constexpr std::array<KindName, 15> kind_names{{{BlockKind::Instructions, "instructions"},
+constexpr std::array<KindName, 16> kind_names{{{BlockKind::Instructions, "instructions"},
                                                {BlockKind::Screening, "screening"},
                                                {BlockKind::Consent, "consent"},
                                                {BlockKind::Demographics, "demographics"},
@@ -25,6 +25,7 @@ constexpr std::array<KindName, 15> kind_names{{{BlockKind::Instructions, "instru
                                                {BlockKind::Repeat, "repeat"},
                                                {BlockKind::Catch, "catch"},
                                                {BlockKind::Ssq, "ssq"},
+                                               {BlockKind::GazeValidation, "gaze_validation"},
                                                {BlockKind::Fms, "fms"},
                                                {BlockKind::Debrief, "debrief"}}};
 
@@ -44,6 +45,7 @@ bool any_of(BlockKind kind, std::initializer_list<BlockKind> kinds) {
 
 /// What a page shows and how long.
 void read_page(const base::TomlTable& table, Block& block) {
+  if (block.kind == BlockKind::GazeValidation) return;
   if (block.kind != BlockKind::Black) block.title = table.string_or("title", "");
   if (any_of(block.kind, {BlockKind::Instructions, BlockKind::Consent, BlockKind::Debrief}))
     block.text = text_of(table, "text");
@@ -97,6 +99,12 @@ void read_trials(const base::TomlTable& table, const Design& design, Block& bloc
   }
 }
 
+void read_validation(const base::TomlTable& table, Block& block) {
+  block.count = static_cast<int>(table.integer_or("tries", 3, {1, 20}));
+  block.extent_deg = table.number_or("extent_deg", 10, {1, 30});
+  if (table.has("max_accuracy_deg")) block.max_accuracy_deg = table.number("max_accuracy_deg", {0.1, 20});
+}
+
 Block read_block(const base::TomlTable& table, const Design& design, const std::string& language) {
   Block block;
   block.kind = read_kind(table);
@@ -108,6 +116,7 @@ Block read_block(const base::TomlTable& table, const Design& design, const std::
   }
   read_block_questions(table, block, language);
   if (block.kind == BlockKind::Stimulus) read_trials(table, design, block);
+  if (block.kind == BlockKind::GazeValidation) read_validation(table, block);
   return block;
 }
 

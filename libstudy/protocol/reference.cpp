@@ -44,6 +44,7 @@ meets `groups` of them, one after another.)"},
 | repeat | trials shown again, with the very same intervals: test-retest |
 | catch | pages after trials drawn at random, with an answer that attention gives |
 | ssq | Simulator Sickness Questionnaire (Kennedy et al. 1993): ids ssq_1 to ssq_16, 0 to 3 |
+| gaze_validation | nine targets to look at, each for 1.8 s: how well a headset's eye tracker does |
 | fms | Fast Motion Sickness scale (Keshavarz and Hecht 2011): id fms, 0 to 20 |
 | debrief | the last text |
 
@@ -55,7 +56,7 @@ block. Blocks of kind screening, consent, demographics, stimulus, question and c
 Two ids are kept for questions whose answers the program obeys. They stand in a block of kind consent, with
 `kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
 
-- `gaze_kept`: may be recorded where one looks. No row of gaze is written unless it was answered with 1; a
+- `gaze_kept`: may be recorded where one looks and how the head moves. No row of gaze is written unless it was answered with 1; a
   protocol that does not ask records none.
 - `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was asked
   and has not answered, is left out of them whole. Those whom no protocol asked are in them.
@@ -191,10 +192,12 @@ const std::vector<KeyReference>& protocol_reference() {
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "
-       "\"question\", \"rest\", \"break\", \"black\", \"repeat\", \"catch\", \"ssq\", \"fms\", \"debrief\"",
+       "\"question\", \"rest\", \"break\", \"black\", \"repeat\", \"catch\", \"ssq\", \"gaze_validation\", "
+       "\"fms\", "
+       "\"debrief\"",
        "", "as above"},
       {"block", "id", "text", "", "", "unique: a letter, then letters, digits and '_', 64 at most"},
-      {"block", "title", "text", "", "\"\"", "heading of the page; not for black"},
+      {"block", "title", "text", "", "\"\"", "heading of the page; not for black and gaze_validation"},
       {"block", "text", "text", "", "\"\"",
        "of the page, paragraphs parted by empty lines; needed by instructions, consent and debrief, not for "
        "black and blocks of trials"},
@@ -204,6 +207,12 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block", "count", "whole number", "[1, 1000]", where_needed,
        "needed by practice, repeat and catch: trials or pages; for repeat and catch at most the trials of "
        "the design"},
+      {"block", "tries", "whole number", "[1, 20]", "3", "gaze_validation: at most so many"},
+      {"block", "extent_deg", "number", "[1, 30]", "10",
+       "gaze_validation: of the outer targets from the middle one, across and up, degrees"},
+      {"block", "max_accuracy_deg", "number", "[0.1, 20]", "any",
+       "gaze_validation: a mean error over this is tried again; after the last try the session is left to be "
+       "resumed, degrees"},
       {"block", "like", "text", "", where_needed,
        "needed by practice, repeat and catch: id of the stimulus block. Practice comes before it, repeats "
        "after it"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libstudy/session/farewell.hpp"
+#include "libstudy/session/gaze_validation.hpp"
 #include "libstudy/session/recording.hpp"
 #include "libstudy/session/trial_player.hpp"
 #include "stats/base/error.hpp"
@@ -70,6 +71,9 @@ class SessionRun {
         break;
       case BlockKind::Black:
         pause({PauseKind::Black, block.seconds}, check);
+        break;
+      case BlockKind::GazeValidation:
+        validate_gaze(run_, block, check);
         break;
       case BlockKind::Stimulus:  // between two groups
         pause({PauseKind::Break, block.between_groups_s}, check);

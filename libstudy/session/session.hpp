@@ -10,6 +10,7 @@
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/gaze.hpp"
+#include "libstudy/display/gaze_targets.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
@@ -37,7 +38,8 @@ struct SessionParts {
   bool virtual_clock = false;
   /// Recorded while a stimulus is shown to who allows it. Without: nothing is measured.
   GazeSource* gaze = nullptr;
-  SlotSource* slots = nullptr;  ///< the headset, where there is one
+  SlotSource* slots = nullptr;     ///< the headset, where there is one
+  GazeTargets* targets = nullptr;  ///< to validate the eye tracker by, where there is one
 };
 
 /// What happened to a unit, told once it is committed. Answers themselves stay in the store.

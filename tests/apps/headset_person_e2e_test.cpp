@@ -15,11 +15,17 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Where a page of the pilot has "yes", a score of 4, and the button to go on: parts of it from its left and
-/// its top.
-const std::string pilot_targets = "targets=0.5:0.525,0.5:0.39,0.5:0.9";
-const std::string by_ray = "point=page;hold=0.4;" + pilot_targets;
-const std::string by_dwell = "look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + pilot_targets;
+/// Parts of a page of the pilot from its left and its top: "yes" to consent, also "No, go on" and a score of
+/// 4 on a session's first page; a score of 4; the button to go on.
+const std::string pilot_targets = "targets=0.5:0.503,0.5:0.39,0.5:0.9";
+const std::string by_ray = "point=page;hold=0.4;" + pilot_targets + ";";
+const std::string by_dwell = "look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + pilot_targets + ";";
+
+/// Where nothing goes on any more the headset's software ends.
+constexpr int most_frames = 4000;
+std::string script_of(const std::string& events) {
+  return "at=" + events + std::to_string(most_frames) + ":exit";
+}
 
 class HeadsetPersonE2e : public test::HeadsetRuns {
  protected:
@@ -32,7 +38,8 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
 
   /// The pilot with these means, played although some are approximate; five seconds on the first page are
   /// one.
-  std::string pilot(const std::string& means) {
+  std::string pilot(const std::string& means, const std::string& seconds = "0.5") {
+    trial_seconds_ = seconds;
     std::string text = test::short_protocol("10");
     text = test::replaced(text, "mean_fps = [20, 50]", "mean_fps = " + means);
     text = test::replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
@@ -43,9 +50,21 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
   }
 
   std::vector<std::string> arguments(const std::string& protocol, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> all{
-        "run",     protocol,  "--db",       database_, "--participant",   "P01", "--display", "openxr",
-        "--clock", "virtual", "--stimulus", dam_,      "--trial-seconds", "0.5", "--events"};
+    std::vector<std::string> all{"run",
+                                 protocol,
+                                 "--db",
+                                 database_,
+                                 "--participant",
+                                 "P01",
+                                 "--display",
+                                 "openxr",
+                                 "--clock",
+                                 "virtual",
+                                 "--stimulus",
+                                 dam_,
+                                 "--trial-seconds",
+                                 trial_seconds_,
+                                 "--events"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -65,7 +84,8 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
   }
 
   const std::string dam_ = folder_ / "dam.bake";
-  const std::string database_ = folder_ / "study.db";
+  std::string trial_seconds_ = "0.5";
+  std::string database_ = folder_ / "study.db";
 };
 
 /// Degrees from edge to edge of each quad of the log, to an eye 1.5 m ahead of its middle.
@@ -82,21 +102,114 @@ std::set<int> page_widths(const std::string& log) {
 }
 
 TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByARay) {
-  const auto ended = session(by_ray, pilot("[10, 30]"));
+  const auto ended = session(by_ray + script_of(""), pilot("[10, 30]"));
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("2 of 2 trials answered"));
   EXPECT_THAT(ended.out, HasSubstr("2 of 2 trials pass"));
   EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"),
               ::testing::ElementsAre("1", "4", "4"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("ray"));
   EXPECT_THAT(column("SELECT test_data FROM session"), ::testing::ElementsAre("1"));
   EXPECT_EQ(page_widths(calls()), std::set<int>{38});
 }
 
 TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByTheEyesAlone) {
-  const auto ended = session(by_dwell, pilot("[10]"), {"--answer", "dwell"});
+  const auto ended = session(by_dwell + script_of(""), pilot("[10]"), {"--answer", "dwell"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
   EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"), ::testing::ElementsAre("1", "4"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("dwell"));
+}
+
+TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
+  // Left goes to the last choice, select takes it, and select goes on.
+  std::string script;
+  for (int frame = 0; frame < most_frames; frame += 60) {
+    for (const auto& [later, what] : std::vector<std::pair<int, std::string>>{{5, "thumb_x/-0.9"},
+                                                                              {10, "thumb_x/0"},
+                                                                              {20, "select/1"},
+                                                                              {25, "select/0"},
+                                                                              {40, "select/1"},
+                                                                              {45, "select/0"}})
+      script += std::to_string(frame + later) + ":" + what + ",";
+  }
+  const auto ended = session("controller=oculus/touch_controller;" + script_of(script), pilot("[10]"),
+                             {"--answer", "stick"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"), ::testing::ElementsAre("1", "7"));
+  EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("stick"));
+}
+
+TEST_F(HeadsetPersonE2e, StopOnThePageEndsTheSession) {
+  const auto ended =
+      session("point=page;hold=0.4;targets=0.06:0.94,0.5:0.557,0.5:0.9;" + script_of(""), pilot("[10]"));
+  EXPECT_EQ(ended.exit_code, 3) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("P01 stopped before the end"));
+  EXPECT_THAT(ended.out, HasSubstr("showings: 0"));
+}
+
+TEST_F(HeadsetPersonE2e, MenuDuringAStimulusAsksAndTheTrialIsShownAgain) {
+  const auto ended = session(by_ray + script_of("520:menu/1,640:menu/0,"), pilot("[10]", "3"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("showings: 2, 1 of them count, 1 cut short"));
+}
+
+TEST_F(HeadsetPersonE2e, TimeAwayFromAPageIsNoResponseTime) {
+  const std::string protocol = pilot("[10]"),
+                    times = "SELECT response_time_s FROM response ORDER BY response_id";
+  ASSERT_EQ(session(by_ray + script_of(""), protocol).exit_code, 0);
+  const double usual_s = std::stod(column(times)[0]);
+  database_ = folder_ / "away.db";
+  ASSERT_EQ(session(by_ray + script_of("230:focus/0,500:focus/1,"), protocol).exit_code, 0);
+  const double away_s = std::stod(column(times)[0]);
+  EXPECT_NE(away_s, usual_s) << "it was on this page";
+  EXPECT_NEAR(away_s, usual_s, 1.3) << "of three seconds; the hand goes once more from target to target";
+}
+
+TEST_F(HeadsetPersonE2e, AKilledSessionIsResumedAndNothingIsAskedTwice) {
+  const std::string protocol = pilot("[10, 30]");
+  const auto environment = simulated("size=32x32;" + by_ray + script_of(""));
+  std::set<std::pair<std::string, int>> before;
+  {
+    auto all = arguments(protocol);
+    all.insert(all.begin(), bin + "/vip-study");
+    test::Process killed(all, [&] { prepare(environment); });
+    while (const auto line = killed.read_line()) {
+      if (line->starts_with("done P01 2 ")) break;  // the first trial; the second is under way
+    }
+    killed.send(SIGKILL);
+    EXPECT_EQ(killed.wait().signal, SIGKILL);
+    before = test::done_in(database_);
+  }
+  ASSERT_GE(before.size(), 3u);
+  const auto resumed =
+      study("size=32x32;" + by_ray + script_of(""), {"resume", "--db", database_, "--events"});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.out, HasSubstr("2 of 2 trials answered"));
+  for (const auto& key : test::acknowledged(resumed.out)) EXPECT_FALSE(before.count(key)) << key.second;
+  EXPECT_EQ(test::answers_in(database_).size(), 3u);
+}
+
+TEST_F(HeadsetPersonE2e, TheConsoleSteersFromItsTerminal) {
+  std::string line = "printf 'nthe door opened\\n' | " + bin + "/vip-study";
+  for (const std::string& one : arguments(pilot("[10]"), {"--console"})) line += " '" + one + "'";
+  const auto environment = simulated("size=32x32;" + by_ray + script_of(""));
+  const auto ended = test::run_program({"/bin/sh", "-c", line}, [&] { prepare(environment); });
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("noted: the door opened"));
+  EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered"));
+}
+
+TEST_F(HeadsetPersonE2e, WhatAPersonCannotAnswerWithIsRefusedBeforeAnythingIsWritten) {
+  for (const auto& [ways, says] : std::vector<std::pair<std::string, std::string>>{
+           {"nod", "'nod' is not known"}, {"ray,dwell", "both point"}}) {
+    const auto ended = session(by_ray, pilot("[10]"), {"--answer", ways});
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_THAT(ended.err, HasSubstr(says));
+    EXPECT_FALSE(fs::exists(database_));
+  }
+  const auto observer = session(by_ray, pilot("[10]"), {"--answer", "ray", "--observer", "random"});
+  EXPECT_THAT(observer.err, HasSubstr("is for a person in a headset"));
 }
 
 }  // namespace

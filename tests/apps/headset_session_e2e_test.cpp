@@ -167,7 +167,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   refuse("headset=unavailable", {}, "no headset is connected");
   refuse("opaque=0", {}, "world");
   refuse("clock=real", {}, "use --clock real");
-  refuse("", {"--gaze", "tracked"}, "is not read from a headset yet");
+  refuse("", {"--gaze", "tracked"}, "the protocol does not ask");
   const std::string pictures = folder_ / "pictures.bake";
   const auto baked =
       test::run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",

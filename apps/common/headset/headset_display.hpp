@@ -58,6 +58,9 @@ class HeadsetDisplay final : public study::Display {
   /// The same, after the next slot; nothing where none came for a tenth of a second.
   std::vector<HeadsetRecord> next_records();
   const HeadsetSession& session() const { return loop_.session(); }
+  const study::HeadsetRules& rules() const { return rules_; }
+  /// Where the eyes will be in the next slot.
+  EyeViews views_now() { return loop_.views_at(loop_.next_ns()); }
   LoopFacts facts() const { return loop_.facts(); }
 
   /// Whether the participant sees and can answer.

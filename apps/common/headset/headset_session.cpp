@@ -152,6 +152,11 @@ std::string HeadsetSession::description() const {
 bool HeadsetSession::keeps_levels() const { return apps::keeps_levels(parts_->swapchains[0]->format()); }
 bool HeadsetSession::times_convert() const { return parts_->clock.converts(); }
 bool HeadsetSession::has_eye_gaze() const { return parts_->system.eye_gaze; }
+HeadsetNames HeadsetSession::names() const {
+  const auto [runtime, version] = read_runtime(parts_->xr);
+  return {runtime, version, parts_->system.name, gl_format_name(parts_->swapchains[0]->format()),
+          parts_->system.position};
+}
 HeadsetState HeadsetSession::state() const { return parts_->lifecycle.state(); }
 bool HeadsetSession::running() const { return parts_->lifecycle.running(); }
 void HeadsetSession::request_exit() { parts_->lifecycle.request_exit(); }

@@ -51,6 +51,13 @@ struct HeadsetLayers {
   HeadsetPage place{};                   ///< of the page
 };
 
+/// What runtime and headset call themselves and tell.
+struct HeadsetNames {
+  std::string runtime, runtime_version, headset;
+  std::string format;              ///< of the pictures handed over
+  bool position_tracking = false;  ///< the head's place is followed, not its direction alone
+};
+
 /// A display rate and where it is from.
 struct HeadsetRate {
   std::optional<double> told_hz;      ///< by the runtime; only where it lists several rates
@@ -74,6 +81,7 @@ class HeadsetSession {
   bool keeps_levels() const;        ///< 0 to 255 arrive within one level
   bool times_convert() const;       ///< else predicted_ns is a guess of where the runtime's clock stands
   bool has_eye_gaze() const;
+  HeadsetNames names() const;
 
   HeadsetState state() const;
   bool running() const;  ///< frames must come

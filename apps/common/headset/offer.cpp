@@ -1,8 +1,7 @@
 #include "apps/common/headset/offer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <tuple>
 
 #include "apps/common/headset/refresh.hpp"
 #include "apps/common/headset/session_handle.hpp"
@@ -11,15 +10,8 @@ namespace apps {
 
 namespace {
 
-void read_runtime(const XrConnection& xr, HeadsetOffer& out) {
-  XrInstanceProperties found{};
-  found.type = XR_TYPE_INSTANCE_PROPERTIES;
-  check_xr(xr.function<PFN_xrGetInstanceProperties>("xrGetInstanceProperties")(xr.instance(), &found),
-           "xrGetInstanceProperties");
-  out.runtime = found.runtimeName;
-  out.runtime_version =
-      fmt::format("{}.{}.{}", XR_VERSION_MAJOR(found.runtimeVersion), XR_VERSION_MINOR(found.runtimeVersion),
-                  XR_VERSION_PATCH(found.runtimeVersion));
+void read_instance(const XrConnection& xr, HeadsetOffer& out) {
+  std::tie(out.runtime, out.runtime_version) = read_runtime(xr);
   out.extensions = xr.offered();
   std::sort(out.extensions.begin(), out.extensions.end());
   out.time_converts = xr.has(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
@@ -49,7 +41,7 @@ void read_in_session(const XrConnection& xr, const HeadsetSystem& system, Headse
 HeadsetOffer read_headset_offer() {
   const XrConnection xr = connect_to_headset();
   HeadsetOffer out;
-  read_runtime(xr, out);
+  read_instance(xr, out);
   const HeadsetSystem system = read_system(xr);
   out.headset = system.name;
   out.position = system.position;

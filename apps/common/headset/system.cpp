@@ -1,5 +1,7 @@
 #include "apps/common/headset/system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -92,6 +94,16 @@ XrConnection connect_to_headset(bool eye_gaze) {
                                   XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME};
   if (eye_gaze) wanted.emplace_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
   return {{XR_KHR_OPENGL_ENABLE_EXTENSION_NAME}, wanted};
+}
+
+std::pair<std::string, std::string> read_runtime(const XrConnection& xr) {
+  XrInstanceProperties found{};
+  found.type = XR_TYPE_INSTANCE_PROPERTIES;
+  check_xr(xr.function<PFN_xrGetInstanceProperties>("xrGetInstanceProperties")(xr.instance(), &found),
+           "xrGetInstanceProperties");
+  return {found.runtimeName,
+          fmt::format("{}.{}.{}", XR_VERSION_MAJOR(found.runtimeVersion),
+                      XR_VERSION_MINOR(found.runtimeVersion), XR_VERSION_PATCH(found.runtimeVersion))};
 }
 
 HeadsetSystem read_system(const XrConnection& xr) {

@@ -2,6 +2,7 @@
 /// The headset behind a runtime: its name, its views and what it follows.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/headset/loader.hpp"
@@ -26,6 +27,9 @@ sim::GlContext make_headset_context();
 
 /// Connects with every extension that the program has a use for; eye tracking only where it is asked for.
 XrConnection connect_to_headset(bool eye_gaze = true);
+
+/// The runtime's name, and its version as it counts.
+std::pair<std::string, std::string> read_runtime(const XrConnection& xr);
 
 /// base::Error when no headset is connected, or it has no pair of views.
 HeadsetSystem read_system(const XrConnection& xr);
