@@ -14,6 +14,7 @@
 #include "apps/bench/timing.hpp"
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headset/headset_session.hpp"
+#include "apps/common/headset/system.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/simulation.hpp"
@@ -41,8 +42,7 @@ struct Stages {
 /// A live fluid that is stepped and drawn for both eyes in every slot, one stage after another.
 class HeadsetBench {
  public:
-  explicit HeadsetBench(const HeadsetBenchOptions& options)
-      : gl_(sim::GlContext::make_headless()), session_(gl_) {
+  explicit HeadsetBench(const HeadsetBenchOptions& options) : gl_(make_headset_context()), session_(gl_) {
     const PictureSize size = session_.picture_size();
     picture_ = std::make_unique<sim::Offscreen>(size.width, size.height);
     StimulusChoice choice = options.fluid;

@@ -13,6 +13,7 @@
 
 #include "apps/common/headset/headset_session.hpp"
 #include "apps/common/headset/loader.hpp"
+#include "apps/common/headset/system.hpp"
 #include "apps/common/headset/test_scene.hpp"
 #include "stats/base/error.hpp"
 
@@ -207,7 +208,7 @@ class Show {
 };
 
 void show_sessions(const ShowChoice& choice, ShowReport& report) {
-  const sim::GlContext gl = sim::GlContext::make_headless();
+  const sim::GlContext gl = make_headset_context();
   const TestScene scene;
   double seconds_left = choice.seconds;
   for (int session = 1;; ++session) {

@@ -1,5 +1,3 @@
-#include "libsim/render/gl_context.hpp"
-
 // epoxy first: it replaces the headers of EGL and GL.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "libsim/render/gl_context_state.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {
@@ -72,17 +71,12 @@ std::vector<Trial> list_trials(const char* client_extensions) {
   return trials;
 }
 
-}  // namespace
-
-struct GlContext::State {
+struct EglState final : public GlContext::State {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLConfig config = nullptr;
   EGLContext context = EGL_NO_CONTEXT;
 
-  State() = default;
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() {
+  ~EglState() override {
     if (context != EGL_NO_CONTEXT) {
       if (eglGetCurrentContext() == context) {
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -123,7 +117,24 @@ struct GlContext::State {
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return "eglMakeCurrent failed";
     return "";
   }
+
+  bool make_current() override {
+    eglBindAPI(EGL_OPENGL_API);  // each thread has its own
+    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+  }
+  void release() override { eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+  std::unique_ptr<State> make_shared() const override {
+    auto out = std::make_unique<EglState>();
+    out->display = display;
+    out->config = config;
+    out->create(context);
+    if (out->context == EGL_NO_CONTEXT) return nullptr;
+    return out;
+  }
+  EglHandles egl() const override { return {display, config, context}; }
 };
+
+}  // namespace
 
 GlContext::GlContext(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GlContext::GlContext(GlContext&&) noexcept = default;
@@ -138,7 +149,7 @@ GlContext GlContext::make_headless() {
   }
   std::string told;
   for (const Trial& trial : list_trials(extensions)) {
-    auto state = std::make_unique<State>();
+    auto state = std::make_unique<EglState>();
     const std::string problem = state->open(trial);
     if (problem.empty()) {
       require_gl45();
@@ -151,26 +162,20 @@ GlContext GlContext::make_headless() {
 }
 
 GlContext GlContext::make_shared() const {
-  auto state = std::make_unique<State>();
-  state->display = state_->display;
-  state->config = state_->config;
-  state->create(state_->context);
-  if (state->context == EGL_NO_CONTEXT)
-    throw base::Error("OpenGL", "the driver gives no second context", "update the graphics driver");
+  std::unique_ptr<State> state = state_->make_shared();
+  if (!state) throw base::Error("OpenGL", "the driver gives no second context", "update the graphics driver");
   return GlContext(std::move(state));
 }
 
 void GlContext::make_current() {
-  eglBindAPI(EGL_OPENGL_API);  // each thread has its own
-  if (!eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_->context)) {
-    throw base::Error("OpenGL", "the headless context cannot be made current",
-                      "release it on the other thread first");
-  }
+  if (state_->make_current()) return;
+  throw base::Error("OpenGL", "the headless context cannot be made current",
+                    "release it on the other thread first");
 }
 
-void GlContext::release() { eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
-
-EglHandles GlContext::egl() const { return {state_->display, state_->config, state_->context}; }
+void GlContext::release() { state_->release(); }
+EglHandles GlContext::egl() const { return state_->egl(); }
+GlxHandles GlContext::glx() const { return state_->glx(); }
 
 namespace {
 std::string gl_string(GLenum name) {

@@ -14,16 +14,29 @@ struct EglHandles {
   void* context = nullptr;
 };
 
-/// A headless EGL context, current on the thread that made it; destroyed with the object. Order of trial: EGL
-/// devices with hardware (a GPU without a display), Mesa's surfaceless platform, EGL's software devices.
+/// The same of GLX.
+struct GlxHandles {
+  void* display = nullptr;  ///< none: it is no context of GLX
+  void* config = nullptr;
+  unsigned long drawable = 0;
+  void* context = nullptr;
+  unsigned visual = 0;
+};
+
+/// A context without a window, current on the thread that made it; destroyed with the object.
 class GlContext {
  public:
-  /// Errors: base::Error when there is no EGL or no driver that gives OpenGL 4.5, with what each trial said.
+  /// By EGL. Order of trial: EGL devices with hardware (a GPU without a display), Mesa's surfaceless
+  /// platform, EGL's software devices. Errors: base::Error when there is no EGL or no driver that gives
+  /// OpenGL 4.5, with what each trial said.
   static GlContext make_headless();
 
   GlContext(GlContext&&) noexcept;
   GlContext& operator=(GlContext&&) noexcept;
   ~GlContext();
+
+  /// By GLX on the X display of $DISPLAY, for those who know no EGL. base::Error when there is none.
+  static GlContext make_on_x();
 
   /// Another context that shares textures and buffers with this one; current nowhere. base::Error when the
   /// driver gives none.
@@ -34,9 +47,11 @@ class GlContext {
   /// Leaves the calling thread without a context.
   void release();
   EglHandles egl() const;
+  GlxHandles glx() const;
+
+  struct State;
 
  private:
-  struct State;
   explicit GlContext(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

@@ -35,7 +35,7 @@ class HeadsetRuns : public ::testing::Test {
   /// In the child that becomes the program.
   void prepare(const Environment& environment) const {
     for (const char* name :
-         {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS"})
+         {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS", "DISPLAY"})
       ::unsetenv(name);
     ::setenv("VIP_XR_LOG", log().c_str(), 1);
     ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);

@@ -18,6 +18,8 @@ class XScreen {
 
   const XrGraphicsBindingOpenGLXlibKHR& binding() const { return binding_; }
 
+  const std::string& name() const { return name_; }
+
  private:
   void start();
   void make_context();

@@ -2,7 +2,12 @@
 /// layer says.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <regex>
+
 #include "libsim/render/png.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
 #include "tests/headset/client.hpp"
 #include "tests/headset/x_screen.hpp"
 
@@ -72,6 +77,54 @@ TEST(XlibGl, TheValidationLayerSpeaksOnAStaleHandle) {
     EXPECT_TRUE(XR_FAILED(client.frame([&](Drawing& d) { d.projection.space = stale; })));
   }
   EXPECT_THAT(validation.says(), HasSubstr("xrEndFrame]: Invalid XrSpace handle"));
+}
+
+/// vip-study on a runtime without EGL, watched by the validation layer.
+class XlibProgramGl : public ::testing::Test {
+ protected:
+  apps::test::Ended run(const std::string& profile, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), bin + "/vip-study");
+    return apps::test::run_program(arguments, [&] {
+      ::setenv("DISPLAY", screen_.name().c_str(), 1);
+      ::setenv("XR_LOADER_DEBUG", "none", 1);
+      ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);
+      ::setenv("VIP_XR_PROFILE", ("size=32x32;without=XR_MNDX_egl_enable;" + profile).c_str(), 1);
+      ::setenv("VIP_XR_LOG", log().c_str(), 1);
+    });
+  }
+  std::string log() const { return folder_ / "calls.log"; }
+
+  const std::string bin = VIP_BIN_DIR;
+  const test::TemporaryFolder folder_;
+  const XScreen screen_;
+  const Validation validation_;
+};
+
+TEST_F(XlibProgramGl, ShowsATestSceneAndTheValidationLayerIsSilent) {
+  const auto ended = run("", {"headset", "--show", "1"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("frames      92, 91 with pictures"));
+  EXPECT_THAT(ended.err, HasSubstr("Core Validation"));  // it was there
+  EXPECT_THAT(read_text(log()), ::testing::Not(HasSubstr("BREACH")));
+  EXPECT_FALSE(std::filesystem::exists(validation_.file())) << validation_.says();
+}
+
+TEST_F(XlibProgramGl, PlaysAWholeSessionOnBothClocksAndTheValidationLayerIsSilent) {
+  std::string pilot = read_text(base::resource("protocols/ptpe_pilot.toml"));
+  pilot = std::regex_replace(pilot, std::regex("mean_fps = .*"), "mean_fps = [5, 10]");
+  pilot = std::regex_replace(pilot, std::regex("sd_fps = .*"), "sd_fps = [0]");
+  pilot = std::regex_replace(pilot, std::regex("n_star = .*"), "n_star = [\"64\"]");
+  base::write_file_atomically(folder_ / "pilot.toml", pilot);
+  for (const std::string clock : {"virtual", "real"}) {
+    const auto ended =
+        run("rates=20;rate=20;clock=" + clock,
+            {"run", folder_ / "pilot.toml", "--db", folder_ / (clock + ".db"), "--observer", "random",
+             "--display", "openxr", "--clock", clock, "--participants", "1", "--trial-seconds", "1"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("2 of 2 trials answered"));
+    EXPECT_THAT(read_text(log()), ::testing::Not(HasSubstr("BREACH")));
+    EXPECT_FALSE(std::filesystem::exists(validation_.file())) << validation_.says();
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/common/headset/system.hpp"
 #include "libstudy/base/clock.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "stats/base/error.hpp"
@@ -34,7 +35,7 @@ std::int64_t period_of(const LoopFacts& facts) {
 }  // namespace
 
 FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
-    : gl_(sim::GlContext::make_headless()), drive_(drive) {
+    : gl_(make_headset_context()), drive_(drive) {
   if (drive == SlotDrive::Caller) {
     session_ = std::make_unique<HeadsetSession>(gl_, choice);
   } else {

@@ -195,8 +195,9 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
 
 void HeadsetDisplay::hold(std::int64_t until_ns, study::Clock&) {
   if (rules_.hold != study::Hold::State || !playing_) return;
-  while (loop_.next_ns() < until_ns - loop_.period_ns() / 2) {
-    const std::int64_t at_ns = loop_.next_ns();
+  // What cannot be drawn in time would hold up the next picture.
+  while (loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
+    const std::int64_t at_ns = loop_.next_ns() + draw_ns_;
     const auto from = draw(at_ns);
     if (!from) return;
     loop_.show(*from, at_ns);

@@ -59,20 +59,27 @@ void check_xr(XrResult result, const std::string& call, const std::string& mend)
   if (XR_FAILED(result)) throw base::Error("OpenXR, " + call, name_of(result), mend);
 }
 
-XrConnection::XrConnection(const std::vector<std::string>& needed, const std::vector<std::string>& wanted)
-    : get_(open_loader()) {
-  const auto list =
-      function<PFN_xrEnumerateInstanceExtensionProperties>("xrEnumerateInstanceExtensionProperties");
+std::vector<std::string> offered_extensions() {
+  PFN_xrVoidFunction found = nullptr;
+  constexpr const char* call = "xrEnumerateInstanceExtensionProperties";
+  check_xr(open_loader()(XR_NULL_HANDLE, call, &found), call, runtime_mend);
+  const auto list = reinterpret_cast<PFN_xrEnumerateInstanceExtensionProperties>(found);
   std::uint32_t count = 0;
   if (const XrResult result = list(nullptr, 0, &count, nullptr); XR_FAILED(result)) {
     throw base::Error("OpenXR", "no runtime answers (" + name_of(result) + ")", runtime_mend);
   }
   XrExtensionProperties blank{};
   blank.type = XR_TYPE_EXTENSION_PROPERTIES;
+  std::vector<std::string> out;
   for (const auto& one : read_array<XrExtensionProperties>(
-           "xrEnumerateInstanceExtensionProperties", blank,
+           call, blank,
            [&](auto capacity, auto*size, auto*values) { return list(nullptr, capacity, size, values); }))
-    offered_.emplace_back(one.extensionName);
+    out.emplace_back(one.extensionName);
+  return out;
+}
+
+XrConnection::XrConnection(const std::vector<std::string>& needed, const std::vector<std::string>& wanted)
+    : get_(open_loader()), offered_(offered_extensions()) {
   for (const std::string& name : needed) {
     if (!holds(offered_, name))
       throw base::Error("OpenXR", "the runtime does not offer " + name, "use a runtime that does");

@@ -36,6 +36,9 @@ std::vector<T> read_array(const std::string& call, const T& blank, Fill fill) {
   } while (true);
 }
 
+/// What the active runtime offers, by name. base::Error when there is no loader, or no runtime that answers.
+std::vector<std::string> offered_extensions();
+
 /// One instance: the connection to the runtime. Closed with the object.
 class XrConnection {
  public:

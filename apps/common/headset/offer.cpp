@@ -19,12 +19,15 @@ void read_instance(const XrConnection& xr, HeadsetOffer& out) {
 
 /// In a session that is never begun: it shows nothing and needs no frames.
 void read_in_session(const XrConnection& xr, const HeadsetSystem& system, HeadsetOffer& out) {
-  if (!xr.has(XR_MNDX_EGL_ENABLE_EXTENSION_NAME)) {
-    out.no_session = "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME;
+  std::optional<sim::GlContext> gl;
+  try {
+    gl.emplace(make_headset_context());
+  } catch (const base::Error& error) {
+    const std::string said = error.what();
+    out.no_session = said.substr(0, said.find('\n'));
     return;
   }
-  const sim::GlContext gl = sim::GlContext::make_headless();
-  const SessionHandle session(xr, system.id, gl);
+  const SessionHandle session(xr, system.id, *gl);
   HeadsetOffer::InSession found;
   found.formats = session.formats();
   const RefreshControl refresh(session);

@@ -1,3 +1,8 @@
+// epoxy first, and X with OpenXR in this file alone: its macros are everywhere.
+#include <epoxy/gl.h>
+#include <epoxy/glx.h>
+#define XR_USE_PLATFORM_XLIB
+
 #include "apps/common/headset/session_handle.hpp"
 
 #include <fmt/format.h>
@@ -32,24 +37,37 @@ void check_graphics(const XrConnection& xr, XrSystemId system) {
                     "update the graphics driver");
 }
 
+XrGraphicsBindingEGLMNDX egl_binding(const sim::EglHandles& egl) {
+  XrGraphicsBindingEGLMNDX out{};
+  out.type = XR_TYPE_GRAPHICS_BINDING_EGL_MNDX;
+  out.getProcAddress = reinterpret_cast<PFNEGLGETPROCADDRESSPROC>(eglGetProcAddress);
+  out.display = egl.display;
+  out.config = egl.config;
+  out.context = egl.context;
+  return out;
+}
+
+XrGraphicsBindingOpenGLXlibKHR xlib_binding(const sim::GlxHandles& glx) {
+  XrGraphicsBindingOpenGLXlibKHR out{};
+  out.type = XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR;
+  out.xDisplay = static_cast<Display*>(glx.display);
+  out.visualid = glx.visual;
+  out.glxFBConfig = static_cast<GLXFBConfig>(glx.config);
+  out.glxDrawable = glx.drawable;
+  out.glxContext = static_cast<GLXContext>(glx.context);
+  return out;
+}
+
 }  // namespace
 
-SessionHandle::SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl) : xr_(xr) {
-  if (!xr.has(XR_MNDX_EGL_ENABLE_EXTENSION_NAME)) {
-    throw base::Error("OpenXR", "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
-                      "use a runtime that takes OpenGL through EGL, such as Monado");
-  }
+SessionHandle::SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl)
+    : xr_(xr), on_x_(gl.glx().display != nullptr) {
   check_graphics(xr, system);
-  const sim::EglHandles egl = gl.egl();
-  XrGraphicsBindingEGLMNDX binding{};
-  binding.type = XR_TYPE_GRAPHICS_BINDING_EGL_MNDX;
-  binding.getProcAddress = reinterpret_cast<PFNEGLGETPROCADDRESSPROC>(eglGetProcAddress);
-  binding.display = egl.display;
-  binding.config = egl.config;
-  binding.context = egl.context;
+  const XrGraphicsBindingEGLMNDX egl = egl_binding(gl.egl());
+  const XrGraphicsBindingOpenGLXlibKHR xlib = xlib_binding(gl.glx());
   XrSessionCreateInfo info{};
   info.type = XR_TYPE_SESSION_CREATE_INFO;
-  info.next = &binding;
+  info.next = on_x_ ? static_cast<const void*>(&xlib) : &egl;
   info.systemId = system;
   check_xr(attempt<PFN_xrCreateSession>("xrCreateSession", xr.instance(), &info, &session_),
            "xrCreateSession", "see the runtime's log: it may serve another GPU than this program's");

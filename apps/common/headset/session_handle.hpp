@@ -14,7 +14,7 @@ namespace apps {
 /// Destroyed with the object, after everything that was made of it.
 class SessionHandle {
  public:
-  /// base::Error when the runtime does not take EGL contexts or this one. `gl` is current on the calling
+  /// base::Error when the runtime does not take such contexts or this one. `gl` is current on the calling
   /// thread and outlives the session.
   SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
   ~SessionHandle();
@@ -35,7 +35,7 @@ class SessionHandle {
   template <class F, class... Arguments>
   XrResult attempt(const char* name, Arguments... arguments) const {
     const F function = xr_.function<F>(name);
-    const KeptContext kept;
+    const KeptContext kept(on_x_);
     return function(arguments...);
   }
   /// Destroys what was made of the session, unless the session was left behind.
@@ -52,6 +52,7 @@ class SessionHandle {
  private:
   const XrConnection& xr_;
   XrSession session_ = XR_NULL_HANDLE;
+  bool on_x_;
   bool left_behind_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "stats/base/error.hpp"
 
@@ -71,6 +72,21 @@ void read_blend_modes(const XrConnection& xr, HeadsetSystem& out) {
 }
 
 }  // namespace
+
+sim::GlContext make_headset_context() {
+  const auto offered = offered_extensions();
+  const bool egl =
+      std::find(offered.begin(), offered.end(), XR_MNDX_EGL_ENABLE_EXTENSION_NAME) != offered.end();
+  if (egl) return sim::GlContext::make_headless();
+  const char* display = std::getenv("DISPLAY");
+  if (!display || !*display) {
+    throw base::Error("OpenXR",
+                      "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME
+                      ", and there is no X display",
+                      "start the program on a desktop, or set DISPLAY");
+  }
+  return sim::GlContext::make_on_x();
+}
 
 XrConnection connect_to_headset(bool eye_gaze) {
   std::vector<std::string> wanted{XR_MNDX_EGL_ENABLE_EXTENSION_NAME,

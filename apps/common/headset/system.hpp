@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/common/headset/loader.hpp"
+#include "libsim/render/gl_context.hpp"
 
 namespace apps {
 
@@ -19,6 +20,10 @@ struct HeadsetSystem {
   bool opaque = false;                         ///< the blend mode that hides the world is offered
   std::vector<XrViewConfigurationView> views;  ///< two
 };
+
+/// A context of a kind that the active runtime takes, current on the calling thread: of EGL, or where it
+/// takes none of GLX. base::Error when there is no runtime, or no such context.
+sim::GlContext make_headset_context();
 
 /// Connects with every extension that the program has a use for; eye tracking only where it is asked for.
 XrConnection connect_to_headset(bool eye_gaze = true);

@@ -1,0 +1,23 @@
+#pragma once
+/// What a GlContext is made of, whoever makes it.
+
+#include <memory>
+
+#include "libsim/render/gl_context.hpp"
+
+namespace sim {
+
+struct GlContext::State {
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  virtual ~State() = default;
+  virtual bool make_current() = 0;
+  virtual void release() = 0;
+  /// Shares objects with this one; null when the driver gives none.
+  virtual std::unique_ptr<State> make_shared() const = 0;
+  virtual EglHandles egl() const { return {}; }
+  virtual GlxHandles glx() const { return {}; }
+};
+
+}  // namespace sim

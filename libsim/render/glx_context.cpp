@@ -1,0 +1,123 @@
+// epoxy first: it replaces the headers of GL.
+#include <epoxy/gl.h>
+#include <epoxy/glx.h>
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "libsim/render/gl_context_state.hpp"
+#include "stats/base/error.hpp"
+
+namespace sim {
+
+namespace {
+
+/// libX11, opened when it is needed: no other program asks for it.
+struct XLibrary {
+  Display* (*open)(const char*) = nullptr;
+  int (*close)(Display*) = nullptr;
+  int (*free)(void*) = nullptr;
+  Status (*init_threads)() = nullptr;
+
+  static const XLibrary& get() {
+    static const XLibrary library;
+    return library;
+  }
+
+ private:
+  XLibrary() {
+    void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_LOCAL);
+    void* gl = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);  // epoxy ends the program without it
+    if (!handle || !gl)
+      throw base::Error("OpenGL", "no libX11.so.6 or libGL.so.1 on this machine",
+                        "install libx11-6 and libgl1");
+    find(handle, "XOpenDisplay", open);
+    find(handle, "XCloseDisplay", close);
+    find(handle, "XFree", free);
+    find(handle, "XInitThreads", init_threads);
+    init_threads();
+  }
+  template <class F>
+  static void find(void* handle, const char* name, F& out) {
+    out = reinterpret_cast<F>(dlsym(handle, name));
+    if (!out)
+      throw base::Error("OpenGL", std::string("libX11.so.6 has no ") + name, "install libx11-6 again");
+  }
+};
+
+/// The connection lives as long as the last context on it.
+std::shared_ptr<Display> open_display() {
+  const XLibrary& x = XLibrary::get();
+  Display* display = x.open(nullptr);
+  if (!display) {
+    const char* name = std::getenv("DISPLAY");
+    throw base::Error("OpenGL",
+                      std::string("no X display") + (name && *name ? std::string(" at ") + name : ""),
+                      "start the program on a desktop, or set DISPLAY");
+  }
+  return {display, [&x](Display* one) { x.close(one); }};
+}
+
+struct GlxState final : public GlContext::State {
+  std::shared_ptr<Display> display;
+  GLXFBConfig config = nullptr;
+  GLXPbuffer drawable = 0;
+  GLXContext context = nullptr;
+
+  ~GlxState() override {
+    if (context && glXGetCurrentContext() == context) release();
+    if (context) glXDestroyContext(display.get(), context);
+    if (drawable) glXDestroyPbuffer(display.get(), drawable);
+  }
+  bool make_current() override { return glXMakeCurrent(display.get(), drawable, context); }
+  void release() override { glXMakeCurrent(display.get(), 0, nullptr); }
+  std::unique_ptr<State> make_shared() const override {
+    auto out = std::make_unique<GlxState>();
+    out->display = display;
+    out->config = config;
+    out->create(context);
+    if (!out->context) return nullptr;
+    return out;
+  }
+  GlxHandles glx() const override {
+    int visual = 0;
+    glXGetFBConfigAttrib(display.get(), config, GLX_VISUAL_ID, &visual);
+    return {display.get(), config, drawable, context, static_cast<unsigned>(visual)};
+  }
+
+  void choose_config() {
+    const int wanted[] = {
+        GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT, GLX_X_RENDERABLE, True, 0};
+    int count = 0;
+    const int screen = DefaultScreen(display.get());
+    GLXFBConfig* all = glXChooseFBConfig(display.get(), screen, wanted, &count);
+    if (all && count > 0) config = all[0];
+    if (all) XLibrary::get().free(all);
+  }
+  /// A surface of one pixel, which nobody sees, and the context on it.
+  void create(GLXContext shared) {
+    const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, 0};
+    drawable = glXCreatePbuffer(display.get(), config, size);
+    const int attributes[] = {
+        GLX_CONTEXT_MAJOR_VERSION_ARB,    4, GLX_CONTEXT_MINOR_VERSION_ARB, 5, GLX_CONTEXT_PROFILE_MASK_ARB,
+        GLX_CONTEXT_CORE_PROFILE_BIT_ARB, 0};
+    context = glXCreateContextAttribsARB(display.get(), config, shared, True, attributes);
+  }
+};
+
+}  // namespace
+
+GlContext GlContext::make_on_x() {
+  auto state = std::make_unique<GlxState>();
+  state->display = open_display();
+  state->choose_config();
+  if (state->config) state->create(nullptr);
+  if (!state->context || !state->make_current())
+    throw base::Error("OpenGL", "no OpenGL 4.5 core context on the X display", "update the graphics driver");
+  require_gl45();
+  return GlContext(std::move(state));
+}
+
+}  // namespace sim
