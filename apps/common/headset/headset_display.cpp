@@ -19,6 +19,8 @@ namespace {
 constexpr std::chrono::seconds most_idle{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
+/// That nobody takes: minutes.
+constexpr std::size_t most_records = 20000;
 
 /// A rate is kept when it is met within this share.
 constexpr double same_rate = 0.02;
@@ -124,6 +126,24 @@ void HeadsetDisplay::turn() {
 
 void HeadsetDisplay::turn_until(std::int64_t deadline_ns) {
   while (loop_.next_ns() < deadline_ns - loop_.period_ns() / 2) turn();
+}
+
+void HeadsetDisplay::share_records() {
+  const auto news = loop_.take_records();
+  for (auto* all : {&for_pages_, &for_record_}) {
+    if (all->size() + news.size() > most_records) all->clear();
+    all->insert(all->end(), news.begin(), news.end());
+  }
+}
+
+std::vector<HeadsetRecord> HeadsetDisplay::take_records() {
+  share_records();
+  return std::exchange(for_pages_, {});
+}
+
+std::vector<HeadsetRecord> HeadsetDisplay::take_for_record() {
+  share_records();
+  return std::exchange(for_record_, {});
 }
 
 std::vector<HeadsetRecord> HeadsetDisplay::next_records() {

@@ -54,7 +54,9 @@ class HeadsetDisplay final : public study::Display {
 
   /// What the slots brought in since the last call, of those that are over; the oldest go where there are
   /// many.
-  std::vector<HeadsetRecord> take_records() { return loop_.take_records(); }
+  std::vector<HeadsetRecord> take_records();
+  /// The same for whoever keeps the record: what one takes the other still gets.
+  std::vector<HeadsetRecord> take_for_record();
   /// The same, after the next slot; nothing where none came for a tenth of a second.
   std::vector<HeadsetRecord> next_records();
   const HeadsetSession& session() const { return loop_.session(); }
@@ -72,6 +74,7 @@ class HeadsetDisplay final : public study::Display {
  private:
   std::int64_t lead_ns() const;
   void heed();
+  void share_records();
   void check_time_stands_still();
   void await(const std::function<bool()>& ready, const char* problem, const char* mend);
   std::optional<HeldViews> draw(std::int64_t at_ns);
@@ -82,6 +85,7 @@ class HeadsetDisplay final : public study::Display {
   double refresh_hz_ = 0;
   std::int64_t draw_ns_ =
       0;  ///< that a picture takes lately; 0: none was drawn, or time stands still meanwhile
+  std::vector<HeadsetRecord> for_pages_, for_record_;
   bool slots_by_thread_;
   bool playing_ = false;  ///< a presentation is on
   bool spoilt_ = false;

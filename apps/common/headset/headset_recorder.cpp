@@ -94,7 +94,7 @@ std::optional<double> ipd_of(const EyeViews& views) {
 }
 
 void HeadsetRecorder::drain() {
-  for (HeadsetRecord& record : display_.take_records()) {
+  for (HeadsetRecord& record : display_.take_for_record()) {
     if (allowed_) add_gaze(record);
     const HeadsetSlot& slot = record.slot;
     slots_.push_back({slot.predicted_ns, slot.period_ns, slot.should_render, {}, 0});
