@@ -182,7 +182,7 @@ TEST_F(StudyCommandsE2e, FullAtThePlanLeavesNoFile) {
 }
 
 TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
-  const Ended full = run({"--participants", "4", "--max-pages", "80"});
+  const Ended full = run({"--participants", "4", "--max-pages", "96"});
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_THAT(full.err, AllOf(HasSubstr("no room left"), HasSubstr("vip-study resume")));
   const auto said = acknowledged(full.out);
@@ -197,7 +197,7 @@ TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
 
 TEST_F(StudyCommandsE2e, AFileSizeLimitKeepsEveryAnswer) {
   const auto limit = [] {
-    const rlimit bytes{200'000, 200'000};
+    const rlimit bytes{250'000, 250'000};
     ::setrlimit(RLIMIT_FSIZE, &bytes);
   };
   const Ended full = run({"--participants", "4"}, limit);
