@@ -5,6 +5,7 @@
 
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "libstudy/session/interruptions.hpp"
@@ -77,6 +78,7 @@ Played play(const PlayOptions& options) {
   for (const study::OpenRun& run : runs) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     const RunOptions chosen = parse_run_options(run.options, place);
+    check_keys_are_free(chosen.answer, options.console);
     SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place);
     open_mirror(options, setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);

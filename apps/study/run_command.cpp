@@ -9,6 +9,7 @@
 #include "apps/common/picture_size.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
@@ -139,6 +140,7 @@ void run(RunCommand& command) {
   const auto codes = participant_codes(command, protocol);
   for (const std::string& code : codes) study::check_participant_code(code);
   const auto ptpe = read_ptpe(command.ptpe);
+  check_keys_are_free(command.run.answer, command.play.console);
   SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
   open_mirror(command.play, setup);

@@ -19,4 +19,8 @@ extern const char* const usual_answer_ways;
 /// together: both point.
 AnswerWays parse_answer_ways(const std::string& words);
 
+/// base::Error when a person could answer with nothing but keys that the console takes. `words` may be empty:
+/// as usual.
+void check_keys_are_free(const std::string& words, bool console);
+
 }  // namespace apps
