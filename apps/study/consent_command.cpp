@@ -40,6 +40,8 @@ void print_change(const ConsentCommand& command) {
   if (command.gaze == "no")
     std::printf("%lld samples of gaze deleted\n", static_cast<long long>(done.gaze_deleted));
   print_list("Backups that hold gaze still; delete them:", done.backups);
+  print_list("Exports that may hold gaze; delete them and their copies, or make them again:",
+             done.gaze_exports);
   print_list("Public exports that hold the participant; delete them and their copies, or make them again:",
              done.exports);
   print_list("Could not be cleaned:", done.left);

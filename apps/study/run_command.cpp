@@ -202,8 +202,8 @@ void add_run_command(CLI::App& app) {
                  "Play in real time (a person's), or without waiting (an observer's)")
       ->check(CLI::IsMember({"real", "virtual"}));
   sub.add_option("--display", command->run.display,
-                 "Where frames go: a window (a person's), drawn without a window, a headset by OpenXR on the "
-                 "virtual clock, or nowhere (an observer's)")
+                 "Where frames go: a window (a person's), drawn without a window, a headset by OpenXR, "
+                 "or nowhere (an observer's)")
       ->check(CLI::IsMember({"window", "headless", "openxr", "none"}));
   sub.add_option("--answer", command->run.answer,
                  "With what a person answers in a headset, commas between: ray (a hand points), stick, dwell "

@@ -103,12 +103,13 @@ std::vector<std::string> backups_with_gaze(const fs::path& database, const std::
   return found;
 }
 
-std::vector<std::string> public_exports(Connection& database, const std::string& person) {
-  Statement row(
-      database,
-      "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
-      "(export_id) WHERE person = ? AND kind IN ('bids', 'psych-ds', 'unknown') ORDER BY export_id");
-  row.bind_all(person);
+/// Of a person. The register does not tell which of them were made with gaze.
+std::vector<std::string> exports_of(Connection& database, const std::string& person, bool public_only) {
+  Statement row(database,
+                "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
+                "(export_id) WHERE person = ?1 AND (NOT ?2 OR kind IN ('bids', 'psych-ds', 'unknown')) "
+                "ORDER BY export_id");
+  row.bind_all(person, public_only ? 1 : 0);
   std::vector<std::string> found;
   while (row.step()) found.push_back(row.text(0));
   return found;
@@ -144,8 +145,9 @@ PermissionChange change_permissions(const fs::path& path, const std::string& par
   if (no_gaze) {
     done.left = clean_up(*database).left;
     done.backups = backups_with_gaze(path, person);
+    done.gaze_exports = exports_of(*database, person, false);
   }
-  if (no_sharing) done.exports = public_exports(*database, person);
+  if (no_sharing) done.exports = exports_of(*database, person, true);
   return done;
 }
 

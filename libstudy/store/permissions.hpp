@@ -37,6 +37,8 @@ struct PermissionChange {
   std::int64_t gaze_deleted = 0;     ///< samples
   std::vector<std::string> backups;  ///< that hold gaze of the participant still: delete them
   std::vector<std::string> left;     ///< what could not be cleaned: place, reason and mend
+  std::vector<std::string>
+      gaze_exports;                  ///< that may hold gaze of the participant: delete or make them again
   std::vector<std::string> exports;  ///< public ones that hold the participant: delete or make them again
 };
 

@@ -11,6 +11,7 @@
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/earlier_shapes.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/salvage_rows.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
@@ -137,6 +138,7 @@ void fill(Connection& target, Connection* sound, const fs::path& database, const
   rebuild.take(std::move(rows));
   read_rows(sound, database, shapes, earlier, true,
             [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
+  drop_unallowed_gaze(target);  // rows may be older than a refusal
   rebuild.sum_up();
   Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")
       .bind_all(base::utc_now(), std::to_string(told.answers_database) + " answers from the database, " +

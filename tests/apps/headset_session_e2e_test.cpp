@@ -107,8 +107,8 @@ TEST_F(HeadsetSessionE2e, TheWholePilotRunsAndUnreachableSettingsAreFlagged) {
 
 TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   const std::string protocol = pilot("[10]", "[0]");
-  for (const char* trouble :
-       {"at=400:focus/0,460:focus/1", "at=400:off/1", "at=400:recentre/20", "at=400:rate/120"}) {
+  for (const char* trouble : {"at=400:focus/0,460:focus/1", "at=150:focus/0,900:focus/1", "at=400:off/1",
+                              "at=400:recentre/20", "at=400:rate/120"}) {
     database_ = folder_ / ("study" + std::to_string(++databases_) + ".db");
     const auto ended = session(trouble, protocol, "2");
     ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
@@ -121,8 +121,12 @@ TEST_F(HeadsetSessionE2e, AfterAChangeOfTheRateATrialsIntervalsAreComputedAnew) 
   const auto ended = session("at=400:rate/72", pilot("[10]", "[0]"), "2");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 cut short; timing: 0 pass, 1 degraded"));
-  EXPECT_THAT(ended.out,
-              HasSubstr("    10      0       1   10.000   0.000    0.514   0.514       0    0.000"));
+  const std::string in_time = "    10      0       1   10.000   0.000    0.514   0.514       0    0.000";
+  EXPECT_THAT(ended.out, HasSubstr(in_time));
+  // In the black before the stimulus, too.
+  database_ = folder_ / "black.db";
+  const auto black = session("at=150:rate/72", pilot("[10]", "[0]"), "2");
+  EXPECT_THAT(black.out, HasSubstr(in_time));
 }
 
 TEST_F(HeadsetSessionE2e, ALostSessionIsToldAndContinued) {

@@ -241,6 +241,19 @@ TEST(HeadsetRecords, AreReadOffADamagedDatabase) {
   EXPECT_THAT(test::column(folder / "new.db", "SELECT quat_y FROM head"), ElementsAre("0.6"));
 }
 
+TEST(HeadsetRecords, ThatWereRefusedSinceAreNotBroughtBackBySalvage) {
+  const test::TemporaryFolder folder;
+  const fs::path path = headset_study(folder, "study.db", {{"P01", 1, 1}, {"P02", 1, 1}});
+  Connection(path, Open::Write).integer("PRAGMA wal_checkpoint(TRUNCATE)");
+  const std::string old = test::bytes_of(path);
+  change_permissions(path, "P01", {.gaze = false, .sharing = {}});
+  base::write_file_atomically(path, old);  // the journal beside it knows of the refusal
+  salvage(path, folder / "new.db");
+  EXPECT_THAT(owners(folder / "new.db"),
+              ElementsAre("gaze P02", "gaze_validation P02", "head P02", "headset P01", "headset P02",
+                          "ipd P01", "ipd P02", "slot P01", "slot P02"));
+}
+
 TEST(HeadsetRecords, OfTheSchemaBeforeLackWhatItDidNotMeasure) {
   const test::TemporaryFolder folder;
   const fs::path upgraded = folder / "upgraded.db", old = folder / "old.db";

@@ -51,6 +51,15 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
       std::rethrow_exception(error_);
     }
   }
+  try {
+    make_pictures(choice);
+  } catch (...) {
+    stop();
+    throw;
+  }
+}
+
+void FrameLoop::make_pictures(const HeadsetChoice& choice) {
   const PictureSize size = session_->picture_size();
   for (std::size_t i = 0; i < PictureTurns::count; ++i) {
     canvases_.push_back(std::make_unique<sim::Offscreen>(size.width, size.height));
@@ -59,7 +68,9 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
   }
 }
 
-FrameLoop::~FrameLoop() {
+FrameLoop::~FrameLoop() { stop(); }
+
+void FrameLoop::stop() {
   {
     const std::lock_guard held(mutex_);
     stopping_ = true;
@@ -208,14 +219,14 @@ std::int64_t FrameLoop::runtime_time_of(std::int64_t at_ns) const {
   return last.runtime_time + at_ns - last.predicted_ns;
 }
 
-const sim::Offscreen& FrameLoop::canvas() const {
+const sim::Offscreen& FrameLoop::canvas() {
   const std::lock_guard held(mutex_);
-  return *canvases_[picture_turns_.free()];
+  return *canvases_[picture_turns_.begin()];
 }
 
-const sim::Offscreen& FrameLoop::page() const {
+const sim::Offscreen& FrameLoop::page() {
   const std::lock_guard held(mutex_);
-  return *pages_.at(page_turns_.free());
+  return *pages_.at(page_turns_.begin());
 }
 
 HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {

@@ -70,13 +70,13 @@ class FrameLoop {
   EyeViews views_in_head(std::int64_t at_ns);
 
   /// To draw both eyes' picture into, as HeadsetLayers has it; ask again for each picture.
-  const sim::Offscreen& canvas() const;
+  const sim::Offscreen& canvas();
   /// Shows the canvas as it was drawn, from the slot that is the nearest to due_ns or the next one after
   /// that, until another picture is shown or clear(). Waits until it is on; returns its slot.
   HeadsetSlot show(const HeldViews& from, std::int64_t due_ns);
   void clear();
   /// The same of the page.
-  const sim::Offscreen& page() const;
+  const sim::Offscreen& page();
   void show_page(const HeadsetPage& place);
   void hide_page();
 
@@ -88,7 +88,8 @@ class FrameLoop {
   bool take_unseen();
 
  private:
-  void open(const HeadsetChoice& choice);
+  void make_pictures(const HeadsetChoice& choice);
+  void stop();
   void run(const HeadsetChoice& choice);
   void draw_slots();
   bool turn_slot();

@@ -59,6 +59,7 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
   const HeadsetRate rate = facts().rate;
   refresh_hz_ =
       rate.told_hz && near_rate(*rate.told_hz, *rate.measured_hz) ? *rate.told_hz : *rate.measured_hz;
+  spoilt_ = false;  // a rate that was asked for has come
 }
 
 /// A runtime whose time goes on by itself would drop slots while the program computes.
@@ -114,7 +115,10 @@ void HeadsetDisplay::heed() {
       throw base::Error("headset", "its software ends", "start it again and continue with vip-study resume");
     if (event.kind == Kind::Refresh) refresh_hz_ = event.to_hz;
     const bool unseen = state && event.state != HeadsetState::Focused;
-    if (unseen || event.kind == Kind::Refresh || event.kind == Kind::Recentred) spoilt_ |= playing_;
+    const bool moved = event.kind == Kind::Recentred || event.kind == Kind::EventsLost;
+    if (unseen || moved) spoilt_ |= playing_;
+    // Also between pictures: the trial that has begun goes by the intervals of the rate before.
+    spoilt_ |= event.kind == Kind::Refresh;
   }
   spoilt_ |= loop_.take_unseen() && playing_;
 }
@@ -131,7 +135,8 @@ void HeadsetDisplay::turn_until(std::int64_t deadline_ns) {
 void HeadsetDisplay::share_records() {
   const auto news = loop_.take_records();
   for (auto* all : {&for_pages_, &for_record_}) {
-    if (all->size() + news.size() > most_records) all->clear();
+    if (all->size() + news.size() > most_records)
+      all->erase(all->begin(), all->begin() + static_cast<std::ptrdiff_t>(all->size() / 2));
     all->insert(all->end(), news.begin(), news.end());
   }
 }
@@ -172,8 +177,10 @@ std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
 
 void HeadsetDisplay::render(study::Stimulus& stimulus) {
   pending_ = &stimulus;
+  if (playing_) return;
+  spoilt_ |= !focused();  // the focus went while it was black
   // The first picture of a presentation takes longest, and tells how early the others must begin.
-  if (slots_by_thread_ && !playing_) draw(loop_.next_ns());
+  if (slots_by_thread_) draw(loop_.next_ns());
 }
 
 study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Clock& clock) {

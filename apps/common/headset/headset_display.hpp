@@ -47,7 +47,7 @@ class HeadsetDisplay final : public study::Display {
   void turn();
 
   /// To draw a page into, of the size that was chosen; ask again for each drawing.
-  const sim::Offscreen& page() const { return loop_.page(); }
+  const sim::Offscreen& page() { return loop_.page(); }
   /// Shows the page as it was drawn, before whatever else is seen, until hide_page().
   void show_page(const HeadsetPage& page) { loop_.show_page(page); }
   void hide_page() { loop_.hide_page(); }

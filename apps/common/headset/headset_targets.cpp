@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "stats/base/error.hpp"
+
 namespace apps {
 
 namespace {
@@ -12,6 +14,8 @@ namespace {
 /// Near where the lenses of headsets put their picture.
 constexpr double distance_m = 2;
 constexpr double size_deg = 1, dot_share = 0.2;
+/// Nobody reads a page in less.
+constexpr std::int64_t most_checking_ns = 200'000'000;
 constexpr int most_turns = 200;  ///< for a head whose pose is known
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
@@ -57,13 +61,17 @@ HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elev
 }
 
 void HeadsetTargets::begin() {
+  display_.take_for_record();
   for (int turn = 0; turn < most_turns; ++turn) {
-    for (const HeadsetRecord& record : display_.next_records()) {
+    display_.turn();
+    for (const HeadsetRecord& record : display_.take_for_record()) {
       if (!record.input.head.valid()) continue;
       middle_ = record.input.head;
       return;
     }
   }
+  throw base::Error("headset", "it does not tell where the head is",
+                    "see its tracking, and continue with vip-study resume");
 }
 
 /// White, with a black dot in the middle.
@@ -83,16 +91,30 @@ std::vector<study::TargetSample> HeadsetTargets::look_at(double azimuth_deg, dou
                                                          double settle_s, double sample_s,
                                                          const std::function<void()>& check) {
   const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
+  // Anew where it was not seen: another page stood before it, or the headset was off.
+  for (;;) {
+    if (auto samples = look_once(page, settle_s, sample_s, check)) return *samples;
+  }
+}
+
+std::optional<std::vector<study::TargetSample>> HeadsetTargets::look_once(
+    const HeadsetPage& page, double settle_s, double sample_s, const std::function<void()>& check) {
   draw();
   display_.show_page(page);
   const std::int64_t from_ns = display_.now_ns() + std::llround(1e9 * settle_s);
   const std::int64_t until_ns = from_ns + std::llround(1e9 * sample_s);
-  display_.take_records();
+  display_.take_for_record();
   std::vector<study::TargetSample> samples;
   std::int64_t last_ns = 0;
   while (display_.now_ns() < until_ns) {
+    const std::int64_t before_ns = display_.now_ns();
     if (check) check();
-    for (const HeadsetRecord& record : display_.next_records()) {
+    if (display_.now_ns() - before_ns > most_checking_ns || !display_.focused()) {
+      display_.turn();
+      return {};
+    }
+    display_.turn();
+    for (const HeadsetRecord& record : display_.take_for_record()) {
       if (record.slot.predicted_ns < from_ns) continue;
       const auto told_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
       if (told_ns && *told_ns <= last_ns) continue;  // the same one again

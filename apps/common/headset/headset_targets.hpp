@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+#include <vector>
 /// Targets that stand in the world of a headset, on its page, for the validation of its eye tracker.
 
 #include "apps/common/headset/headset_display.hpp"
@@ -18,6 +20,10 @@ class HeadsetTargets final : public study::GazeTargets {
 
  private:
   void draw();
+  /// None where it was not seen all the time.
+  std::optional<std::vector<study::TargetSample>> look_once(const HeadsetPage& page, double settle_s,
+                                                            double sample_s,
+                                                            const std::function<void()>& check);
 
   HeadsetDisplay& display_;
   HeadsetPose middle_;  ///< the head as it was at begin()

@@ -10,14 +10,14 @@ class PictureTurns {
  public:
   static constexpr std::size_t count = 3;
 
-  /// To draw into: nobody reads it.
-  std::size_t free() const {
-    std::size_t out = 0;
-    while (out == waiting_ || out == shown_ || out == read_) ++out;
-    return out;
+  /// To draw into: nobody reads it, and the next post() is of it.
+  std::size_t begin() {
+    drawn_ = 0;
+    while (drawn_ == waiting_ || drawn_ == shown_ || drawn_ == read_) ++drawn_;
+    return drawn_;
   }
-  /// The free one was drawn and waits; one that waited before never comes on.
-  void post() { waiting_ = free(); }
+  /// The one that was begun last waits; one that waited before never comes on.
+  void post() { waiting_ = drawn_; }
   bool waits() const { return waiting_ != none; }
   /// What waits comes on.
   void take() {
@@ -31,7 +31,7 @@ class PictureTurns {
 
  private:
   static constexpr std::size_t none = count;
-  std::size_t waiting_ = none, shown_ = none, read_ = none;
+  std::size_t drawn_ = 0, waiting_ = none, shown_ = none, read_ = none;
 };
 
 }  // namespace apps

@@ -121,7 +121,7 @@ CREATE TABLE headset (
   right_height_px INTEGER NOT NULL CHECK (right_height_px > 0), -- likewise its height, px
   format TEXT NOT NULL, -- format of the pictures handed over
   refresh_told_hz REAL CHECK (refresh_told_hz > 0), -- refresh rate that the runtime tells; empty: it lists fewer than two, Hz
-  refresh_measured_hz REAL CHECK (refresh_measured_hz > 0), -- median of the settled steps between predicted times; empty: not measured, Hz
+  refresh_measured_hz REAL CHECK (refresh_measured_hz > 0), -- of settled steps between predicted times: whole periods over the time that they took; empty: not measured, Hz
   left_fov_left_deg REAL NOT NULL, -- field of view of the left eye from straight ahead to its left edge, negative to the left, degrees
   left_fov_right_deg REAL NOT NULL, -- likewise to its right edge, degrees
   left_fov_up_deg REAL NOT NULL, -- likewise to its upper edge, degrees
