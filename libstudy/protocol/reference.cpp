@@ -56,8 +56,8 @@ block. Blocks of kind screening, consent, demographics, stimulus, question and c
 Two ids are kept for questions whose answers the program obeys. They stand in a block of kind consent, with
 `kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
 
-- `gaze_kept`: may be recorded where one looks and how the head moves. No row of gaze is written unless it was answered with 1; a
-  protocol that does not ask records none.
+- `gaze_kept`: may be recorded where one looks and how the head moves. No row of gaze is written unless it
+  was answered with 1; a protocol that does not ask records none.
 - `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was asked
   and has not answered, is left out of them whole. Those whom no protocol asked are in them.
 

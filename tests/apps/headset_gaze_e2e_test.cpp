@@ -19,12 +19,7 @@ constexpr double degree = std::numbers::pi / 180;
 
 class HeadsetGazeE2e : public test::HeadsetRuns {
  protected:
-  void SetUp() override {
-    const auto baked =
-        test::run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",
-                           "--n-star", "64", "--frames", "60", "--out", dam_});
-    ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  }
+  void SetUp() override { bake_dam(dam_, 60); }
 
   /// Two showings of half a second after a page of consent that asks for gaze, or does not.
   std::string protocol(bool asks_gaze = true) {

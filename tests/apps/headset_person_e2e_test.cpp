@@ -29,12 +29,7 @@ std::string script_of(const std::string& events) {
 
 class HeadsetPersonE2e : public test::HeadsetRuns {
  protected:
-  void SetUp() override {
-    const auto baked =
-        test::run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",
-                           "--n-star", "64", "--frames", "30", "--out", dam_});
-    ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  }
+  void SetUp() override { bake_dam(dam_, 30); }
 
   /// The pilot with these means, played although some are approximate; five seconds on the first page are
   /// one.

@@ -58,6 +58,13 @@ class HeadsetRuns : public ::testing::Test {
     EXPECT_THAT(calls(), ::testing::Not(::testing::HasSubstr("BREACH")));
     return ended;
   }
+  /// Particles of a small dam that breaks.
+  void bake_dam(const std::string& out, int frames) {
+    const auto baked =
+        run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",
+                     "--n-star", "64", "--frames", std::to_string(frames), "--out", out});
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  }
   /// For tests that open the headset in their own process.
   void use_here(const std::string& profile) const {
     ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);

@@ -31,12 +31,7 @@ std::vector<int> holds_of(const std::string& log) {
 
 class HeadsetSessionE2e : public test::HeadsetRuns {
  protected:
-  void SetUp() override {
-    const auto baked =
-        test::run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",
-                           "--n-star", "64", "--frames", "60", "--out", dam_});
-    ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  }
+  void SetUp() override { bake_dam(dam_, 60); }
 
   /// The pilot's protocol with these means and standard deviations, played although some are approximate.
   std::string pilot(const std::string& means, const std::string& sds) {

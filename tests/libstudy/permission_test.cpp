@@ -220,6 +220,7 @@ TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
   }
   const PermissionChange done = change_permissions(path, "P01", {.gaze = false, .sharing = false});
   EXPECT_THAT(done.backups, ElementsAre(path.string() + ".v3-then.bak"));
+  EXPECT_THAT(done.gaze_exports, ElementsAre("/shared/bids", "/private/csv", "/of/old"));
   EXPECT_THAT(done.exports, ElementsAre("/shared/bids", "/of/old"));
 }
 

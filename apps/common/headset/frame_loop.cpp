@@ -18,8 +18,6 @@ namespace {
 
 constexpr std::chrono::seconds most_idle{30};
 constexpr std::chrono::milliseconds one_wait{100};
-/// Of those that nobody takes; a minute's and more.
-constexpr std::size_t most_records = 20000;
 /// A picture that is on for so long was left behind by a program that hangs: it fades away, so that nobody
 /// stays in a world that stands still.
 constexpr double most_held_s = 2, fade_s = 0.3;
@@ -44,10 +42,8 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
     std::unique_lock held(mutex_);
     changed_.wait(held, [this] { return session_ || error_; });
     if (error_) {
-      stopping_ = true;
       held.unlock();
-      changed_.notify_all();
-      thread_.join();
+      stop();
       std::rethrow_exception(error_);
     }
   }
@@ -81,11 +77,10 @@ void FrameLoop::stop() {
 
 /// The thread's. The session lives and ends on it, in its context.
 void FrameLoop::run(const HeadsetChoice& choice) {
-  std::unique_ptr<HeadsetSession> made;
   try {
     const study::RealTimeScheduling real_time;
     slots_gl_->make_current();
-    made = std::make_unique<HeadsetSession>(*slots_gl_, choice);
+    auto made = std::make_unique<HeadsetSession>(*slots_gl_, choice);
     {
       const std::lock_guard held(mutex_);
       session_ = std::move(made);

@@ -43,10 +43,13 @@ struct LoopFacts {
   HeadsetSlot last;
 };
 
-/// Owns the session. Its pictures are drawn on the thread that made the loop, where gl() is current; all
-/// calls come from there. They throw what went wrong with the session: base::Error, HeadsetLost.
+/// Owns the session. Its pictures are drawn on the thread that made the loop, where its context is current;
+/// all calls come from there. They throw what went wrong with the session: base::Error, HeadsetLost.
 class FrameLoop {
  public:
+  /// Of records that nobody takes; a minute's and more.
+  static constexpr std::size_t most_records = 20000;
+
   /// Connects.
   FrameLoop(const HeadsetChoice& choice, SlotDrive drive);
   ~FrameLoop();

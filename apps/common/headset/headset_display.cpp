@@ -19,8 +19,6 @@ namespace {
 constexpr std::chrono::seconds most_idle{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
-/// That nobody takes: minutes.
-constexpr std::size_t most_records = 20000;
 
 /// A rate is kept when it is met within this share.
 constexpr double same_rate = 0.02;
@@ -135,7 +133,7 @@ void HeadsetDisplay::turn_until(std::int64_t deadline_ns) {
 void HeadsetDisplay::share_records() {
   const auto news = loop_.take_records();
   for (auto* all : {&for_pages_, &for_record_}) {
-    if (all->size() + news.size() > most_records)
+    if (all->size() + news.size() > FrameLoop::most_records)
       all->erase(all->begin(), all->begin() + static_cast<std::ptrdiff_t>(all->size() / 2));
     all->insert(all->end(), news.begin(), news.end());
   }

@@ -31,7 +31,8 @@ class HeadsetDisplay final : public study::Display {
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Only remembers it: it is drawn as late as it can be, from where the head will be when it comes on.
+  /// Remembers it: it is drawn as late as it can be, from where the head will be when it comes on. The first
+  /// of a presentation is also drawn now, to learn how long that takes.
   void render(study::Stimulus& stimulus) override;
   study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
   /// Draws what is shown anew for each slot; Hold::State alone.
@@ -55,10 +56,10 @@ class HeadsetDisplay final : public study::Display {
   /// What the slots brought in since the last call, of those that are over; the oldest go where there are
   /// many.
   std::vector<HeadsetRecord> take_records();
-  /// The same for whoever keeps the record: what one takes the other still gets.
-  std::vector<HeadsetRecord> take_for_record();
   /// The same, after the next slot; nothing where none came for a tenth of a second.
   std::vector<HeadsetRecord> next_records();
+  /// As take_records(), for whoever keeps the record: what one takes the other still gets.
+  std::vector<HeadsetRecord> take_for_record();
   const HeadsetSession& session() const { return loop_.session(); }
   const study::HeadsetRules& rules() const { return rules_; }
   /// Where the eyes will be in the next slot.
@@ -83,8 +84,7 @@ class HeadsetDisplay final : public study::Display {
   FrameLoop loop_;
   study::Stimulus* pending_ = nullptr;
   double refresh_hz_ = 0;
-  std::int64_t draw_ns_ =
-      0;  ///< that a picture takes lately; 0: none was drawn, or time stands still meanwhile
+  std::int64_t draw_ns_ = 0;  ///< that a picture takes lately; 0: none was drawn, or slots are the caller's
   std::vector<HeadsetRecord> for_pages_, for_record_;
   bool slots_by_thread_;
   bool playing_ = false;  ///< a presentation is on
