@@ -2,6 +2,8 @@
 /// The account of each frame (sim::FrameAccount): what the host knows already, and the few numbers that stand
 /// in the back end's memory, brought over in one copy.
 
+#include <bit>
+
 #include "libsim/simulation.hpp"
 #include "libsim/solver/stages/fluid_state.hpp"
 
@@ -10,9 +12,12 @@ namespace sim::SIM_BACKEND {
 /// What is brought over.
 struct FrameTally {
   Guards guards;                      ///< since the run began
-  int longest_list;                   ///< neighbours, of the last substep
+  NeighbourList::Need lists;          ///< of the last substep
   int active;                         ///< particles that the frame solved
+  int fastest_bits;                   ///< of the largest speed as a float, m/s: the order of floats >= 0
   int by_level[LevelSupports::most];  ///< particles
+
+  float fastest() const { return std::bit_cast<float>(fastest_bits); }
 };
 
 /// What the guards met since the run began.
@@ -32,6 +37,7 @@ class AccountKeeper {
   FrameAccount account_;
   GuardCounts met_;  ///< up to the last frame
   Array<FrameTally> tally_;
+  Array<int> fastest_;
 };
 
 }  // namespace sim::SIM_BACKEND
