@@ -53,8 +53,8 @@ struct SimulationOptions {
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
   int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
   int substeps = 0;          ///< in every frame; 0 = as many as the fastest particle asks for (scene.hpp)
-  int most_substeps = 0;     ///< a frame, where the fastest particle is followed; 0 = 32, or the scene's least
-  double frame_dt_s = 0;     ///< 0 = the scene's
+  int most_substeps = 0;  ///< a frame, where the fastest particle is followed; 0 = 32, or the scene's least
+  double frame_dt_s = 0;  ///< 0 = the scene's
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
@@ -150,7 +150,7 @@ struct RelaxedStart {
 
 /// State of the fluid after a frame.
 struct FrameReport {
-  int frame = 0;  ///< frames since the gate opened
+  int frame = 0;          ///< frames since the gate opened
   SubstepCount substeps;  ///< of the last frame
   double time_s = 0;
   std::int64_t particles = 0;

@@ -240,9 +240,10 @@ void print_table(const nlohmann::json& result) {
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
               100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
   const auto& temporal = result["temporal"];
-  std::printf("  substeps     %8.2f a frame on average, %d at most; %d frames asked for more than were allowed\n",
-              result["substeps_mean"].get<double>(), result["substeps_most"].get<int>(),
-              result["frames_short_of_substeps"].get<int>());
+  std::printf(
+      "  substeps     %8.2f a frame on average, %d at most; %d frames asked for more than were allowed\n",
+      result["substeps_mean"].get<double>(), result["substeps_most"].get<int>(),
+      result["frames_short_of_substeps"].get<int>());
   std::printf("  temporal     tau %s frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
               temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
               temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
@@ -275,11 +276,10 @@ void add_frame_command(CLI::App& app) {
                     "Temporal acceleration also for a method without it");
   add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
   add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
-  auto* substeps =
-      command
-          ->add_option("--substeps", options->fluid.substeps,
-                       "Substeps in every frame; 0 = as many as the fastest particle asks for")
-          ->check(CLI::Range(0, 64));
+  auto* substeps = command
+                       ->add_option("--substeps", options->fluid.substeps,
+                                    "Substeps in every frame; 0 = as many as the fastest particle asks for")
+                       ->check(CLI::Range(0, 64));
   command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
       ->check(CLI::Range(0, 64));
   command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; the scene's when left out")

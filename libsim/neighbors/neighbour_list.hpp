@@ -25,8 +25,8 @@ struct NeighbourRun {
   SIM_FN int operator[](int k) const { return first[k * stride]; }
 };
 
-/// The list as kernels see it. A list that is longer than its room lies whole in a common store, and its first
-/// entry says where. i is a slot of the pass that reads it (particles/selection.hpp): the particle
+/// The list as kernels see it. A list that is longer than its room lies whole in a common store, and its
+/// first entry says where. i is a slot of the pass that reads it (particles/selection.hpp): the particle
 /// itself while everyone is solved.
 struct Neighbours {
   const int* count;

@@ -54,7 +54,7 @@ struct Scene {
   int min_substeps = 2;
   /// Way of the fastest particle in a substep at most, as a share of the finest h.
   double courant = 0.5;
-  /// Kinematic viscosity; < 0 = by the water's volume (libsim/scene/fill.hpp).
+  /// Kinematic viscosity of the water; < 0 = by the particles' size (viscosity_of in libsim/scene/fill.hpp).
   double viscosity_m2_s = -1;
   std::vector<int> checkpoints;
   std::vector<GazeKey> gaze;

@@ -5,17 +5,28 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Each index looks at every `stride`th particle, so that neighbours in a warp read neighbours in memory.
-struct Fastest {
+struct Gather {
   const Vec4* velocity;
+  const float* density;
+  const std::uint8_t* level;
+  const std::uint8_t* active;  ///< nullptr when everyone was solved
   int n, stride;
-  int* bits;
+  Extremes* out;
   SIM_FN void operator()(int first) const {
-    float most = 0;
+    float fastest = 0;
+    float excess = 0;
+    int mass = 0;
     for (int i = first; i < n; i += stride) {
       const Vec3 v = xyz(velocity[i]);
-      most = fmaxf(most, dot(v, v));
+      fastest = fmaxf(fastest, dot(v, v));
+      if (active && !active[i]) continue;
+      const int units = 1 << level[i];
+      mass += units;
+      excess += static_cast<float>(units) * fminf(fmaxf(density[i] - 1, 0.0f), 1.0f);
     }
-    atomic_max(bits, bits_of(sqrtf(most)));
+    atomic_max(&out->fastest_bits, bits_of(sqrtf(fastest)));
+    atomic_add(&out->excess, static_cast<std::uint64_t>(excess / FrameTally::excess_unit));
+    atomic_add(&out->mass, static_cast<std::uint64_t>(mass));
   }
   SIM_FN static int bits_of(float value) {
 #ifdef __CUDA_ARCH__
@@ -34,7 +45,7 @@ struct Tally {
   const int* active_ranks;  ///< inclusive sums of who was solved; nullptr when everyone was
   const std::uint8_t* level_of;
   int n;
-  const int* fastest_bits;
+  const Extremes* extremes;
   FrameTally* out;
 
   SIM_FN void operator()(int level) const {
@@ -42,7 +53,9 @@ struct Tally {
     out->by_level[level] = first_of(level + 1) - first_of(level);
     if (level > 0) return;
     out->guards = *guards;
-    out->fastest_bits = *fastest_bits;
+    out->fastest_bits = extremes->fastest_bits;
+    out->excess = extremes->excess;
+    out->mass = extremes->mass;
     out->lists = lists ? *lists : NeighbourList::Need{0, 0};
     out->active = active_ranks && n > 0 ? active_ranks[n - 1] : n;
   }
@@ -96,19 +109,26 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   const auto& a = state.activation;
   const bool left_out = a.columns_set && !a.all_marked;
   tally_.resize(1);
-  fastest_.resize(1);
-  fastest_.zero();
+  extremes_.resize(1);
+  extremes_.zero();
   const int n = state.particles.size();
   const int lookers = (n + 31) / 32;
-  for_each("fastest", lookers,
-           Fastest{state.particles.all().velocity.data(), n, lookers, fastest_.data()});
+  const auto& p = state.particles.all();
+  for_each("gather extremes", lookers,
+           Gather{.velocity = p.velocity.data(),
+                  .density = p.density.data(),
+                  .level = p.level.data(),
+                  .active = left_out ? p.active.data() : nullptr,
+                  .n = n,
+                  .stride = lookers,
+                  .out = extremes_.data()});
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
                  .lists = state.neighbours.need(),
                  .active_ranks = left_out ? a.ranks.data() : nullptr,
                  .level_of = state.particles.all().level.data(),
                  .n = n,
-                 .fastest_bits = fastest_.data(),
+                 .extremes = extremes_.data(),
                  .out = tally_.data()});
   const FrameTally tally = tally_.to_host()[0];
   account_.particles_by_level.assign(tally.by_level + finest_level_, tally.by_level + coarsest_level_ + 1);

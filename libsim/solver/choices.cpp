@@ -21,7 +21,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   };
   choose(out.relaxation, options.relaxation);
   choose(out.tensile, options.tensile);
-  out.viscosity = static_cast<float>(viscosity_of(scene));
+  out.viscosity = static_cast<float>(viscosity_of(scene, options.n_star));
   choose(out.viscosity, options.viscosity_m2_s);
   choose(out.momentum, options.momentum);
   if (options.coarse_cycles >= 0) out.coarse_cycles = options.coarse_cycles;

@@ -2,10 +2,26 @@
 /// How many substeps a frame takes.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace sim {
+
+/// What a frame goes by that was measured at the end of the frame before last: its read-back need not be
+/// waited for. The lag is the same on every machine, so that runs repeat.
+template <class T>
+class TwoFramesAgo {
+ public:
+  /// `first`: what the first two frames go by.
+  explicit TwoFramesAgo(T first = {}) : older_(first), newer_(first) {}
+  void frame_ended(T value) {
+    older_ = newer_;
+    newer_ = value;
+  }
+  T value() const { return older_; }
+
+ private:
+  T older_, newer_;
+};
 
 /// What the number follows from. SI units.
 struct SubstepLimits {
@@ -17,36 +33,29 @@ struct SubstepLimits {
   int most = 1;  ///< >= least
 };
 
-/// Follows the fastest particle: v dt <= courant h. Frame n goes by the speeds at the end of frame n - 2, whose
-/// read-back need not be waited for, and by what gravity may have added since. The lag is the same on every
-/// machine, so that runs repeat.
+/// Follows the fastest particle: v dt <= courant h, by its speed two frames ago and what gravity may have
+/// added since.
 class SubstepRule {
  public:
   SubstepRule() = default;
   /// `fastest_m_s`: the speed that the first two frames go by.
-  SubstepRule(const SubstepLimits& limits, double fastest_m_s) : limits_(limits) {
-    fastest_.fill(fastest_m_s);
-  }
+  SubstepRule(const SubstepLimits& limits, double fastest_m_s) : limits_(limits), fastest_(fastest_m_s) {}
 
   /// Takes the largest speed at the end of a frame, m/s.
-  void frame_ended(double fastest_m_s) {
-    fastest_[0] = fastest_[1];
-    fastest_[1] = fastest_m_s;
-  }
+  void frame_ended(double fastest_m_s) { fastest_.frame_ended(fastest_m_s); }
   /// Substeps that the next frame asks for; past `most` it is larger than what next() allows.
   int wished() const {
-    const double speed = fastest_[0] + 2 * limits_.gravity_m_s2 * limits_.frame_dt_s;
+    const double speed = fastest_.value() + 2 * limits_.gravity_m_s2 * limits_.frame_dt_s;
     const double steps = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
     // Also where the speed is not finite, which the guards mend.
     const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;
     return std::max(limits_.least, static_cast<int>(counted));
   }
   int next() const { return std::min(wished(), limits_.most); }
-  const std::array<double, 2>& speeds() const { return fastest_; }
 
  private:
   SubstepLimits limits_;
-  std::array<double, 2> fastest_{};  ///< of the last two frames, the older one first
+  TwoFramesAgo<double> fastest_;
 };
 
 }  // namespace sim

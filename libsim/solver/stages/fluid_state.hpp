@@ -48,8 +48,9 @@ struct FluidState {
   std::int64_t mass_units =
       0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
   LevelSupports supports{};
-  Vec3 refuge{};          ///< where a particle goes whose place is lost
-  bool one_level = true;  ///< all particles have one level, for good
+  Vec3 refuge{};           ///< where a particle goes whose place is lost
+  bool one_level = true;   ///< all particles have one level, for good
+  bool compressed = true;  ///< was lately, or may be: frames begin with a pre-stabilisation
   int substep = 0;
   int iteration = 0;  ///< projection within the substep
   Particles particles;

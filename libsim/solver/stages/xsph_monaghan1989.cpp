@@ -23,9 +23,9 @@ struct KickFilter {
 constexpr float most_share = 0.5f;
 
 /// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
-/// The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c h^2 / 22
-/// and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step.
-/// Particles that are not solved keep their velocity and count as at the rest density.
+/// The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c h^2 /
+/// 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Particles that
+/// are not solved keep their velocity and count as at the rest density.
 template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
   Selection select;
