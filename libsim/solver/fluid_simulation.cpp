@@ -25,7 +25,9 @@ class FluidSimulation final : public Simulation {
         options_(options),
         resolution_(resolution_of(scene, options.method, options.n_star)),
         tolerance_(options.temporal.model, options.temporal.fixed_tau, options.temporal.fixed_rate),
-        frame_(options.start_frame) {
+        frame_(options.start_frame),
+        // A start may be anything; what lies in the middle of a run goes on as it was.
+        compression_(options.start_frame == 0 ? 1 : 0) {
     if (options.levels < 1 || options.levels > most_levels) {
       throw base::Error(
           "N = " + std::to_string(options.levels),
@@ -317,7 +319,7 @@ class FluidSimulation final : public Simulation {
   Schedule schedule_;
   SubstepRule substeps_;
   SubstepCount substeps_taken_;
-  TwoFramesAgo<double> compression_{1};  ///< mean of max(rho / rho_0 - 1, 0); a start may be anything
+  TwoFramesAgo<double> compression_;  ///< mean of max(rho / rho_0 - 1, 0)
   ToleranceSwitch tolerance_;
   GlSharing gl_{GlSharing::Access::Overwrite};
   int frame_;
