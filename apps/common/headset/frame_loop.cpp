@@ -33,7 +33,10 @@ std::int64_t period_of(const LoopFacts& facts) {
 }  // namespace
 
 FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
-    : gl_(make_headset_context()), drive_(drive) {
+    : gl_(make_headset_context()),
+      drive_(drive),
+      go_on_(choice.go_on),
+      page_size_{choice.page_width_px, choice.page_height_px} {
   if (drive == SlotDrive::Caller) {
     session_ = std::make_unique<HeadsetSession>(gl_, choice);
   } else {
@@ -48,19 +51,22 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
     }
   }
   try {
-    make_pictures(choice);
+    make_pictures(PictureTurns::count);
   } catch (...) {
     stop();
     throw;
   }
 }
 
-void FrameLoop::make_pictures(const HeadsetChoice& choice) {
+void FrameLoop::make_pictures(std::size_t count) {
   const PictureSize size = session_->picture_size();
-  for (std::size_t i = 0; i < PictureTurns::count; ++i) {
-    canvases_.push_back(std::make_unique<sim::Offscreen>(size.width, size.height));
-    if (choice.page_width_px > 0)
-      pages_.push_back(std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px));
+  while (canvases_.size() < count) {
+    auto canvas = std::make_unique<sim::Offscreen>(size.width, size.height);
+    std::unique_ptr<sim::Offscreen> page;
+    if (page_size_.width > 0) page = std::make_unique<sim::Offscreen>(page_size_.width, page_size_.height);
+    const std::lock_guard held(mutex_);
+    canvases_.push_back(std::move(canvas));
+    if (page) pages_.push_back(std::move(page));
   }
 }
 
@@ -135,6 +141,7 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
   HeadsetLayers out;
   {
     const std::lock_guard held(mutex_);
+    eyes_ = record.views;
     facts_.rate = rate;
     facts_.trusted = session_->times_convert() && meter.repeated() == 0 && meter.off_grid() == 0;
     facts_.last = slot;
@@ -153,16 +160,38 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
       shown_place_ = waiting_place_;
     }
     unseen_ |= picture_turns_.shows() && !slot.should_render;
-    const std::size_t picture = picture_turns_.read(), page = page_turns_.read();
-    if (picture_turns_.shows()) out.picture = canvases_[picture].get();
-    if (page_turns_.shows()) out.page = pages_[page].get();
-    out.views = shown_from_.views;
-    out.in_head = shown_from_.in_head;
-    out.light = light_at(slot.predicted_ns);
-    out.place = shown_place_;
+    out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
   }
   changed_.notify_all();
   return out;
+}
+
+HeadsetLayers FrameLoop::layers_at(std::int64_t at_ns, std::size_t picture, std::size_t page) const {
+  HeadsetLayers out;
+  if (picture_turns_.shows()) out.picture = canvases_[picture].get();
+  if (page_turns_.shows()) out.page = pages_[page].get();
+  out.views = shown_from_.views;
+  out.in_head = shown_from_.in_head;
+  out.light = light_at(at_ns);
+  out.place = shown_place_;
+  return out;
+}
+
+sim::GlContext FrameLoop::admit_onlooker() {
+  make_pictures(PictureTurns::count_with_onlooker);
+  onlooker_ = true;
+  return gl_.make_shared();
+}
+
+SeenNow FrameLoop::look() {
+  const std::lock_guard held(mutex_);
+  return {layers_at(facts_.last.predicted_ns, picture_turns_.look(), page_turns_.look()), eyes_};
+}
+
+void FrameLoop::look_away() {
+  const std::lock_guard held(mutex_);
+  picture_turns_.look_away();
+  page_turns_.look_away();
 }
 
 void FrameLoop::turn() {
@@ -171,7 +200,7 @@ void FrameLoop::turn() {
     while (!turn_slot()) {
       if (!events_.empty()) return;  // one may say that no slot comes any more
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "nobody wears it", "put it on and continue with vip-study resume");
+        throw base::Error("headset", "nobody wears it", "put it on and " + go_on_);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return;
@@ -225,7 +254,7 @@ const sim::Offscreen& FrameLoop::page() {
 }
 
 HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
-  if (drive_ == SlotDrive::Thread) glFinish();  // the other context reads it
+  if (others_read()) glFinish();
   {
     const std::lock_guard held(mutex_);
     picture_turns_.post();
@@ -250,7 +279,7 @@ void FrameLoop::clear() {
 }
 
 void FrameLoop::show_page(const HeadsetPage& place) {
-  if (drive_ == SlotDrive::Thread) glFinish();
+  if (others_read()) glFinish();
   const std::lock_guard held(mutex_);
   page_turns_.post();
   waiting_place_ = place;

@@ -43,8 +43,15 @@ struct LoopFacts {
   HeadsetSlot last;
 };
 
+/// What is seen at the moment.
+struct SeenNow {
+  HeadsetLayers layers;  ///< as the last slot showed them
+  EyeViews eyes;         ///< where the eyes were then
+};
+
 /// Owns the session. Its pictures are drawn on the thread that made the loop, where its context is current;
-/// all calls come from there. They throw what went wrong with the session: base::Error, HeadsetLost.
+/// all calls but those of an onlooker come from there. They throw what went wrong with the session:
+/// base::Error, HeadsetLost.
 class FrameLoop {
  public:
   /// Of records that nobody takes; a minute's and more.
@@ -90,8 +97,16 @@ class FrameLoop {
   /// Whether, since the last call, a slot in which a picture was on could not be seen.
   bool take_unseen();
 
+  /// For one who looks on from another thread: a context that shares the pictures, current nowhere.
+  sim::GlContext admit_onlooker();
+  /// The onlooker's. Its pictures stay as they are until the next call or look_away().
+  SeenNow look();
+  void look_away();
+
  private:
-  void make_pictures(const HeadsetChoice& choice);
+  void make_pictures(std::size_t count);
+  HeadsetLayers layers_at(std::int64_t at_ns, std::size_t picture, std::size_t page) const;
+  bool others_read() const { return drive_ == SlotDrive::Thread || onlooker_; }
   void stop();
   void run(const HeadsetChoice& choice);
   void draw_slots();
@@ -104,7 +119,10 @@ class FrameLoop {
   std::optional<sim::GlContext> slots_gl_;  ///< of the thread; shares objects with gl_
   SlotDrive drive_;
   std::unique_ptr<HeadsetSession> session_;
-  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< PictureTurns::count; pages, or none
+  std::string go_on_;                                              ///< HeadsetChoice's
+  PictureSize page_size_;                                          ///< 0: no pages
+  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< as PictureTurns counts them
+  bool onlooker_ = false;
 
   mutable std::mutex mutex_;  ///< for everything below
   std::condition_variable changed_;
@@ -113,6 +131,7 @@ class FrameLoop {
   HeadsetPage shown_place_, waiting_place_;
   std::int64_t due_ns_ = 0;  ///< of the picture that waits
   HeadsetSlot came_on_;      ///< of the picture that is shown
+  EyeViews eyes_;            ///< in the last slot
   bool unseen_ = false, running_ = false, stopping_ = false;
   LoopFacts facts_;
   std::int64_t slots_ = 0;           ///< that were begun

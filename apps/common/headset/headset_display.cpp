@@ -44,7 +44,10 @@ void widen(EyeViews& views, double margin_deg) {
 }  // namespace
 
 HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, const study::HeadsetRules& rules)
-    : rules_(rules), loop_(with_rate(choice, rules), drive), slots_by_thread_(drive == SlotDrive::Thread) {
+    : rules_(rules),
+      go_on_(choice.go_on),
+      loop_(with_rate(choice, rules), drive),
+      slots_by_thread_(drive == SlotDrive::Thread) {
   await([this] { return focused(); }, "nobody wears it, or another program has its focus",
         "put it on, and close what lies before this program");
   const auto measured = [this] { return facts().rate.measured_hz; };
@@ -107,10 +110,9 @@ void HeadsetDisplay::heed() {
   for (const HeadsetEvent& event : loop_.take_events()) {
     const bool state = event.kind == Kind::State;
     if (state && event.state == HeadsetState::Exiting)
-      throw base::Error("headset", "its software asked the program to leave",
-                        "continue with vip-study resume");
+      throw base::Error("headset", "its software asked the program to leave", go_on_);
     if (event.kind == Kind::RuntimeEnds || (state && event.state == HeadsetState::LossPending))
-      throw base::Error("headset", "its software ends", "start it again and continue with vip-study resume");
+      throw base::Error("headset", "its software ends", "start it again and " + go_on_);
     if (event.kind == Kind::Refresh) refresh_hz_ = event.to_hz;
     const bool unseen = state && event.state != HeadsetState::Focused;
     const bool moved = event.kind == Kind::Recentred || event.kind == Kind::EventsLost;

@@ -17,7 +17,7 @@ namespace apps {
 
 /// Shows a picture for as long as the schedule says, in every slot that the runtime gives; what it does while
 /// the head moves is the rules' hold mode. Black is a slot without a picture. Destroy stimuli that drew on it
-/// first. All calls on the thread that made it.
+/// first. All calls but an onlooker's on the thread that made it.
 class HeadsetDisplay final : public study::Display {
  public:
   /// Connects, waits until the headset is worn and has settled at its rate. base::Error for what is not
@@ -66,6 +66,11 @@ class HeadsetDisplay final : public study::Display {
   EyeViews views_now() { return loop_.views_at(loop_.next_ns()); }
   LoopFacts facts() const { return loop_.facts(); }
 
+  /// See FrameLoop.
+  sim::GlContext admit_onlooker() { return loop_.admit_onlooker(); }
+  SeenNow look() { return loop_.look(); }
+  void look_away() { loop_.look_away(); }
+
   /// Whether the participant sees and can answer.
   bool focused() const { return facts().state == HeadsetState::Focused; }
   /// Whether, since the last question, a picture that was on could not be seen, or the world or the rate
@@ -81,6 +86,7 @@ class HeadsetDisplay final : public study::Display {
   std::optional<HeldViews> draw(std::int64_t at_ns);
 
   study::HeadsetRules rules_;
+  std::string go_on_;
   FrameLoop loop_;
   study::Stimulus* pending_ = nullptr;
   double refresh_hz_ = 0;

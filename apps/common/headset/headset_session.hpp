@@ -22,6 +22,7 @@ struct HeadsetChoice {
   double patience_s = 10;                     ///< a wait of the runtime that lasts longer ends the session
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< asked for; see request_rate()
+  std::string go_on = "continue with vip-study resume";  ///< once it runs again, for messages
 };
 
 /// A picture's turn on the display.
@@ -55,6 +56,7 @@ struct HeadsetLayers {
 struct HeadsetNames {
   std::string runtime, runtime_version, headset;
   std::string format;              ///< of the pictures handed over
+  std::string blend;               ///< environment blend mode that was chosen of those offered
   bool position_tracking = false;  ///< the head's place is followed, not its direction alone
 };
 
