@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headset/headset_recorder.hpp"
+#include "apps/common/headset/loader.hpp"
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
@@ -68,6 +68,9 @@ class HeadsetViewer {
     Shown shown;
     try {
       play(shown);
+    } catch (const HeadsetLost&) {
+      throw base::Error("headset", "its software ended the session",
+                        "see that it runs, and start vip-view again");
     } catch (const base::Error&) {
       if (display_.facts().state != HeadsetState::Exiting) throw;
       shown.ended = "the headset's software asked to leave";
@@ -91,12 +94,13 @@ class HeadsetViewer {
       display_.render(*fluid_);
       const std::int64_t computed_ns = display_.now_ns() - before_ns;
       // The slot that is the nearest to when the frame is due, or the first one that can be met.
-      const auto half_period_ns = std::llround(0.5e9 / display_.refresh_hz());
-      const auto times = display_.present(display_.first_onset(due_ns - half_period_ns), clock_);
+      const auto period_ns = std::llround(1e9 / display_.refresh_hz());
+      const auto times = display_.present(display_.first_onset(due_ns - period_ns / 2), clock_);
       if (on_ns > 0 && times.predicted_display_ns > on_ns)
         shown.fps.push(1e-9 * static_cast<double>(times.predicted_display_ns - on_ns));
       on_ns = times.predicted_display_ns;
-      due_ns = std::max(due_ns, on_ns - frame_ns_) + frame_ns_;  // what is far behind is not made up
+      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // what is behind is not made up
+      due_ns += frame_ns_;
       ++shown.frames;
       display_.hold(due_ns - computed_ns, clock_);
     }

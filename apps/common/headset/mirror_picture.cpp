@@ -2,12 +2,17 @@
 
 #include <epoxy/gl.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 namespace apps {
 
 namespace {
+
+constexpr int strip_px = 24;
+constexpr std::chrono::microseconds between_strips{200};
 
 void set_axes(int location, const HeadsetPose& pose) {
   glUniformMatrix3fv(location, 1, GL_FALSE, axes_of(pose).data());
@@ -55,7 +60,20 @@ void MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, drawn_.framebuffer());
   glViewport(0, 0, side_px, side_px);
   glBindVertexArray(vertices_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  draw_in_strips();
+}
+
+/// A device draws for one context at a time, and software OpenGL does so for long: a slot waits for a strip
+/// at most.
+void MirrorPicture::draw_in_strips() {
+  glEnable(GL_SCISSOR_TEST);
+  for (int y = 0; y < side_px; y += strip_px) {
+    glScissor(0, y, side_px, strip_px);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glFinish();
+    std::this_thread::sleep_for(between_strips);
+  }
+  glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace apps

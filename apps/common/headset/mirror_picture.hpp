@@ -24,6 +24,8 @@ class MirrorPicture {
   sim::Image read() const { return drawn_.read(); }
 
  private:
+  static void draw_in_strips();
+
   sim::GlProgram program_;
   sim::Offscreen drawn_;
   unsigned vertices_ = 0;
