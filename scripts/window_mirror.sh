@@ -96,7 +96,7 @@ sleep 1
 finish
 expect "events without" "" "$(mirrored)"
 # What a loaded machine does to either is no finding; on a quiet one the two are alike.
-ask "select 'timing of ' || participant || iif(participant = 'P01', ' with', ' without') || ' the mirror: ' || verdict || ', ' || late_frames ||
+ask "select 'timing of ' || participant || iif(participant = 'P02', ' without', ' with') || ' the mirror: ' || verdict || ', ' || late_frames ||
   ' of ' || frames || ' frames late, worst ' || round(worst_late_ms, 2) || ' ms' from presentation join trial using (trial_id)
   join session using (session_id) where presentation.state = 'played' order by participant" | sed 's/^/        /'
 exit $failed

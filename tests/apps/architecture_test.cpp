@@ -140,7 +140,7 @@ const Rooms rooms{
     {"libstudy/observer", 7},
 
     {"apps/common", 0},
-    {"apps/common/window", 1},
+    {"apps/common/window", 1, {"apps/common/headset"}},
     {"apps/common/headset", 1},
     {"apps/bench", 2},
     {"apps/stats/data", 2},
