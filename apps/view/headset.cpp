@@ -9,7 +9,6 @@
 
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headset/headset_recorder.hpp"
-#include "apps/common/headset/loader.hpp"
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
@@ -48,11 +47,11 @@ class HeadsetViewer {
         display_(display),
         clock_(display),
         recorder_(display,
-                  display.session().has_eye_gaze() ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
+                  display.session().eye_gaze ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
     recorder_.start();  // nothing of it is kept
     fmt::print("shown in    {}\n", display.description());
     fmt::print("levels      follow {}\n",
-               display.session().has_eye_gaze() ? "the eye tracker" : "the head's direction");
+               display.session().eye_gaze ? "the eye tracker" : "the head's direction");
     PreparedFluid prepared = prepare_fluid(options);
     prepared.scene.view = prepared.camera;
     frame_ns_ = std::llround(1e9 * prepared.scene.frame_dt_s);
@@ -68,9 +67,6 @@ class HeadsetViewer {
     Shown shown;
     try {
       play(shown);
-    } catch (const HeadsetLost&) {
-      throw base::Error("headset", "its software ended the session",
-                        "see that it runs, and start vip-view again");
     } catch (const base::Error&) {
       if (display_.facts().state != HeadsetState::Exiting) throw;
       shown.ended = "the headset's software asked to leave";
@@ -87,6 +83,7 @@ class HeadsetViewer {
         display_.turn();
         continue;
       }
+      display_.take_spoilt();  // the next picture is drawn anew in any case
       const std::int64_t before_ns = display_.now_ns();
       fluid_->prepare(shown.frames);
       recorder_.take();
@@ -134,8 +131,7 @@ std::unique_ptr<HeadsetDisplay> connect(const std::string& clock) {
   rules.hold = study::Hold::State;
   try {
     return std::make_unique<HeadsetDisplay>(stands_still ? SlotDrive::Caller : SlotDrive::Thread,
-                                            HeadsetChoice{.eye_gaze = true, .go_on = "start vip-view again"},
-                                            rules);
+                                            HeadsetChoice{.eye_gaze = true}, rules);
   } catch (const base::Error& error) {
     if (stands_still) throw;  // nobody is there to watch
     const std::string told = error.what();

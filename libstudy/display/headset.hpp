@@ -64,6 +64,8 @@ class SlotSource {
   virtual void stop_slots() = 0;
   /// Distance of the eyes' places in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
+  /// What happened to the headset since the last call, in words for the log: facts() may be others now.
+  virtual std::vector<std::string> take_news() = 0;
 };
 
 }  // namespace study

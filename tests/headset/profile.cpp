@@ -150,6 +150,8 @@ const std::map<std::string, double> knobs{
     {"wrong_periods", 0},
     {"ignores_rate", 0},
     {"image_timeouts", 0},
+    {"unfound", 0},
+    {"recentre_lead", 0},
     {"worn_after", 0},
     {"patience", 10},
     {"select", 0},

@@ -1,6 +1,8 @@
 #pragma once
 /// What a headset brings in, for tests.
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/session/session.hpp"
@@ -55,7 +57,10 @@ class SlotEvery10ms final : public SlotSource {
   void stop_slots() override {}
   std::optional<double> ipd_mm() override { return ipd_of ? ipd_of(clock_.now_ns()) : 63; }
 
+  std::vector<std::string> take_news() override { return std::exchange(news, {}); }
+
   std::function<double(std::int64_t)> ipd_of;
+  std::vector<std::string> news;
 
  private:
   const Clock& clock_;

@@ -55,13 +55,13 @@ struct Worn : test::OneSession {
     person.says[gaze_question] = test::score(gaze_kept);
     person.says["rating"] = test::score(4);
   }
-  void run() {
+  void run(const SessionHooks& hooks = {}) {
     SessionParts parts = desk.parts(person, store);
     parts.gaze = &eyes;
     parts.slots = &slots;
     auto runs = open();
     runs.at(0).sessions.at(0).plan.gaze_source = "tracked";
-    run_session(protocol, runs.at(0).sessions.at(0), parts, {});
+    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
   }
   Eyes eyes{desk.clock};
   test::SlotEvery10ms slots{desk.clock};
@@ -107,9 +107,34 @@ TEST(HeadsetRecords, HoldTheDistanceOfTheEyesWhenItChanges) {
     const std::int64_t gone_ms = (now_ns - begun_ns) / 1'000'000;
     return gone_ms < 300 ? 63.0 : gone_ms < 400 ? 63.15 : 64.0;
   };
-  worn.run();
+  // Between two frames nothing waits for the disk: it is written with them.
+  std::int64_t between_frames = 0;
+  SessionHooks hooks;
+  hooks.shown = [&](const FrameRecord&) {
+    if (worn.count("presentation") == 1) between_frames = worn.count("ipd");
+  };
+  worn.run(hooks);
+  EXPECT_EQ(between_frames, 1);
   EXPECT_THAT(test::column(worn.folder / "study.db", "SELECT ipd_mm FROM ipd ORDER BY ipd_id"),
               ElementsAre("63.0", "64.0"));
+}
+
+TEST(HeadsetRecords, HoldWhatHappenedToTheHeadset) {
+  Worn worn(1);
+  int frames = 0;
+  SessionHooks hooks;
+  hooks.shown = [&](const FrameRecord&) { ++frames; };
+  hooks.wish = [&] {
+    if (frames != 5) return Wish::GoOn;
+    ++frames;
+    worn.slots.news = {"it was lost", "it was made anew"};
+    return Wish::NotShown;
+  };
+  worn.run(hooks);
+  EXPECT_EQ(worn.count("note WHERE words = 'the screen did not show it: it was lost, it was made anew'"), 1);
+  EXPECT_THAT(test::column(worn.folder / "study.db", "SELECT detail FROM event WHERE kind = 'headset'"),
+              ElementsAre("it was lost", "it was made anew"));
+  EXPECT_EQ(worn.count("presentation WHERE state = 'played'"), 2);
 }
 
 TEST(HeadsetRecords, EyesLostForTooLongCutATrialAndAreNoted) {

@@ -47,7 +47,7 @@ struct HeadsetSession::Parts {
         xr(connect_to_headset(choice.eye_gaze)),
         system(read_opaque_system(xr)),
         session(xr, system.id, gl),
-        clock(xr),
+        clock(xr, choice.earliest_ns),
         lifecycle(session, clock),
         refresh(session),
         world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
@@ -101,7 +101,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
     throw base::Error("headset",
                       fmt::format("the runtime has held a frame for {:g} s",
                                   std::chrono::duration<double>(patience).count()),
-                      "start the headset's software anew");
+                      "start the headset's software anew; vip-study resume continues a session");
   }
   check_xr(answer->result, "xrWaitFrame");
   return answer->frame;

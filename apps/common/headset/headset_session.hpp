@@ -22,7 +22,8 @@ struct HeadsetChoice {
   double patience_s = 10;                     ///< a wait of the runtime that lasts longer ends the session
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< asked for; see request_rate()
-  std::string go_on = "continue with vip-study resume";  ///< once it runs again, for messages
+  /// Where the runtime's times do not convert: their clock does not begin before it.
+  std::int64_t earliest_ns = 0;
 };
 
 /// A picture's turn on the display.
