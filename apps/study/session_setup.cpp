@@ -126,6 +126,9 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
     setup.idle = std::move(parts.idle);
     setup.listen = std::move(parts.listen);
   }
+  setup.open_mirror = [display = headset.get(), mirror = std::shared_ptr<void>()](bool reveal) mutable {
+    mirror = open_headset_mirror(*display, reveal);
+  };
   setup.display = std::move(headset);
 }
 

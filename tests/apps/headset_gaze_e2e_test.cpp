@@ -74,7 +74,8 @@ TEST_F(HeadsetGazeE2e, TheTrackersSamplesAreKeptAtTheirOwnRate) {
             count("gaze WHERE x IS NOT NULL"));
   EXPECT_GT(count("gaze WHERE x IS NOT NULL"), 30);
   EXPECT_EQ(count("headset WHERE runtime = 'Simulated runtime' AND eye_tracking AND times_convert AND "
-                  "left_width_px = 32 AND abs(left_fov_left_deg + 52) < 1e-3 AND hold = 'image'"),
+                  "left_width_px = 32 AND abs(left_fov_left_deg + 52) < 1e-3 AND hold = 'image' AND blend = "
+                  "'opaque'"),
             1);
   EXPECT_EQ(count("ipd WHERE abs(ipd_mm - 63) < 0.01"), 1);
   EXPECT_EQ(count("presentation WHERE gaze_source = 'tracked'"), 2);

@@ -16,6 +16,7 @@ inline HeadsetFacts headset_facts() {
   facts.headset = "a headset";
   facts.eyes = {EyeFacts{2064, 2208, -52, 42, 46, -50}, EyeFacts{2060, 2200, -42, 52, 46, -50}};
   facts.format = "SRGB8_ALPHA8";
+  facts.blend = "opaque";
   facts.refresh_told_hz = 90;
   facts.refresh_measured_hz = 89.5;
   facts.times_convert = facts.position_tracking = facts.eye_tracking = true;

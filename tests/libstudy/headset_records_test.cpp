@@ -359,5 +359,49 @@ TEST(HeadsetRecords, AreMotionAndAnEyeInTheHeadInBids) {
   EXPECT_FALSE(fs::exists(folder / "bids/sub-P02/ses-askingv1/motion")) << "refused gaze";
 }
 
+TEST(HeadsetRecords, OfASingleSampleHaveTheDisplaysRateInBidsOrNoPlaceThere) {
+  const test::TemporaryFolder folder;
+  const fs::path path = headset_study(folder, "study.db", {{"P01", 1, 1}});
+  const std::string session = "sub-P01/ses-askingv1/", stem = "sub-P01_ses-askingv1_task-asking";
+  const std::vector<std::string> recordings{"motion/" + stem + "_tracksys-headset_motion",
+                                            "beh/" + stem + "_recording-eye1_physio"};
+  export_bids(path, folder / "bids", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
+  for (const std::string& recording : recordings) {
+    const auto json =
+        nlohmann::json::parse(test::bytes_of(folder / "bids" / session / (recording + ".json")));
+    EXPECT_EQ(json["SamplingFrequency"], 89.5);
+  }
+  Connection(path, Open::Write).execute("DELETE FROM headset; UPDATE session SET refresh_hz = NULL");
+  export_bids(path, folder / "unknown", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "unknown"), IsEmpty());
+  for (const std::string& recording : recordings)
+    EXPECT_FALSE(fs::exists(folder / "unknown" / session / (recording + ".json"))) << recording;
+}
+
+TEST(HeadsetRecords, OfAHeadThatStoodInAreBehaviourInBids) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  {
+    Store store(path, Open::Create);
+    test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}});
+    store.add_headset(1, test::headset_facts());
+    const std::vector<GazeSample> samples{{10'000'000, {}, false, {}, false, {}},
+                                          {20'000'000, {}, true, GazePoint{0.5, 0.25}, true, GazeRay{}}};
+    store.add_gaze(1, 0, GazeOrigin::Head, samples);
+  }
+  export_bids(path, folder / "bids", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
+  const fs::path head =
+      folder / "bids/sub-P01/ses-askingv1/beh/sub-P01_ses-askingv1_task-asking_acq-head_beh";
+  EXPECT_EQ(test::bytes_of(head.string() + ".tsv"),
+            "timestamp\tx_coordinate\ty_coordinate\tvalid\ttracked\n"
+            "0.01\tn/a\tn/a\t0\t0\n0.02\t0.5\t0.25\t1\t1\n");
+  const auto json = nlohmann::json::parse(test::bytes_of(head.string() + ".json"));
+  EXPECT_THAT(json["Description"].get<std::string>(), HasSubstr("No eye was recorded"));
+  export_bids(path, folder / "few");
+  EXPECT_FALSE(fs::exists(folder / "few/sub-P01/ses-askingv1/beh" / head.filename().concat(".tsv")));
+}
+
 }  // namespace
 }  // namespace study

@@ -49,7 +49,7 @@ void require_alike(const SessionFacts& before, const SessionFacts& after) {
 }  // namespace
 
 FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
-    : gl_(make_headset_context()), drive_(drive) {
+    : gl_(make_headset_context()), drive_(drive), page_size_{choice.page_width_px, choice.page_height_px} {
   if (drive == SlotDrive::Caller) {
     maker_.emplace(gl_, choice);
     make_session();
@@ -66,19 +66,22 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
     }
   }
   try {
-    make_pictures(choice);
+    make_pictures(PictureTurns::count);
   } catch (...) {
     stop();
     throw;
   }
 }
 
-void FrameLoop::make_pictures(const HeadsetChoice& choice) {
+void FrameLoop::make_pictures(std::size_t count) {
   const PictureSize size = session().picture;
-  for (std::size_t i = 0; i < PictureTurns::count; ++i) {
-    canvases_.push_back(std::make_unique<sim::Offscreen>(size.width, size.height));
-    if (choice.page_width_px > 0)
-      pages_.push_back(std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px));
+  while (canvases_.size() < count) {
+    auto canvas = std::make_unique<sim::Offscreen>(size.width, size.height);
+    std::unique_ptr<sim::Offscreen> page;
+    if (page_size_.width > 0) page = std::make_unique<sim::Offscreen>(page_size_.width, page_size_.height);
+    const std::lock_guard held(mutex_);
+    canvases_.push_back(std::move(canvas));
+    if (page) pages_.push_back(std::move(page));
   }
 }
 
@@ -231,13 +234,7 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
       shown_place_ = waiting_place_;
     }
     unseen_ |= picture_turns_.shows() && !slot.should_render;
-    const std::size_t picture = picture_turns_.read(), page = page_turns_.read();
-    if (picture_turns_.shows()) out.picture = canvases_[picture].get();
-    if (page_turns_.shows()) out.page = pages_[page].get();
-    out.views = shown_from_.views;
-    out.in_head = shown_from_.in_head;
-    out.light = light_at(slot.predicted_ns);
-    out.place = shown_place_;
+    out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
     if (out.picture) record.shown = shown_from_;
     record.world = facts_.world;
     if (records_.size() >= most_records)
@@ -248,13 +245,41 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   return out;
 }
 
+HeadsetLayers FrameLoop::layers_at(std::int64_t at_ns, std::size_t picture, std::size_t page) const {
+  HeadsetLayers out;
+  if (picture_turns_.shows()) out.picture = canvases_[picture].get();
+  if (page_turns_.shows()) out.page = pages_[page].get();
+  out.views = shown_from_.views;
+  out.in_head = shown_from_.in_head;
+  out.light = light_at(at_ns);
+  out.place = shown_place_;
+  return out;
+}
+
+sim::GlContext FrameLoop::admit_onlooker() {
+  make_pictures(PictureTurns::count_with_onlooker);
+  onlooker_ = true;
+  return gl_.make_shared();
+}
+
+SeenNow FrameLoop::look() {
+  const std::lock_guard held(mutex_);
+  return {layers_at(facts_.last.predicted_ns, picture_turns_.look(), page_turns_.look()), facts_.views};
+}
+
+void FrameLoop::look_away() {
+  const std::lock_guard held(mutex_);
+  picture_turns_.look_away();
+  page_turns_.look_away();
+}
+
 void FrameLoop::turn() {
   if (drive_ == SlotDrive::Caller) {
     const auto since = std::chrono::steady_clock::now();
     while (!turn_slot()) {
       if (!events_.empty()) return;  // one may say that no slot comes any more
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "nobody wears it", "put it on and continue with vip-study resume");
+        throw base::Error("headset", "nobody wears it", "put it on; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return;
@@ -319,7 +344,7 @@ const sim::Offscreen& FrameLoop::page() {
 }
 
 HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
-  if (drive_ == SlotDrive::Thread) glFinish();  // the other context reads it
+  if (others_read()) glFinish();
   {
     const std::lock_guard held(mutex_);
     picture_turns_.post();
@@ -345,7 +370,7 @@ void FrameLoop::clear() {
 }
 
 void FrameLoop::show_page(const HeadsetPage& place) {
-  if (drive_ == SlotDrive::Thread) glFinish();
+  if (others_read()) glFinish();
   const std::lock_guard held(mutex_);
   page_turns_.post();
   waiting_place_ = place;

@@ -57,8 +57,15 @@ struct LoopFacts {
   EyeViews views;  ///< of the last slot
 };
 
+/// What is seen at the moment.
+struct SeenNow {
+  HeadsetLayers layers;  ///< as the last slot showed them
+  EyeViews eyes;         ///< where the eyes were then
+};
+
 /// Owns the session. Its pictures are drawn on the thread that made the loop, where its context is current;
-/// all calls come from there. They throw what went wrong with the session: base::Error, HeadsetLost.
+/// all calls but those of an onlooker come from there. They throw what went wrong with the session:
+/// base::Error, HeadsetLost.
 ///
 /// A session that the runtime loses is made anew, as SessionMaker has it: events tell so, and no slots come
 /// meanwhile. What is on when it is lost, or when the world's origin moves, gives way to black until
@@ -109,8 +116,16 @@ class FrameLoop {
   /// Whether, since the last call, a slot in which a picture was on could not be seen.
   bool take_unseen();
 
+  /// For one who looks on from another thread: a context that shares the pictures, current nowhere.
+  sim::GlContext admit_onlooker();
+  /// The onlooker's. Its pictures stay as they are until the next call or look_away().
+  SeenNow look();
+  void look_away();
+
  private:
-  void make_pictures(const HeadsetChoice& choice);
+  void make_pictures(std::size_t count);
+  HeadsetLayers layers_at(std::int64_t at_ns, std::size_t picture, std::size_t page) const;
+  bool others_read() const { return drive_ == SlotDrive::Thread || onlooker_; }
   void stop();
   void make_session();
   void make_anew();
@@ -131,7 +146,9 @@ class FrameLoop {
   std::optional<SessionMaker> maker_;
   std::mutex asking_;  ///< of session_, where another thread asks: taken before mutex_, and to replace it
   std::unique_ptr<HeadsetSession> session_;  ///< none: it was lost, and the next one is being made
-  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< PictureTurns::count; pages, or none
+  PictureSize page_size_;                    ///< 0: no pages
+  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< as PictureTurns counts them
+  bool onlooker_ = false;
 
   mutable std::mutex mutex_;  ///< for everything below
   std::condition_variable changed_;

@@ -127,9 +127,10 @@ void HeadsetDisplay::heed() {
     const bool state = event.kind == Kind::State;
     if (state && event.state == HeadsetState::Exiting)
       throw base::Error("headset", "its software asked the program to leave",
-                        "continue with vip-study resume");
+                        "vip-study resume continues a session");
     if (event.kind == Kind::RuntimeEnds)
-      throw base::Error("headset", "its software ends", "start it again and continue with vip-study resume");
+      throw base::Error("headset", "its software ends",
+                        "start it again; vip-study resume continues a session");
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
     if (event.kind == Kind::Refresh && !new_session_) {

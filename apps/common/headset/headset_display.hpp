@@ -18,8 +18,8 @@ namespace apps {
 
 /// Shows a picture for as long as the schedule says, in every slot that the runtime gives; what it does while
 /// the head moves is the rules' hold mode. Black is a slot without a picture. A session that the runtime
-/// loses is made anew in place (FrameLoop). Destroy stimuli that drew on it first. All calls on the thread
-/// that made it.
+/// loses is made anew in place (FrameLoop). Destroy stimuli that drew on it first. All calls but an
+/// onlooker's on the thread that made it.
 class HeadsetDisplay final : public study::Display {
  public:
   /// Connects, waits until the headset is worn and has settled at its rate. base::Error for what is not
@@ -65,6 +65,11 @@ class HeadsetDisplay final : public study::Display {
   SessionFacts session() const { return loop_.session(); }
   const study::HeadsetRules& rules() const { return rules_; }
   LoopFacts facts() const { return loop_.facts(); }
+
+  /// See FrameLoop.
+  sim::GlContext admit_onlooker() { return loop_.admit_onlooker(); }
+  SeenNow look() { return loop_.look(); }
+  void look_away() { loop_.look_away(); }
 
   /// Whether the participant sees and can answer.
   bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }

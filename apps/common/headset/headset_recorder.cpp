@@ -145,6 +145,7 @@ study::HeadsetFacts HeadsetRecorder::facts() const {
   out.runtime_version = names.runtime_version;
   out.headset = names.headset;
   out.format = names.format;
+  out.blend = names.blend;
   out.position_tracking = names.position_tracking;
   out.times_convert = session.times_convert;
   out.eye_tracking = session.eye_gaze;

@@ -57,6 +57,7 @@ struct HeadsetLayers {
 struct HeadsetNames {
   std::string runtime, runtime_version, headset;
   std::string format;              ///< of the pictures handed over
+  std::string blend;               ///< environment blend mode that was chosen of those offered
   bool position_tracking = false;  ///< the head's place is followed, not its direction alone
 };
 
