@@ -3,7 +3,8 @@ layout(binding = 0) uniform sampler2D picture;  // both eyes', the left one's fi
 layout(binding = 1) uniform sampler2D page;
 layout(location = 0) out vec4 colour;
 
-uniform vec2 size;   // of what is drawn, px
+uniform vec2 size;    // of what is drawn, px
+uniform int samples;  // of a pixel, 4 or 1: letters are finer than pixels
 uniform float slope;  // of its edges from straight ahead
 uniform vec3 eye;     // m
 uniform mat3 turn;    // the eye's axes: right, up, back
@@ -36,9 +37,9 @@ vec3 seen(vec3 ray) {
 
 void main() {
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < 4; ++i) {  // letters are finer than these pixels
-    const vec2 at = gl_FragCoord.xy + vec2(i % 2, i / 2) * 0.5 - 0.25;
+  for (int i = 0; i < samples; ++i) {
+    const vec2 at = gl_FragCoord.xy + (samples == 4 ? vec2(i % 2, i / 2) * 0.5 - 0.25 : vec2(0.0));
     sum += seen(turn * vec3((2.0 * at / size - 1.0) * slope, -1.0));
   }
-  colour = vec4(sum / 4.0, 1.0);
+  colour = vec4(sum / samples, 1.0);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -129,6 +130,7 @@ std::unique_ptr<HeadsetDisplay> connect(const std::string& clock) {
   const bool stands_still = clock == "virtual";
   study::HeadsetRules rules;
   rules.hold = study::Hold::State;
+  ::setenv("XR_LOADER_DEBUG", "none", 0);  // one line says what is missing: ours
   try {
     return std::make_unique<HeadsetDisplay>(stands_still ? SlotDrive::Caller : SlotDrive::Thread,
                                             HeadsetChoice{.eye_gaze = true}, rules);

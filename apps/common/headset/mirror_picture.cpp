@@ -11,7 +11,7 @@ namespace apps {
 
 namespace {
 
-constexpr int strip_px = 24;
+constexpr int strip_px = 12;
 constexpr std::chrono::microseconds between_strips{200};
 
 void set_axes(int location, const HeadsetPose& pose) {
@@ -26,16 +26,18 @@ MirrorPicture::MirrorPicture()
   glCreateVertexArrays(1, &vertices_);
   program_.use();
   glUniform2f(program_.uniform("size"), side_px, side_px);
+  glUniform1i(program_.uniform("samples"), sim::gl_is_software() ? 1 : 4);
   glUniform1f(program_.uniform("slope"), static_cast<float>(std::tan(field_deg * std::numbers::pi / 360)));
 }
 
 MirrorPicture::~MirrorPicture() { glDeleteVertexArrays(1, &vertices_); }
 
-void MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
+bool MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   const HeadsetLayers& shown = seen.layers;
   const EyeView &eye = seen.eyes[0], &from = shown.views[0];
   const bool sees = eye.pose.valid();
   const bool picture = sees && with_picture && shown.picture, page = sees && shown.page;
+  if (!picture && !page) return false;
   program_.use();
   glUniform3fv(program_.uniform("eye"), 1, eye.pose.place_m.data());
   set_axes(program_.uniform("turn"), eye.pose);
@@ -61,6 +63,7 @@ void MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   glViewport(0, 0, side_px, side_px);
   glBindVertexArray(vertices_);
   draw_in_strips();
+  return true;
 }
 
 /// A device draws for one context at a time, and software OpenGL does so for long: a slot waits for a strip

@@ -18,8 +18,8 @@ class MirrorPicture {
   MirrorPicture(const MirrorPicture&) = delete;
   MirrorPicture& operator=(const MirrorPicture&) = delete;
 
-  /// with_picture: else what a stimulus drew is black.
-  void draw(const SeenNow& seen, bool with_picture) const;
+  /// with_picture: else what a stimulus drew is black. False, and nothing is drawn, where all is.
+  bool draw(const SeenNow& seen, bool with_picture) const;
   /// Waits until it is drawn.
   sim::Image read() const { return drawn_.read(); }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "apps/common/framing.hpp"
@@ -49,10 +50,11 @@ class PictureTaker {
   PictureTaker(const PictureTaker&) = delete;
   PictureTaker& operator=(const PictureTaker&) = delete;
 
-  sim::Image take(HeadsetDisplay& display, bool reveal) {
+  /// None: all is black.
+  std::optional<sim::Image> take(HeadsetDisplay& display, bool reveal) {
     gl_.make_current();
-    picture_->draw(display.look(), reveal);
-    sim::Image image = picture_->read();
+    std::optional<sim::Image> image;
+    if (picture_->draw(display.look(), reveal)) image = picture_->read();
     display.look_away();
     gl_.release();
     return image;
@@ -80,27 +82,30 @@ class PictureWindow {
   PictureWindow(const PictureWindow&) = delete;
   PictureWindow& operator=(const PictureWindow&) = delete;
 
-  /// False once somebody closed it, or its screen is gone.
-  bool show(const sim::Image& image) {
+  /// None: black. False once somebody closed it, or its screen is gone.
+  bool show(const std::optional<sim::Image>& image) {
     glfwPollEvents();
     if (GlfwWindow::display_is_gone() || window_.asked_to_close()) return false;
     const auto [width, height] = window_.size();
     if (width < 1 || height < 1) return true;  // minimised
     const Current current(window_);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTextureSubImage2D(texture_, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                        image.rgba.data());
     constexpr std::array<float, 4> black{0, 0, 0, 1};
     glClearNamedFramebufferfv(0, GL_COLOR, 0, black.data());
-    const Rectangle to = fit_picture(image.width, image.height, width, height);
-    // Upside down: an image begins with its highest row.
-    glBlitNamedFramebuffer(source_, 0, 0, image.height, image.width, 0, to.x0, to.y0, to.x1, to.y1,
-                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    if (image) put(*image, fit_picture(image->width, image->height, width, height));
     glfwSwapBuffers(window_.get());
     return true;
   }
 
  private:
+  void put(const sim::Image& image, const Rectangle& to) const {
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(texture_, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                        image.rgba.data());
+    // Upside down: an image begins with its highest row.
+    glBlitNamedFramebuffer(source_, 0, 0, image.height, image.width, 0, to.x0, to.y0, to.x1, to.y1,
+                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  }
+
   struct Current {
     explicit Current(const GlfwWindow& window) { glfwMakeContextCurrent(window.get()); }
     ~Current() { glfwMakeContextCurrent(nullptr); }
