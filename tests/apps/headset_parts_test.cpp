@@ -5,6 +5,7 @@
 #include <future>
 
 #include "apps/common/framing.hpp"
+#include "apps/common/headset/picture_turns.hpp"
 #include "apps/common/headset/rate_meter.hpp"
 #include "apps/common/headset/views.hpp"
 #include "apps/common/headset/watched_thread.hpp"
@@ -149,6 +150,20 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
   EXPECT_NEAR(seen[0], std::cos(30 * degree), 1e-5);
   EXPECT_NEAR(seen[1], -std::sin(30 * degree), 1e-5);
   EXPECT_NEAR(seen[2], -3, 1e-5);
+}
+
+TEST(HeadsetTurns, APictureThatIsDroppedWhileItIsDrawnNeverComesOn) {
+  PictureTurns turns;
+  turns.begin();
+  turns.drop();
+  turns.post();
+  EXPECT_FALSE(turns.waits());
+  turns.begin();
+  turns.post();
+  turns.take();
+  EXPECT_TRUE(turns.shows());
+  turns.drop();
+  EXPECT_FALSE(turns.shows());
 }
 
 TEST(HeadsetWatch, ACallThatComesBackIsDone) {

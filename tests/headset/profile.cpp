@@ -164,6 +164,7 @@ const std::map<std::string, double> knobs{
     {"look_pitch", 0},
     {"hold", 1},
     {"gaze_rate", 120},
+    {"gaze_age", 0},
     {"gaze_valid", 1},
     {"gaze_tracked", 1},
     {"blink_every", 0},

@@ -97,7 +97,7 @@ Pose place_of(const Space& space, XrTime time) {
   if (space.type == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
   if (space.type == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
   double yaw = 0;
-  for (const Turn& turn : runtime().local_turns) yaw += turn.from <= time ? turn.degrees : 0;
+  for (const LocalTurn& turn : runtime().local_turns) yaw += turn.from <= time ? turn.degrees : 0;
   return Pose{turned(yaw, 0, 0), {0, eye_height, 0}} * space.offset;
 }
 

@@ -102,7 +102,7 @@ struct Page {
 };
 
 /// LOCAL is turned to the left from a time on.
-struct Turn {
+struct LocalTurn {
   XrTime from;
   double degrees;
 };
@@ -145,7 +145,7 @@ struct Runtime {
   int dropped = 0;                                ///< slots that the next wait leaves out
   bool repeats = false;                           ///< the next wait predicts the last time again
   double hang_seconds = 0;                        ///< for which the next wait does not return
-  std::vector<Turn> local_turns;                  ///< of LOCAL, by recentring
+  std::vector<LocalTurn> local_turns;             ///< of LOCAL, by recentring
 };
 Runtime& runtime();
 /// Forgets everything if the profile or the log is another one than before.

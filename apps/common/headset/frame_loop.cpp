@@ -202,8 +202,8 @@ void FrameLoop::follow_world(std::int64_t predicted_ns) {
 /// What was placed in another world would jump.
 void FrameLoop::black_out() {
   unseen_ |= picture_turns_.shows() || picture_turns_.waits();
-  picture_turns_.clear();
-  page_turns_.clear();
+  picture_turns_.drop();
+  page_turns_.drop();
 }
 
 /// What the slot shows.
@@ -355,9 +355,8 @@ HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
     turn();
     const std::lock_guard held(mutex_);
     if (picture_turns_.shows() && !picture_turns_.waits()) return came_on_;
-    if (!picture_turns_.waits()) return {.predicted_ns = due_ns};  // it was blacked out
-    if (running_ && !error_) continue;
-    // Nobody sees it: the headset is off.
+    if (picture_turns_.waits() && running_ && !error_) continue;
+    // Nobody sees it: the headset is off, or all went black.
     picture_turns_.clear();
     unseen_ = true;
     return {.predicted_ns = due_ns};

@@ -180,10 +180,10 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
 /// Both eyes into the canvas, as they will be at at_ns; none where the runtime does not know.
 std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
+  const sim::Offscreen& canvas = loop_.canvas();  // first: should the world move now, it never comes on
   EyeViews views = loop_.views_at(at_ns);
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
-  const sim::Offscreen& canvas = loop_.canvas();
   const std::array<study::EyeView, 2> eyes{study_view(views[0], 0, rules_.world_scale),
                                            study_view(views[1], views[0].width_px, rules_.world_scale)};
   pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});

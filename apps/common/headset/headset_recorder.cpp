@@ -116,8 +116,9 @@ void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
   } else if (!sample.valid) {
     // Also where the runtime goes on telling the last sample's time: the eyes are lost.
     sample.device_ns.reset();
-    sample.sampled_ns = record.slot.predicted_ns - lag_ns_;
+    sample.sampled_ns = std::max(record.slot.predicted_ns - lag_ns_, last_ns_);
   }
+  last_ns_ = sample.sampled_ns;
   gaze_.push_back(sample);
 }
 

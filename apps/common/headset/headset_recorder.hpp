@@ -19,8 +19,8 @@ namespace apps {
 /// start() and after stop(), which enclose what the participant allows: the fluid then follows the head.
 ///
 /// A sample is taken for each time that the runtime tells, and for each slot where it tells none. Those of
-/// eyes that are lost, for which no time is told, lie as far before their slots as the oldest that was told:
-/// so they stand in order with those that are.
+/// eyes that are lost, for which no time is told, lie before their slots by the greatest age that was told,
+/// and never before the last sample: so they stand in order with those that follow.
 class HeadsetRecorder final : public study::GazeSource, public study::SlotSource {
  public:
   /// origin: Tracker, for a display that asked for one, or Head.
@@ -52,6 +52,7 @@ class HeadsetRecorder final : public study::GazeSource, public study::SlotSource
   std::vector<study::SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
   std::int64_t last_told_ns_ = 0, lag_ns_ = 0;  ///< the last time that was told; most before its slot
+  std::int64_t last_ns_ = 0;                    ///< of the last sample
 };
 
 /// One sample as a slot brought it in, in the head's frame; nothing of it is valid where the eyes, or the

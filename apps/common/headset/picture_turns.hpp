@@ -16,10 +16,13 @@ class PictureTurns {
   std::size_t begin() {
     drawn_ = 0;
     while (drawn_ == waiting_ || drawn_ == shown_ || drawn_ == read_ || drawn_ == looked_at_) ++drawn_;
+    dropped_ = false;
     return drawn_;
   }
-  /// The one that was begun last waits; one that waited before never comes on.
-  void post() { waiting_ = drawn_; }
+  /// The one that was begun last waits, unless it was dropped; one that waited before never comes on.
+  void post() {
+    if (!dropped_) waiting_ = drawn_;
+  }
   bool waits() const { return waiting_ != none; }
   /// What waits comes on.
   void take() {
@@ -33,10 +36,16 @@ class PictureTurns {
   std::size_t look() { return looked_at_ = shown_; }
   void look_away() { looked_at_ = none; }
   void clear() { shown_ = waiting_ = none; }
+  /// The same, and what is being drawn never comes on.
+  void drop() {
+    clear();
+    dropped_ = true;
+  }
 
  private:
   static constexpr std::size_t none = count_with_onlooker;
   std::size_t drawn_ = 0, waiting_ = none, shown_ = none, read_ = none, looked_at_ = none;
+  bool dropped_ = false;
 };
 
 }  // namespace apps
