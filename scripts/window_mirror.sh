@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The experimenter's mirror of the participant's view on a virtual screen: both windows are there and show the same page, picture
-# and black, the database says so, and without --mirror there is neither. Fails when one of these is not so.
+# and black, the database says so, and without --mirror there is neither. Without --mirror-reveal stimuli are black in it. Fails
+# when one of these is not so.
 # Prints the timing of a stimulus with the mirror and without.
 # usage: scripts/window_mirror.sh [FOLDER]    default: out/window_mirror. Takes a minute.
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
@@ -51,7 +52,7 @@ to_stimulus() {  # two seconds into it
 finish() { kill -INT "$session"; wait "$session" || true; session=; }
 ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
 windows() { xdotool search --onlyvisible --name '^vip-study' | wc -l; }
-mirrored() { ask "select count(*) from event join session using (session_id) where participant = '$code' and kind = 'mirror opened'"; }
+mirrored() { ask "select group_concat(kind) from event join session using (session_id) where participant = '$code' and kind in ('mirror opened', 'pages mirrored')"; }
 # Mean and spread of grey, 0 to 100, of the participant's picture and of the mirror's.
 greys() { convert "$out/$1.png" -crop "$2" -colorspace Gray -format '%[fx:round(100*mean)] %[fx:round(100*standard_deviation)]' info:; }
 same() {  # same WHAT: on a picture of the screen, and more than one grey
@@ -61,7 +62,7 @@ same() {  # same WHAT: on a picture of the screen, and more than one grey
     "$(awk -v a="$2" -v b="$3" -v c="$4" -v d="$5" 'BEGIN { print (b > 0 && (a - c)^2 <= 4 && (b - d)^2 <= 4) ? "yes" : "no" }')"
 }
 
-begin P01 --mirror
+begin P01 --mirror --mirror-reveal
 expect "windows with --mirror" 2 "$(windows)"
 expect "a page's grey in the mirror" "38 38 40" "$(pixel 962 542)"
 same page
@@ -72,7 +73,18 @@ until_shown played
 sleep 1
 same questions
 finish
-expect "events with --mirror" 1 "$(mirrored)"
+expect "events with --mirror-reveal" "mirror opened" "$(mirrored)"
+
+begin P03 --mirror
+same blind_page
+to_stimulus
+shoot blind
+expect "a stimulus in the mirror without --mirror-reveal" "0 0" "$(greys blind 640x360+960+540)"
+until_shown played
+sleep 1
+same blind_questions
+finish
+expect "events with --mirror" "pages mirrored" "$(mirrored)"
 
 begin P02
 expect "windows without" 1 "$(windows)"
@@ -82,9 +94,9 @@ to_stimulus
 until_shown played
 sleep 1
 finish
-expect "events without" 0 "$(mirrored)"
+expect "events without" "" "$(mirrored)"
 # What a loaded machine does to either is no finding; on a quiet one the two are alike.
-ask "select 'timing of ' || participant || iif(participant = 'P01', ' with', ' without') || ' the mirror: ' || verdict || ', ' || late_frames ||
+ask "select 'timing of ' || participant || iif(participant = 'P02', ' without', ' with') || ' the mirror: ' || verdict || ', ' || late_frames ||
   ' of ' || frames || ' frames late, worst ' || round(worst_late_ms, 2) || ' ms' from presentation join trial using (trial_id)
   join session using (session_id) where presentation.state = 'played' order by participant" | sed 's/^/        /'
 exit $failed

@@ -6,13 +6,15 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "apps/common/headset/headset_session.hpp"
 #include "apps/common/headset/loader.hpp"
+#include "apps/common/headset/session_maker.hpp"
 #include "apps/common/headset/system.hpp"
 #include "apps/common/headset/test_scene.hpp"
 #include "stats/base/error.hpp"
@@ -25,7 +27,6 @@ using Seconds = std::chrono::duration<double>;
 
 /// For READY, and for the farewell of a runtime.
 constexpr Seconds most_idle{30};
-constexpr int most_sessions = 3;
 
 /// Degrees to the right of and above straight ahead of a head.
 std::array<double, 2> angles_in_head(const HeadsetPose& head, const HeadsetPose& ray) {
@@ -111,22 +112,23 @@ void print_report(const ShowReport& report) {
 /// One session of the show, and maybe not the last.
 class Show {
  public:
-  Show(const sim::GlContext& gl, const TestScene& scene, const ShowChoice& choice, ShowReport& report)
-      : session_(gl, {.eye_gaze = true, .patience_s = choice.patience_s}),
-        picture_(session_.picture_size().width, session_.picture_size().height),
+  Show(std::unique_ptr<HeadsetSession> session, const TestScene& scene, const ShowChoice& choice,
+       ShowReport& report)
+      : session_(std::move(session)),
+        picture_(session_->picture_size().width, session_->picture_size().height),
         scene_(scene),
         report_(report),
         asked_hz_(choice.refresh_hz) {
-    report.headset = session_.description();
-    report.times_convert = session_.times_convert();
-    report.has_gaze = session_.has_eye_gaze();
-    if (!session_.keeps_levels()) report.notes.emplace_back("the format of pictures loses dark levels");
-    if (choice.refresh_hz > 0) session_.request_rate(choice.refresh_hz);
+    report.headset = session_->description();
+    report.times_convert = session_->times_convert();
+    report.has_gaze = session_->has_eye_gaze();
+    if (!session_->keeps_levels()) report.notes.emplace_back("the format of pictures loses dark levels");
+    if (choice.refresh_hz > 0) session_->request_rate(choice.refresh_hz);
   }
   ~Show() {
-    report_.dropped += session_.meter().dropped();
-    report_.repeated += session_.meter().repeated();
-    report_.off_grid += session_.meter().off_grid();
+    report_.dropped += session_->meter().dropped();
+    report_.repeated += session_->meter().repeated();
+    report_.off_grid += session_->meter().off_grid();
   }
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
@@ -135,10 +137,10 @@ class Show {
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {
-      for (const HeadsetEvent& event : session_.poll()) note(event);
-      if (session_.state() == HeadsetState::Exiting) return true;
-      if (session_.state() == HeadsetState::LossPending || runtime_ends_) return false;
-      if (session_.running()) {
+      for (const HeadsetEvent& event : session_->poll()) note(event);
+      if (session_->state() == HeadsetState::Exiting) return true;
+      if (session_->state() == HeadsetState::LossPending || runtime_ends_) return false;
+      if (session_->running()) {
         frame(seconds_left);
         if (seconds_left <= 0 && !asked_to_exit_) ask_to_exit();
         idle_since = std::chrono::steady_clock::now();
@@ -155,11 +157,11 @@ class Show {
   void ask_to_exit() {
     asked_to_exit_ = true;
     report_.ended = "after its time";
-    report_.rate = session_.rate();
+    report_.rate = session_->rate();
     const double shown_hz = report_.rate.measured_hz.value_or(report_.rate.told_hz.value_or(0));
     if (asked_hz_ > 0 && std::abs(shown_hz - asked_hz_) > 0.02 * asked_hz_)
       report_.notes.push_back(fmt::format("the display did not go to {:g} Hz", asked_hz_));
-    session_.request_exit();
+    session_->request_exit();
   }
 
   void note(const HeadsetEvent& event) {
@@ -174,18 +176,18 @@ class Show {
   }
 
   void frame(double& seconds_left) {
-    const HeadsetSlot slot = session_.wait();
+    const HeadsetSlot slot = session_->wait();
     if (last_ns_) seconds_left -= static_cast<double>(slot.predicted_ns - *last_ns_) * 1e-9;
     last_ns_ = slot.predicted_ns;
-    session_.begin(slot);
-    take(session_.input(slot));
-    const EyeViews views = session_.views(slot);
+    session_->begin(slot);
+    take(session_->input(slot));
+    const EyeViews views = session_->views(slot);
     const bool shows = slot.should_render && can_be_shown(views);
     if (shows) {
       for (std::size_t eye = 0; eye < views.size(); ++eye)
         scene_.draw(views[eye], picture_.framebuffer(), eye == 0 ? 0 : views[0].width_px);
     }
-    session_.end(slot, {.picture = shows ? &picture_ : nullptr, .views = views});
+    session_->end(slot, {.picture = shows ? &picture_ : nullptr, .views = views});
     ++report_.frames;
     report_.shown += shows;
   }
@@ -198,7 +200,7 @@ class Show {
     pushed_ = pushed;
   }
 
-  HeadsetSession session_;
+  std::unique_ptr<HeadsetSession> session_;
   sim::Offscreen picture_;
   const TestScene& scene_;
   ShowReport& report_;
@@ -210,17 +212,15 @@ class Show {
 void show_sessions(const ShowChoice& choice, ShowReport& report) {
   const sim::GlContext gl = make_headset_context();
   const TestScene scene;
-  double seconds_left = choice.seconds;
-  for (int session = 1;; ++session) {
+  SessionMaker sessions(gl, {.eye_gaze = true, .patience_s = choice.patience_s});
+  auto session = sessions.make();
+  for (double seconds_left = choice.seconds;;) {
     try {
-      Show show(gl, scene, choice, report);
+      Show show(std::move(session), scene, choice, report);
       if (show.run(seconds_left)) return;
     } catch (const HeadsetLost&) {
-      if (session == most_sessions) throw;
     }
-    if (session == most_sessions) {
-      throw base::Error("headset", "session after session is lost", "see the log of the headset's software");
-    }
+    session = sessions.make();
     report.notes.emplace_back("a session was lost and made anew");
   }
 }

@@ -179,9 +179,13 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
                    "before the session, once for a station and build");
   command.add_flag("--events", options.events,
                    "Print a line for each step of a session once it is safe, without answers");
-  command.add_flag("--mirror", options.mirror,
-                   "Show the experimenter what the participant sees, in a second window on another monitor; "
-                   "this unblinds and is logged");
+  auto* mirror = command.add_flag("--mirror", options.mirror,
+                                  "Show the experimenter the pages that the participant sees, in a second "
+                                  "window, in a headset's case its left eye's view; stimuli are black");
+  command
+      .add_flag("--mirror-reveal", options.mirror_reveal,
+                "With --mirror: show stimuli too; this unblinds and is logged")
+      ->needs(mirror);
 }
 
 void add_run_command(CLI::App& app) {

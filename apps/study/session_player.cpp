@@ -78,8 +78,8 @@ void open_mirror(const PlayOptions& options, const SessionSetup& setup) {
   if (!options.mirror) return;
   if (!setup.open_mirror)
     throw base::Error("--mirror", "there is no participant's window to mirror",
-                      "leave it out, or use --display window");
-  setup.open_mirror();
+                      "leave it out, or use --display window or openxr");
+  setup.open_mirror(options.mirror_reveal);
 }
 
 namespace {
@@ -222,6 +222,14 @@ RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
   return end;
 }
 
+void log_mirror(study::Store& store, const study::OpenSession& session, const SessionSetup& setup,
+                bool reveals) {
+  store.log(session.id, reveals ? study::mirror_event : study::pages_mirror_event,
+            reveals ? "the experimenter sees the participant's view"
+                    : "the experimenter sees the participant's pages; stimuli are black",
+            setup.clock->now_ns());
+}
+
 void play_sessions(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                    SessionSetup& setup, const PlayOptions& options, std::vector<EndedEarly>& early) {
   std::optional<study::RealTimeScheduling> real_time;
@@ -247,9 +255,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   };
   for (const auto& session : run.sessions) {
     if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
-    if (options.mirror)
-      store.log(session.id, study::mirror_event, "the experimenter sees the participant's view",
-                setup.clock->now_ns());
+    if (options.mirror) log_mirror(store, session, setup, options.mirror_reveal);
     if (!setup.rates.cells.empty())
       store.log(session.id, "live rates", measured_table(setup.rates), setup.clock->now_ns());
     play(session);

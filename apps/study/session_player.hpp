@@ -37,7 +37,8 @@ struct PlayOptions {
   bool console = false;        ///< the experimenter's, in the terminal
   bool accept_slow = false;    ///< see RunOptions
   bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
-  bool mirror = false;         ///< the experimenter sees the participant's view in a second window
+  bool mirror = false;         ///< the experimenter sees the participant's pages in a second window
+  bool mirror_reveal = false;  ///< and stimuli, which are black else
 };
 
 /// Opens the mirror where it is asked for. base::Error when there is no window, or no room for a second one.

@@ -87,7 +87,7 @@ HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
 void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionSetup& setup,
                     Viewing& viewing) {
   const bool tracked = options.gaze == "tracked";
-  if (tracked && !display.session().has_eye_gaze())
+  if (tracked && !display.session().eye_gaze)
     throw base::Error("--gaze tracked", "the headset has no eye tracker that its software offers",
                       "switch eye tracking on in the headset's software, or use --gaze head");
   const auto recorder = std::make_shared<HeadsetRecorder>(
@@ -116,6 +116,7 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
       if (others() == study::Wish::Stop) return study::Wish::Stop;
       display->turn();  // also at first: what was not seen may be told before the reason
     } while (!display->focused());
+    display->take_spoilt();  // meanwhile nothing was on
     return study::Wish::NotShown;
   };
   if (person) {
@@ -125,6 +126,9 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
     setup.idle = std::move(parts.idle);
     setup.listen = std::move(parts.listen);
   }
+  setup.open_mirror = [display = headset.get(), mirror = std::shared_ptr<void>()](bool reveal) mutable {
+    mirror = open_headset_mirror(*display, reveal);
+  };
   setup.display = std::move(headset);
 }
 

@@ -28,12 +28,12 @@ struct SessionSetup {
   std::unique_ptr<study::GazeTargets> targets;  ///< of an eye tracker
   WindowWish wish;                              ///< the window's or the headset's, or empty
   std::function<std::optional<double>()> idle;  ///< likewise
-  std::function<void()> listen;       ///< from now on the terminal's keys answer a headset's pages, or empty
-  std::function<void()> open_mirror;  ///< the window's, or empty
-  std::function<void()> poll;         ///< likewise
-  std::optional<ScreenFacts> screen;  ///< likewise
-  std::vector<FramedScene> scenes;    ///< as the display frames them; none: nothing is drawn
-  MeasuredReport rates;               ///< of live cells on this station; none: nothing was measured
+  std::function<void()> listen;  ///< from now on the terminal's keys answer a headset's pages, or empty
+  std::function<void(bool reveal)> open_mirror;  ///< the window's or the headset's, or empty
+  std::function<void()> poll;                    ///< the window's, or empty
+  std::optional<ScreenFacts> screen;             ///< likewise
+  std::vector<FramedScene> scenes;               ///< as the display frames them; none: nothing is drawn
+  MeasuredReport rates;  ///< of live cells on this station; none: nothing was measured
 
   /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
   /// test data.

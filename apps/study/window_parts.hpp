@@ -16,6 +16,8 @@
 
 namespace apps {
 
+class HeadsetDisplay;
+
 /// What is wished at the window, given what others wish; see SessionHooks::wish.
 using WindowWish = std::function<study::Wish(const std::function<study::Wish()>& others)>;
 
@@ -27,7 +29,7 @@ struct WindowParts {
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
   std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
   WindowWish wish;
-  std::function<void()> open_mirror;  ///< for the experimenter; base::Error where there is no room for it
+  std::function<void(bool reveal)> open_mirror;  ///< for the experimenter; base::Error where no room is
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
   /// Takes in what happened to the window while nothing is shown, so that it is not taken for dead.
@@ -36,7 +38,11 @@ struct WindowParts {
   PictureSize size;  ///< of the window
 };
 
-/// base::Error where there is no window.
+/// base::Error where there is no window, of both.
 WindowParts make_window_parts(const RunOptions& options, const study::Protocol& protocol);
+
+/// The experimenter's window on what is seen in a headset, open as long as what is returned; see
+/// HeadsetMirror.
+std::shared_ptr<void> open_headset_mirror(HeadsetDisplay& display, bool reveal);
 
 }  // namespace apps

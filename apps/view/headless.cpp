@@ -110,8 +110,10 @@ void run_headless(const ViewOptions& options) {
   const sim::View view = sim::make_view(prepared.camera, options.size.width, options.size.height);
 
   Timing timing;
-  Progress progress("frames", static_cast<std::size_t>(options.frames));
-  for (int frame = 0; frame < options.frames; ++frame) {
+  constexpr int usual_frames = 100;
+  const int frames = options.frames.value_or(usual_frames);
+  Progress progress("frames", static_cast<std::size_t>(frames));
+  for (int frame = 0; frame < frames; ++frame) {
     if (frame > 0) {
       const sim::Vec3d at = sim::gaze_point(prepared.scene, frame);
       picture.look(*prepared.fluid, view, gaze_at(prepared.camera, at));

@@ -4,13 +4,26 @@
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
   apps::ViewOptions options;
   app.add_option("scene", options.scene, "Scene file")->required();
-  app.add_flag("--headless", options.headless, "No window: run the frames and write pictures");
+  bool headless = false;
+  auto* headless_flag = app.add_flag("--headless", headless, "As --display headless");
+  app.add_option(
+         "--display", options.display,
+         "window; headless: run the frames and write pictures; openxr: a headset, or a window where there "
+         "is none")
+      ->check(CLI::IsMember({"window", "headless", "openxr"}))
+      ->capture_default_str()
+      ->excludes(headless_flag);
+  app.add_option("--clock", options.clock,
+                 "Of a headset: real, or virtual for runtimes whose time waits for the program")
+      ->check(CLI::IsMember({"real", "virtual"}))
+      ->capture_default_str();
   apps::add_method(app, options.method);
   apps::add_n_star(app, options.n_star);
   app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")->capture_default_str();
@@ -29,7 +42,8 @@ int main(int argc, char** argv) {
   app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
       ->capture_default_str();
   apps::add_backend(app, options.backend);
-  apps::add_count(app, "--frames", options.frames, 1, 10'000, "Frames to run (headless)");
+  app.add_option("--frames", options.frames, "Frames to run (headless: 100 where left out; headset)")
+      ->check(CLI::Range(1, 10'000));
   app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing")
       ->check(apps::output_folder());
   apps::add_count(app, "--every", options.every, 1, 10'000, "A picture every so many frames");
@@ -41,11 +55,12 @@ int main(int argc, char** argv) {
                  "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
-    if (options.headless) {
-      apps::run_headless(options);
-    } else {
-      apps::run_window(options);
-    }
+    if (headless) options.display = "headless";
+    if (options.clock == "virtual" && options.display != "openxr")
+      throw base::Error("--clock virtual", "is for a headset", "leave it out, or use --display openxr");
+    if (options.display == "headless") return apps::run_headless(options);
+    if (options.display == "openxr") return apps::run_in_headset(options);
+    apps::run_window(options);
   });
   return apps::run_program(app, argc, argv);
 }

@@ -27,9 +27,10 @@ struct ViewOptions {
   std::string ptpe;               ///< fitted.toml; empty = none
   std::string png_folder;         ///< empty = no pictures
   PictureSize size{1280, 720};
-  int frames = 100;
-  int every = 1;  ///< a picture every so many frames
-  bool headless = false;
+  std::optional<int> frames;       ///< none: 100 headless, in a headset until it is left
+  int every = 1;                   ///< a picture every so many frames
+  std::string display = "window";  ///< window | headless | openxr
+  std::string clock = "real";      ///< of a headset: real | virtual
   bool explain = false;
 };
 
@@ -48,6 +49,9 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
 
 /// Runs the frames and writes the pictures, without a display.
 void run_headless(const ViewOptions& options);
+/// In a headset by OpenXR, until it is left; on the desktop where there is none, and says why. base::Error
+/// for what goes wrong later.
+void run_in_headset(const ViewOptions& options);
 /// Opens a window until it is closed. base::Error when this build or this machine has none.
 void run_window(const ViewOptions& options);
 

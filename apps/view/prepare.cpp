@@ -26,7 +26,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   if (options.alpha) choice.readings.alpha = *options.alpha;
   choice.iterations = options.iterations.value_or(0);
   // In a window they may be chosen later.
-  choice.saliency_parts = options.overlay != "none" || !options.headless;
+  choice.saliency_parts = options.overlay != "none" || options.display == "window";
   choice.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.finest_spacing_m =

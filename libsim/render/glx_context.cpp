@@ -4,8 +4,11 @@
 
 #include <dlfcn.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include "libsim/render/gl_context_state.hpp"
 #include "stats/base/error.hpp"
@@ -20,6 +23,8 @@ struct XLibrary {
   int (*close)(Display*) = nullptr;
   int (*free)(void*) = nullptr;
   Status (*init_threads)() = nullptr;
+  XErrorHandler (*set_error_handler)(XErrorHandler) = nullptr;
+  int (*sync)(Display*, Bool) = nullptr;
 
   static const XLibrary& get() {
     static const XLibrary library;
@@ -37,6 +42,8 @@ struct XLibrary {
     find(handle, "XCloseDisplay", close);
     find(handle, "XFree", free);
     find(handle, "XInitThreads", init_threads);
+    find(handle, "XSetErrorHandler", set_error_handler);
+    find(handle, "XSync", sync);
     init_threads();
   }
   template <class F>
@@ -45,6 +52,42 @@ struct XLibrary {
     if (!out)
       throw base::Error("OpenGL", std::string("libX11.so.6 has no ") + name, "install libx11-6 again");
   }
+};
+
+/// While it lives, errors of X on one connection are noted. Xlib's own handler ends the program, and a driver
+/// without OpenGL 4.5 answers with such an error.
+class XErrors {
+ public:
+  explicit XErrors(Display* display) : lock_(mutex_) {
+    watched_ = display;
+    found_ = false;
+    before_ = XLibrary::get().set_error_handler([](Display* from, XErrorEvent* event) {
+      if (from != watched_) return before_ ? before_.load()(from, event) : 0;
+      found_ = true;
+      return 0;
+    });
+  }
+  ~XErrors() {
+    XLibrary::get().sync(watched_, False);
+    XLibrary::get().set_error_handler(before_);
+  }
+  XErrors(const XErrors&) = delete;
+  XErrors& operator=(const XErrors&) = delete;
+
+  /// Whether there was one: they come some time after their requests.
+  bool any() const {
+    XLibrary::get().sync(watched_, False);
+    return found_;
+  }
+
+ private:
+  // A handler is the process's.
+  static inline std::mutex mutex_;
+  static inline std::atomic<Display*> watched_;
+  static inline std::atomic<bool> found_;
+  static inline std::atomic<XErrorHandler> before_;
+
+  std::lock_guard<std::mutex> lock_;
 };
 
 /// The connection lives as long as the last context on it.
@@ -77,8 +120,7 @@ struct GlxState final : public GlContext::State {
     auto out = std::make_unique<GlxState>();
     out->display = display;
     out->config = config;
-    out->create(context);
-    if (!out->context) return nullptr;
+    if (!out->create(context)) return nullptr;
     return out;
   }
   GlxHandles glx() const override {
@@ -96,14 +138,20 @@ struct GlxState final : public GlContext::State {
     if (all && count > 0) config = all[0];
     if (all) XLibrary::get().free(all);
   }
-  /// A surface of one pixel, which nobody sees, and the context on it.
-  void create(GLXContext shared) {
+  /// A surface of one pixel, which nobody sees, and the context on it. False where the driver gives none.
+  bool create(GLXContext shared) {
+    const XErrors errors(display.get());
     const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, 0};
     drawable = glXCreatePbuffer(display.get(), config, size);
     const int attributes[] = {
         GLX_CONTEXT_MAJOR_VERSION_ARB,    4, GLX_CONTEXT_MINOR_VERSION_ARB, 5, GLX_CONTEXT_PROFILE_MASK_ARB,
         GLX_CONTEXT_CORE_PROFILE_BIT_ARB, 0};
     context = glXCreateContextAttribsARB(display.get(), config, shared, True, attributes);
+    if (context && !errors.any()) return true;
+    if (context) glXDestroyContext(display.get(), context);
+    context = nullptr;
+    drawable = 0;  // it may be none; the connection takes it along
+    return false;
   }
 };
 
@@ -113,8 +161,7 @@ GlContext GlContext::make_on_x() {
   auto state = std::make_unique<GlxState>();
   state->display = open_display();
   state->choose_config();
-  if (state->config) state->create(nullptr);
-  if (!state->context || !state->make_current())
+  if (!state->config || !state->create(nullptr) || !state->make_current())
     throw base::Error("OpenGL", "no OpenGL 4.5 core context on the X display", "update the graphics driver");
   require_gl45();
   return GlContext(std::move(state));

@@ -22,8 +22,8 @@ struct HeadsetFacts {
   std::array<EyeFacts, 2> eyes;  ///< left and right
   std::string format;            ///< of the pictures handed over
   std::optional<double> refresh_told_hz, refresh_measured_hz;
-  std::string hold = "image";    ///< "image", "state" or "head_locked": what is seen between two frames
-  std::string blend = "opaque";  ///< environment blend mode
+  std::string hold = "image";  ///< "image", "state" or "head_locked": what is seen between two frames
+  std::string blend;           ///< environment blend mode: "opaque"
   bool times_convert = false;
   bool position_tracking = false;  ///< the runtime says that it follows the head's place
   bool eye_tracking = false;       ///< an eye tracker was asked for and is served
@@ -64,6 +64,8 @@ class SlotSource {
   virtual void stop_slots() = 0;
   /// Distance of the eyes' places in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
+  /// What happened to the headset since the last call, in words for the log: facts() may be others now.
+  virtual std::vector<std::string> take_news() = 0;
 };
 
 }  // namespace study

@@ -11,9 +11,8 @@ constexpr std::chrono::milliseconds interval{500};
 constexpr std::size_t usual_frames = 512;
 }  // namespace
 
-FrameJournal::FrameJournal(Store& store, std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
-                           bool in_background)
-    : store_(store), presentation_(presentation), start_ns_(start_ns), origin_(origin) {
+FrameJournal::FrameJournal(Store& store, const JournalPlace& place, GazeOrigin origin, bool in_background)
+    : store_(store), place_(place), origin_(origin) {
   pending_.frames.reserve(usual_frames);
   if (in_background) writer_ = std::thread([this] { write_in_background(); });
 }
@@ -30,6 +29,7 @@ void FrameJournal::add(const FrameRecord& frame, const Recorded& recorded) {
 
 void FrameJournal::keep(const Recorded& recorded) {
   pending_.gaze.insert(pending_.gaze.end(), recorded.gaze.begin(), recorded.gaze.end());
+  pending_.ipds.insert(pending_.ipds.end(), recorded.ipds.begin(), recorded.ipds.end());
   for (const SlotRecord& slot : recorded.slots) pending_.slots.push_back({slot, frame_at(slot.predicted_ns)});
 }
 
@@ -40,8 +40,10 @@ std::optional<std::int64_t> FrameJournal::frame_at(std::int64_t predicted_ns) co
 }
 
 void FrameJournal::write(const Unwritten& recorded) {
-  if (!recorded.slots.empty()) store_.add_slots(presentation_, start_ns_, recorded.slots);
-  if (!recorded.gaze.empty()) store_.add_gaze(presentation_, start_ns_, origin_, recorded.gaze);
+  if (!recorded.slots.empty()) store_.add_slots(place_.presentation, place_.start_ns, recorded.slots);
+  for (const IpdChange& change : recorded.ipds)
+    store_.add_ipd(place_.session, change.clock_ns, change.ipd_mm);
+  if (!recorded.gaze.empty()) store_.add_gaze(place_.presentation, place_.start_ns, origin_, recorded.gaze);
 }
 
 void FrameJournal::write_in_background() {
@@ -53,7 +55,7 @@ void FrameJournal::write_in_background() {
     std::swap(chunk, pending_);
     lock.unlock();
     try {
-      if (!chunk.frames.empty()) store_.add_frames(presentation_, start_ns_, chunk.frames);
+      if (!chunk.frames.empty()) store_.add_frames(place_.presentation, place_.start_ns, chunk.frames);
       write(chunk);
     } catch (...) {
       failure_ = std::current_exception();

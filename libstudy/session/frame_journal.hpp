@@ -22,6 +22,13 @@ struct Unwritten {
   std::vector<FrameRecord> frames;
   std::vector<GazeSample> gaze;
   std::vector<ShownSlot> slots;
+  std::vector<IpdChange> ipds;
+};
+
+/// The rows that a journal's belong to.
+struct JournalPlace {
+  std::int64_t session = 0, presentation = 0;
+  std::int64_t start_ns = 0;  ///< of the presentation
 };
 
 /// In the background a thread commits what has gathered every half second, so that a killed program loses
@@ -29,8 +36,7 @@ struct Unwritten {
 class FrameJournal {
  public:
   /// origin: of the gaze that add() is given.
-  FrameJournal(Store& store, std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
-               bool in_background);
+  FrameJournal(Store& store, const JournalPlace& place, GazeOrigin origin, bool in_background);
   ~FrameJournal();
   FrameJournal(const FrameJournal&) = delete;
   FrameJournal& operator=(const FrameJournal&) = delete;
@@ -50,7 +56,7 @@ class FrameJournal {
   void stop();
 
   Store& store_;
-  std::int64_t presentation_, start_ns_;
+  JournalPlace place_;
   GazeOrigin origin_;
   std::mutex mutex_;
   std::condition_variable wake_;

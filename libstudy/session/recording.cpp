@@ -33,7 +33,7 @@ Recorded Recording::take() {
   for (const SlotRecord& slot : out.slots) {
     const bool changed = slot.ipd_mm > 0 && !(ipd_mm_ && std::abs(slot.ipd_mm - *ipd_mm_) <= ipd_change_mm);
     if (!changed) continue;
-    run_.parts.store.add_ipd(run_.session.id, slot.predicted_ns, slot.ipd_mm);
+    out.ipds.push_back({slot.predicted_ns, slot.ipd_mm});
     ipd_mm_ = slot.ipd_mm;
   }
   return out;
@@ -61,6 +61,17 @@ void record_headset(const Running& run) {
   run.parts.store.add_headset(run.session.id, run.parts.slots->facts());
   if (const auto ipd_mm = run.parts.slots->ipd_mm())
     run.parts.store.add_ipd(run.session.id, run.now_ns(), *ipd_mm);
+}
+
+std::string log_news(const Running& run) {
+  if (!run.parts.slots) return "";
+  std::string all;
+  for (const std::string& news : run.parts.slots->take_news()) {
+    run.parts.store.log(run.session.id, "headset", news, run.now_ns());
+    all += (all.empty() ? "" : ", ") + news;
+  }
+  if (!all.empty()) record_headset(run);
+  return all;
 }
 
 }  // namespace study

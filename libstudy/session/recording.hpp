@@ -13,9 +13,16 @@ namespace study {
 /// An eye tracker that loses the eyes for longer than this spoils what they see, ns.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
+/// A distance between the eyes that another one was before.
+struct IpdChange {
+  std::int64_t clock_ns = 0;
+  double ipd_mm = 0;
+};
+
 struct Recorded {
   std::vector<GazeSample> gaze;
   std::vector<SlotRecord> slots;
+  std::vector<IpdChange> ipds{};
 };
 
 /// The recording of one presentation, while it lives. Whether the participant allows gaze is asked anew each
@@ -29,7 +36,7 @@ class Recording {
 
   /// Of the gaze that is recorded.
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
-  /// What came since the last call. Keeps a distance between the eyes that changed.
+  /// What came since the last call.
   Recorded take();
   /// Throws TrialAgain when what was taken shows that an eye tracker lost the eyes for too long.
   void require_gaze() const;
@@ -51,5 +58,9 @@ class Recording {
 
 /// At the start of a session: what the headset is, and the distance between the eyes.
 void record_headset(const Running& run);
+
+/// Logs what happened to the headset since the last call, and keeps what it is now; what was logged, with
+/// commas between.
+std::string log_news(const Running& run);
 
 }  // namespace study

@@ -32,23 +32,8 @@ struct TrialAgain {
   std::string reason;  ///< for the log
 };
 
-/// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial.
-inline void heed(const Running& run, bool in_trial) {
-  switch (run.wish()) {
-    case Wish::Stop:
-      throw Stopped();
-    case Wish::EndSession:
-      throw Ending{EarlyEnd::Stopped, "ended by the experimenter"};
-    case Wish::RepeatTrial:
-      if (in_trial) throw TrialAgain{"wish of the experimenter"};
-      break;
-    case Wish::NotShown:
-      if (in_trial) throw TrialAgain{"the screen did not show it"};
-      break;
-    case Wish::Pause:
-    case Wish::GoOn:
-      break;
-  }
-}
+/// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial. Logs
+/// what happened to a headset.
+void heed(const Running& run, bool in_trial);
 
 }  // namespace study

@@ -69,7 +69,7 @@ std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const Planned
 }
 
 std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
-  Showing showing{unit, unit.attempts + 1, {}, intervals_of(*unit.trial), {}};
+  Showing showing{unit, unit.attempts + 1, {}, {}, {}};
   for (;;) {
     showing.occasion = run_.occasion(unit);
     try {
@@ -83,7 +83,6 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
 void TrialPlayer::again(Showing& showing, const std::string& reason) {
   run_.parts.store.repeat_trial(run_.session.id, showing.unit.trial_id, reason);
   showing.unit.answered.clear();
-  showing.intervals = intervals_of(*showing.unit.trial);  // the display may show another rate by now
   ++showing.attempt;
   showing.verdicts.clear();
   showing.ready = nullptr;
@@ -98,6 +97,8 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   for (std::size_t i = 0; i < block.steps.size(); ++i) {
     const TrialStep& step = block.steps[i];
     check();
+    // Once it is seen: after a cut the display may show another rate.
+    if (i == 0) showing.intervals = intervals_of(*showing.unit.trial);
     switch (step.kind) {
       case StepKind::Black:
         black(showing, step.seconds,
@@ -172,7 +173,8 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   const SessionParts& parts = run_.parts;
   const Cleared cleared(parts.display);
   Recording recording(run_);
-  FrameJournal journal(parts.store, presentation, start_ns, recording.origin(), !parts.virtual_clock);
+  FrameJournal journal(parts.store, {run_.session.id, presentation, start_ns}, recording.origin(),
+                       !parts.virtual_clock);
   const auto each = [&](const FrameRecord& frame) {
     journal.add(frame, recording.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);

@@ -1,5 +1,5 @@
 /// Where people looked, as BIDS 1.11 keeps it. An eye recording says whose eye and on what screen; the mouse
-/// is no eye and comes at no fixed rate, so it stands as behaviour.
+/// and the direction of a head are no eyes, so they stand as behaviour.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -34,7 +34,7 @@ std::pair<std::string, std::string> angles_of(const Statement& row, int column) 
   return {number_text(std::atan2(x, -z) / degree), number_text(std::atan2(y, std::hypot(x, z)) / degree)};
 }
 
-Samples samples_of(Connection& database, std::int64_t session, const char* source) {
+Samples samples_of(Connection& database, std::int64_t session, const std::string& source) {
   const auto onsets = onsets_of(database, session);
   Statement row(database,
                 "SELECT presentation_id, sampled_ns, x, y, valid, tracked, direction_x, direction_y, "
@@ -44,7 +44,7 @@ Samples samples_of(Connection& database, std::int64_t session, const char* sourc
                 "SELECT 1 FROM gaze JOIN presentation USING (presentation_id) JOIN trial USING (trial_id) "
                 "WHERE session_id = ? AND source = ? AND tracked IS NOT NULL LIMIT 1");
   Samples samples;
-  samples.rays = any.bind_all(session, source).step();
+  samples.rays = source == "head" || any.bind_all(session, source).step();
   samples.rows.push_back(samples.rays ? ray_columns : screen_columns);
   for (row.bind_all(session, source); row.step();) {
     const std::int64_t at_ns = onsets.at(row.integer(0)) + row.integer(1);
@@ -98,12 +98,14 @@ Json ray_columns_meaning() {
 }
 
 void write_eye(Connection& database, const Samples& samples, const LabelledSession& session, Writer& writer) {
+  const double hz = rate_hz(database, session.id, samples.times_ns);
+  if (hz == 0) return;  // BIDS knows no recording without a rate; the tables of CSV hold it
   const std::string name = stem_of(session) + "_recording-eye1_physio";
   writer.compressed_table(name + ".tsv.gz", samples.rows);
   Json json{{"PhysioType", "eyetrack"},
             {"RecordedEye", "cyclopean"},
             {"SampleCoordinateSystem", samples.rays ? "eye-in-head" : "gaze-on-screen"},
-            {"SamplingFrequency", rate_hz(samples.times_ns)},
+            {"SamplingFrequency", hz},
             {"StartTime", static_cast<double>(samples.times_ns.front()) / 1e9},
             {"Columns", samples.rows.front()}};
   add_validation(database, session.id, json);
@@ -118,6 +120,22 @@ void write_mouse(const Samples& samples, const std::string& stem, Writer& writer
              "the pointer of the mouse over the picture, at the start of each stimulus and whenever "
              "it moved. No eye was recorded: people often look where the mouse is not"}};
   json.update(columns("pointer"));
+  writer.json(name + ".json", json);
+}
+
+/// Its place in the room is in the motion recording.
+void write_head(const Samples& samples, const std::string& stem, Writer& writer) {
+  const std::string name = stem + "_acq-head_beh";
+  Table rows;  // the angles are those of straight ahead
+  for (const auto& row : samples.rows) rows.push_back({row[0], row[5], row[6], row[3], row[4]});
+  rows.front() = {"timestamp", "x_coordinate", "y_coordinate", "valid", "tracked"};
+  writer.table(name + ".tsv", rows);
+  Json json{
+      {"Description",
+       "where the direction of the head met the left eye's picture in each slot of the headset: the fluid "
+       "followed it in the eyes' stead. No eye was recorded: people often look beside it"}};
+  json.update(columns("direction of the head"));
+  json["tracked"] = described("1: the head's turn was measured; 0: a guess of the runtime, or not valid");
   writer.json(name + ".json", json);
 }
 
@@ -138,13 +156,20 @@ std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_
   return onsets;
 }
 
-/// Of the usual interval: between two stimuli nothing is recorded.
-double rate_hz(const std::vector<std::int64_t>& times_ns) {
+/// Of the usual interval: between two stimuli nothing is recorded. One sample has none: it came with a slot
+/// of the display, whose rate stands in. 0: that is not known either.
+double rate_hz(Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns) {
   std::vector<std::int64_t> gaps;
   for (std::size_t i = 1; i < times_ns.size(); ++i) {
     if (times_ns[i] > times_ns[i - 1]) gaps.push_back(times_ns[i] - times_ns[i - 1]);
   }
-  if (gaps.empty()) return 0;
+  if (gaps.empty()) {
+    Statement row(database,
+                  "SELECT coalesce((SELECT coalesce(refresh_measured_hz, refresh_told_hz) FROM headset WHERE "
+                  "session_id = ?1 ORDER BY headset_id DESC LIMIT 1), refresh_hz, 0) FROM session WHERE "
+                  "session_id = ?1");
+    return row.bind_all(session).step() ? row.real(0) : 0;
+  }
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
   std::nth_element(gaps.begin(), middle, gaps.end());
   return 1e9 / static_cast<double>(*middle);
@@ -155,6 +180,8 @@ void write_gaze(Connection& database, const LabelledSession& session, Writer& wr
   if (!eye.times_ns.empty()) write_eye(database, eye, session, writer);
   const Samples mouse = samples_of(database, session.id, "mouse");
   if (!mouse.times_ns.empty()) write_mouse(mouse, stem_of(session), writer);
+  const Samples head = samples_of(database, session.id, "head");
+  if (!head.times_ns.empty()) write_head(head, stem_of(session), writer);
 }
 
 }  // namespace study::bids

@@ -90,10 +90,11 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     rows.push_back({seconds(times_ns.back())});
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
-  if (times_ns.empty()) return;
+  const double hz = rate_hz(database, session.id, times_ns);
+  if (hz == 0) return;  // nothing, or one pose on a display whose rate nobody knows
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";
   writer.bare_table(stem + "_motion.tsv", rows);
-  writer.json(stem + "_motion.json", motion_json(session, rate_hz(times_ns)));
+  writer.json(stem + "_motion.json", motion_json(session, hz));
   writer.table(stem + "_channels.tsv", told);
 }
 

@@ -65,8 +65,9 @@ class SessionTime {
 
 /// When each presentation of a session began, from the first stimulus.
 std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std::int64_t session);
-/// Of the usual interval, Hz: between two stimuli nothing is recorded. 0: fewer than two times.
-double rate_hz(const std::vector<std::int64_t>& times_ns);
+/// Of the usual interval, Hz: between two stimuli nothing is recorded. Of fewer than two times the display's;
+/// 0: that is not known either.
+double rate_hz(sqlite::Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns);
 
 /// What the headset of a session was, and the distances between the eyes; empty: none was worn.
 Json headset_of(sqlite::Connection& database, std::int64_t session);

@@ -10,6 +10,8 @@ namespace study {
 /// Events after which the experimenter was not blind to a session.
 inline constexpr const char* revealed_event = "setting revealed";
 inline constexpr const char* mirror_event = "mirror opened";
+/// The experimenter saw the pages and no stimulus, and stayed blind.
+inline constexpr const char* pages_mirror_event = "pages mirrored";
 
 /// The inverse of verdict_name(); what the schema's CHECK keeps out counts as a failed trial.
 inline Verdict verdict_of(const std::string& name) {

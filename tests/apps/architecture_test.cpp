@@ -140,8 +140,8 @@ const Rooms rooms{
     {"libstudy/observer", 7},
 
     {"apps/common", 0},
-    {"apps/common/window", 1},
     {"apps/common/headset", 1},
+    {"apps/common/window", 1, {"apps/common/headset"}},
     {"apps/bench", 2},
     {"apps/stats/data", 2},
     {"apps/stats/power", 3},

@@ -45,9 +45,9 @@ class HeadsetHoldGl : public test::HeadsetRuns {
  protected:
   ~HeadsetHoldGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
-  /// Two pictures for nine slots each, with a head that walks and turns.
-  void play(const study::HeadsetRules& rules) {
-    use_here("size=32x32;head=walk");
+  /// Two pictures for nine slots each, with a head that walks and turns or does what `head` says.
+  void play(const study::HeadsetRules& rules, const std::string& head = "head=walk") {
+    use_here("size=32x32;" + head);
     HeadsetDisplay display(SlotDrive::Caller, {}, rules);
     HeadsetClock clock(display);
     const auto played = study::play_trial({100'000'000, 100'000'000}, {}, stimulus_, display, clock,
@@ -80,6 +80,18 @@ TEST_F(HeadsetHoldGl, AnImageStaysWhereItWasDrawn) {
   EXPECT_EQ(stimulus_.drawn.size(), 2u);
   ASSERT_EQ(logged(pose).size(), 18u);
   EXPECT_EQ(different(logged(pose)), 2u);
+}
+
+TEST_F(HeadsetHoldGl, EachEyeIsDrawnFromItsOwnPlaceIntoItsOwnHalf) {
+  play({}, "head=still");
+  const auto& [step, left, right] = stimulus_.drawn.front();
+  EXPECT_NEAR(left.position_m[0], -0.0315, 1e-6);
+  EXPECT_NEAR(right.position_m[0], 0.0315, 1e-6);
+  EXPECT_EQ(left.x_px, 0);
+  EXPECT_EQ(right.x_px, 32);
+  // The headset's eyes see further outwards.
+  EXPECT_NEAR(left.left_rad, -52 * M_PI / 180, 1e-6);
+  EXPECT_NEAR(right.right_rad, 52 * M_PI / 180, 1e-6);
 }
 
 TEST_F(HeadsetHoldGl, AStateIsDrawnAnewFromWhereTheHeadIs) {

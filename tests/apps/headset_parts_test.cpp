@@ -4,6 +4,8 @@
 #include <cmath>
 #include <future>
 
+#include "apps/common/framing.hpp"
+#include "apps/common/headset/picture_turns.hpp"
 #include "apps/common/headset/rate_meter.hpp"
 #include "apps/common/headset/views.hpp"
 #include "apps/common/headset/watched_thread.hpp"
@@ -108,13 +110,21 @@ TEST(HeadsetViews, LookAlongTheirPose) {
   EXPECT_NEAR(left[2], 0, 1e-6);
 }
 
+/// By the renderers, in a scene whose camera stands at the room's origin and looks along it.
+sim::View seen_by(const EyeView& eye) {
+  sim::Camera camera;
+  camera.eye_m = {0, 0, 0};
+  camera.target_m = {0, 0, -1};
+  return eye_view(camera, study_view(eye, 0));
+}
+
 TEST(HeadsetViews, AFieldOfViewFillsItsPicture) {
   EyeView eye;
   eye.pose.place_m = {0.5f, 1, 2};
   eye.fov = {-0.9f, 0.7f, 0.8f, -0.85f};
   eye.width_px = 200;
   eye.height_px = 100;
-  const sim::PixelRays rays = sim::pixel_rays(view_of(eye, 0.1, 50));
+  const sim::PixelRays rays = sim::pixel_rays(seen_by(eye));
   EXPECT_NEAR(rays.offset_x, std::tan(-0.9), 1e-5);
   EXPECT_NEAR(200 * rays.scale_x + rays.offset_x, std::tan(0.7), 1e-5);
   EXPECT_NEAR(rays.offset_y, std::tan(-0.85), 1e-5);
@@ -127,7 +137,8 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
   const auto half = static_cast<float>(std::sin(15 * degree));
   eye.pose.turn = {0, 0, half, static_cast<float>(std::cos(15 * degree))};  // leans to the left by 30 degrees
   eye.fov = {-0.8f, 0.8f, 0.8f, -0.8f};
-  const sim::Mat4 view = view_of(eye, 0.1, 50).view;
+  eye.width_px = eye.height_px = 100;
+  const sim::Mat4 view = seen_by(eye).view;
   // A point 1 m to the right of the eye and 3 m ahead, in the eye's own axes.
   const std::array<double, 3> point{1.5, 1, -1};
   std::array<double, 3> seen{};
@@ -139,6 +150,20 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
   EXPECT_NEAR(seen[0], std::cos(30 * degree), 1e-5);
   EXPECT_NEAR(seen[1], -std::sin(30 * degree), 1e-5);
   EXPECT_NEAR(seen[2], -3, 1e-5);
+}
+
+TEST(HeadsetTurns, APictureThatIsDroppedWhileItIsDrawnNeverComesOn) {
+  PictureTurns turns;
+  turns.begin();
+  turns.drop();
+  turns.post();
+  EXPECT_FALSE(turns.waits());
+  turns.begin();
+  turns.post();
+  turns.take();
+  EXPECT_TRUE(turns.shows());
+  turns.drop();
+  EXPECT_FALSE(turns.shows());
 }
 
 TEST(HeadsetWatch, ACallThatComesBackIsDone) {

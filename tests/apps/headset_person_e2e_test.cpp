@@ -154,11 +154,104 @@ TEST_F(HeadsetPersonE2e, TimeAwayFromAPageIsNoResponseTime) {
                     times = "SELECT response_time_s FROM response ORDER BY response_id";
   ASSERT_EQ(session(by_ray + script_of(""), protocol).exit_code, 0);
   const double usual_s = std::stod(column(times)[0]);
-  database_ = folder_ / "away.db";
-  ASSERT_EQ(session(by_ray + script_of("230:focus/0,500:focus/1,"), protocol).exit_code, 0);
-  const double away_s = std::stod(column(times)[0]);
-  EXPECT_NE(away_s, usual_s) << "it was on this page";
-  EXPECT_NEAR(away_s, usual_s, 1.3) << "of three seconds; the hand goes once more from target to target";
+  for (const std::string away : {"230:focus/0,500:focus/1,", "230:off/3,"}) {
+    database_ = folder_ / (away.substr(4, 3) + ".db");
+    ASSERT_EQ(session(by_ray + script_of(away), protocol).exit_code, 0);
+    const double away_s = std::stod(column(times)[0]);
+    EXPECT_NE(away_s, usual_s) << away << "it was on this page";
+    EXPECT_NEAR(away_s, usual_s, 1.3) << away << "of three s; the hand goes once more from target to target";
+  }
+}
+
+/// A line of the log for each frame.
+struct LoggedFrame {
+  int number = 0;
+  bool page = false, picture = false;
+  double x = 0, z = 0;  ///< of the page, m
+};
+std::vector<LoggedFrame> frames_of(const std::string& log) {
+  std::vector<LoggedFrame> frames;
+  const std::regex quad(R"(\| quad .* at ([-.0-9]+) [-.0-9]+ ([-.0-9]+) )");
+  std::istringstream lines(log);
+  std::smatch found;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("frame ")) continue;
+    LoggedFrame& frame = frames.emplace_back();
+    frame.number = std::stoi(line.substr(6));
+    frame.picture = line.find("| projection ") != std::string::npos;
+    frame.page = std::regex_search(line, found, quad);
+    if (!frame.page) continue;
+    frame.x = std::stod(found[1]);
+    frame.z = std::stod(found[2]);
+  }
+  return frames;
+}
+
+/// Of all pixels, [0, 255].
+double brightness(const sim::Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+  return 4 * sum / static_cast<double>(image.rgba.size());
+}
+
+TEST_F(HeadsetPersonE2e, APageFadesAndNeverStandsBesideAStimulus) {
+  const std::string protocol = pilot("[10]");
+  ASSERT_EQ(session(by_ray + script_of(""), protocol).exit_code, 0);
+  int pages = 0, pictures = 0, last_page = 0;
+  for (const LoggedFrame& frame : frames_of(calls())) {
+    EXPECT_FALSE(frame.page && frame.picture) << frame.number;
+    pages += frame.page;
+    pictures += frame.picture;
+    if (frame.page && pictures == 0) last_page = frame.number;
+  }
+  EXPECT_GT(pages, 100);
+  EXPECT_EQ(pictures, 45);
+  // The same again, looked at while the page before the stimulus goes: 18 frames of .2 s.
+  std::string dump = "dump=" + std::to_string(last_page - 24);
+  for (int frame = last_page - 23; frame <= last_page; ++frame) dump += "," + std::to_string(frame);
+  database_ = folder_ / "fading.db";
+  ASSERT_EQ(session(dump + ";" + by_ray + script_of(""), protocol).exit_code, 0);
+  double before = brightness(picture(last_page - 24, "quad"));
+  EXPECT_GT(before, 5);
+  EXPECT_NEAR(brightness(picture(last_page - 20, "quad")), before, 0.01 * before);
+  const double half = brightness(picture(last_page - 9, "quad"));
+  EXPECT_GT(half, 0.2 * before);
+  EXPECT_LT(half, 0.8 * before);
+  for (int frame = last_page - 16; frame <= last_page; ++frame) {
+    const double now = brightness(picture(frame, "quad"));
+    EXPECT_LT(now, before) << frame;
+    before = now;
+  }
+  EXPECT_LT(before, 0.5);
+}
+
+TEST_F(HeadsetPersonE2e, APageStandsAheadAlsoAfterARecentring) {
+  // The origin turns to the left: the head looks 30 degrees to the right of it then, and the page with it.
+  const auto ended = session(by_ray + script_of("200:recentre/30,"), pilot("[10]"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  bool before = false, after = false;
+  for (const LoggedFrame& frame : frames_of(calls())) {
+    if (!frame.page) continue;
+    const bool turned = frame.number > 200;
+    (turned ? after : before) = true;
+    EXPECT_NEAR(frame.x, turned ? 0.75 : 0, 1e-3) << frame.number;
+    EXPECT_NEAR(frame.z, turned ? -1.299 : -1.5, 1e-3) << frame.number;
+  }
+  EXPECT_TRUE(before && after);
+}
+
+TEST_F(HeadsetPersonE2e, ASessionThatIsLostComesBackWithItsPage) {
+  for (const char* trouble : {"200:lost/2,", "470:lost_now,"}) {  // on the first page, in the stimulus
+    database_ = folder_ / (std::string(1, *trouble) + ".db");
+    const auto ended = session(by_ray + script_of(trouble), pilot("[10]", "3"));
+    ASSERT_EQ(ended.exit_code, 0) << trouble << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered")) << trouble;
+    EXPECT_THAT(column("SELECT detail FROM event WHERE kind = 'headset' ORDER BY event_id"),
+                ::testing::ElementsAre("the headset's software lost the session", "a session was made anew"));
+    EXPECT_THAT(column("SELECT score FROM response ORDER BY response_id"), ::testing::ElementsAre("1", "4"));
+    EXPECT_THAT(column("SELECT count(*) FROM presentation WHERE state = 'interrupted'"),
+                ::testing::ElementsAre(*trouble == '2' ? "0" : "1"));
+  }
 }
 
 TEST_F(HeadsetPersonE2e, AKilledSessionIsResumedAndNothingIsAskedTwice) {

@@ -97,7 +97,7 @@ TEST_F(HeadsetRealTimeGl, APictureThatIsLeftBehindFadesAway) {
 }
 
 TEST_F(HeadsetRealTimeGl, WhatHappensToTheSessionIsToldToTheProgram) {
-  HeadsetDisplay& display = start("at=40:lost");
+  HeadsetDisplay& display = start("at=40:instance_lost/5");
   const auto wait = [&] {
     for (int i = 0; i < 400; ++i) display.turn();
   };

@@ -3,6 +3,7 @@
 #include <map>
 #include <sstream>
 
+#include "libstudy/store/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
 
 namespace apps {
@@ -70,6 +71,20 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     return study("size=32x32;" + profile, arguments);
   }
 
+  void next_database() { database_ = folder_ / ("study" + std::to_string(++databases_) + ".db"); }
+  std::int64_t count(const std::string& rows) const {
+    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
+        .integer("SELECT count(*) FROM " + rows);
+  }
+  /// Ten frames a second for 3 s, in the frames 90 to 150 or so.
+  test::Ended real_session(const std::string& profile) {
+    return study(
+        real_profile + ";" + profile,
+        {"run", pilot("[10]", "[0]"), "--db", database_, "--observer", "random", "--display", "openxr",
+         "--clock", "real", "--stimulus", dam_, "--participants", "1", "--trial-seconds", "3"});
+  }
+
+  const std::string real_profile = "size=32x32;clock=real;rates=20;rate=20";
   const std::string dam_ = folder_ / "dam.bake";
   std::string database_ = folder_ / "study.db";
   int databases_ = 0;
@@ -86,7 +101,7 @@ TEST_F(HeadsetSessionE2e, EachPictureIsOnForTheSlotsOfItsSetting) {
   EXPECT_EQ(pictures, (std::map<int, int>{{9, 10}, {3, 30}}));
 
   const std::string first = calls();
-  database_ = folder_ / ("study" + std::to_string(++databases_) + ".db");
+  next_database();
   ASSERT_EQ(session("hash=1", protocol, "1").exit_code, 0);
   EXPECT_EQ(calls(), first);
 }
@@ -104,7 +119,7 @@ TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   const std::string protocol = pilot("[10]", "[0]");
   for (const char* trouble : {"at=400:focus/0,460:focus/1", "at=150:focus/0,900:focus/1", "at=400:off/1",
                               "at=400:recentre/20", "at=400:rate/120"}) {
-    database_ = folder_ / ("study" + std::to_string(++databases_) + ".db");
+    next_database();
     const auto ended = session(trouble, protocol, "2");
     ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("showings: 2, 1 of them count, 1 cut short; timing: 1 pass")) << trouble;
@@ -124,16 +139,113 @@ TEST_F(HeadsetSessionE2e, AfterAChangeOfTheRateATrialsIntervalsAreComputedAnew) 
   EXPECT_THAT(black.out, HasSubstr(in_time));
 }
 
-TEST_F(HeadsetSessionE2e, ALostSessionIsToldAndContinued) {
+/// Frames without a layer that follow a line of the log which begins so.
+int black_frames_after(const std::string& log, const std::string& line) {
+  int black = 0;
+  std::istringstream rest(log.substr(log.rfind("\n" + line) + 1));
+  for (std::string one; std::getline(rest, one);) {
+    if (!one.starts_with("frame ")) continue;
+    if (one.find(" layers 0") == std::string::npos) break;
+    ++black;
+  }
+  return black;
+}
+
+TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewAndItsTrialShownAgain) {
   const std::string protocol = pilot("[10]", "[0]");
-  for (const char* trouble : {"at=400:lost", "at=400:instance_lost", "at=400:exit"}) {
-    database_ = folder_ / ("study" + std::to_string(++databases_) + ".db");
+  for (const char* trouble :
+       {"at=400:lost/3", "at=400:lost_now", "positive=1;at=400:lost/5", "at=400:lost_now,400:unfound/3",
+        "without=XR_KHR_convert_timespec_time;at=400:lost_now", "rates=90;wrong_periods=5;at=400:lost_now"}) {
+    next_database();
+    const auto ended = session(trouble, protocol, "2");
+    ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("showings: 2, 1 of them count, 1 cut short; timing: 1 pass")) << trouble;
+    EXPECT_EQ(count("note WHERE words LIKE 'the screen did not show it: %lost the session%made anew%'"), 1);
+    EXPECT_EQ(count("event WHERE kind = 'headset'"), 2) << trouble;
+    EXPECT_EQ(count("frame JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 13);
+    // Nothing of the old world is seen in the new one: the black of three seconds before the repeat.
+    EXPECT_GT(black_frames_after(calls(), "xrBeginSession"), 260) << trouble;
+  }
+}
+
+TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) {
+  const auto early = session("at=150:lost_now", pilot("[10]", "[0]"), "2");
+  ASSERT_EQ(early.exit_code, 0) << early.err;
+  EXPECT_THAT(early.out, HasSubstr("showings: 1, 1 of them count, 0 cut short; timing: 1 pass"));
+  EXPECT_EQ(count("event WHERE kind = 'headset'"), 2);
+  // Where another rate came with it, or the stimulus is due before it is there, the trial begins anew.
+  for (const char* trouble : {"at=150:lost_now,151:rate/72", "at=300:lost_now"}) {
+    next_database();
+    const auto late = session(trouble, pilot("[10]", "[0]"), "2");
+    ASSERT_EQ(late.exit_code, 0) << trouble << late.err;
+    EXPECT_EQ(count("note WHERE words LIKE 'the screen did not show it%'"), 1) << trouble;
+    EXPECT_EQ(count("presentation WHERE state = 'played' AND verdict <> 'fail'"), 1) << trouble;
+  }
+}
+
+TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewInRealTime) {
+  for (const char* trouble : {"lost/2", "lost_now"}) {
+    next_database();
+    const auto ended = real_session("at=115:" + std::string(trouble));
+    ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("1 of 1 trials answered")) << trouble;
+    EXPECT_EQ(count("note WHERE words LIKE '%lost the session%'"), 1) << trouble;
+    EXPECT_EQ(count("presentation WHERE state = 'interrupted'"), 1) << trouble;
+    EXPECT_EQ(count("presentation WHERE state = 'played'"), 1) << trouble;
+    EXPECT_GT(black_frames_after(calls(), "xrBeginSession"), 50) << trouble;
+  }
+}
+
+TEST_F(HeadsetSessionE2e, WhatCannotBeMadeAnewIsToldAndContinued) {
+  const std::string protocol = pilot("[10]", "[0]");
+  for (const auto& [trouble, says] : std::vector<std::pair<std::string, std::string>>{
+           {"at=400:instance_lost", "XR_ERROR_INSTANCE_LOST"},
+           {"at=400:exit", "asked the program to leave"},
+           {"at=400:lost_now,800:lost_now,1200:lost_now", "session after session is lost"},
+           {"at=400:lost_now,400:unfound/999", "within 10 s none could be made anew (OpenXR: the runtime"}}) {
+    next_database();
     const auto ended = session(trouble, protocol, "2");
     EXPECT_EQ(ended.exit_code, 1) << trouble << ended.out;
+    EXPECT_THAT(ended.err, HasSubstr(says)) << trouble;
     EXPECT_THAT(ended.err, HasSubstr("vip-study resume")) << trouble;
     const auto again = study("size=32x32", {"resume", "--db", database_});
     EXPECT_EQ(again.exit_code, 0) << trouble << ": " << again.err;
     EXPECT_THAT(again.out, HasSubstr("1 of 1 trials answered")) << trouble;
+  }
+}
+
+TEST_F(HeadsetSessionE2e, AWaitThatHangsEndsTheProgramAndNothingIsLost) {
+  for (const bool real : {false, true}) {
+    next_database();
+    const auto ended =
+        real ? real_session("at=115:hang/60") : session("at=850:hang/60", pilot("[10, 30]", "[0]"), "2");
+    EXPECT_EQ(ended.exit_code, 1) << ended.out;
+    EXPECT_THAT(ended.err, HasSubstr("the runtime has held a frame for 10 s\n  mend: "));
+    EXPECT_EQ(ended.err.find("mend: "), ended.err.rfind("mend: ")) << "one error: " << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("vip-study resume"));
+    EXPECT_EQ(count("response WHERE attempt > 0"), real ? 0 : 1);
+    EXPECT_EQ(count("presentation WHERE state = 'interrupted'"), 1);
+    EXPECT_GT(count("frame JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 3);
+    const std::string usual = real ? real_profile : "size=32x32";
+    const auto again = study(usual, {"resume", "--db", database_});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_THAT(again.out, HasSubstr(real ? "1 of 1 trials answered" : "2 of 2 trials answered"));
+  }
+}
+
+/// The stimulus is on from frame 283 to frame 463; the event comes with frame 350 or 150.
+TEST_F(HeadsetSessionE2e, ARecentringCutsTheTrialInWhichItComesIntoForce) {
+  const std::string protocol = pilot("[10]", "[0]");
+  const std::string cut = "presentation JOIN frame USING (presentation_id) WHERE state = 'interrupted'";
+  for (const auto& [trouble, shown] : {std::pair{"at=350:recentre/20;recentre_lead=0.5", 12},
+                                       {"at=350:recentre/20;recentre_lead=1.7", 0},
+                                       {"at=150:recentre/20;recentre_lead=2.2", 7}}) {
+    next_database();
+    const auto ended = session(trouble, protocol, "2");
+    ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
+    EXPECT_EQ(count("presentation WHERE state = 'interrupted'"), shown > 0 ? 1 : 0) << trouble;
+    EXPECT_NEAR(static_cast<double>(count(cut)), shown, 1) << trouble;
+    EXPECT_THAT(ended.out, HasSubstr("timing: 1 pass")) << trouble;
   }
 }
 

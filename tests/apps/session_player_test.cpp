@@ -122,17 +122,24 @@ TEST_F(Played, AnObserversRefusalIsNoNewsToAnyone) {
   EXPECT_EQ(state("P01"), "refused");
 }
 
-TEST_F(Played, AMirrorIsAnEventOfEachSessionAndNoneWithoutIt) {
-  const auto mirrored = [&] {
+TEST_F(Played, AMirrorIsAnEventOfEachSessionAndUnblindsWhereItRevealsStimuli) {
+  const auto sessions_with = [&](const std::string& kind) {
     return study::sqlite::Connection(play_.database, study::sqlite::Open::Read)
-        .integer("SELECT count(DISTINCT session_id) FROM event WHERE kind = 'mirror opened'");
+        .integer("SELECT count(DISTINCT session_id) FROM event WHERE kind = '" + kind + "'");
   };
   ASSERT_EQ(play(), 0);
-  EXPECT_EQ(mirrored(), 0);
+  EXPECT_EQ(sessions_with("mirror opened"), 0);
+  EXPECT_EQ(sessions_with("pages mirrored"), 0);
   play_.database = folder_ / "mirrored.db";
   play_.mirror = true;
   ASSERT_EQ(play({}, {"P01", "P02"}), 0);
-  EXPECT_EQ(mirrored(), 2);
+  EXPECT_EQ(sessions_with("mirror opened"), 0);
+  EXPECT_EQ(sessions_with("pages mirrored"), 2);
+  play_.database = folder_ / "revealed.db";
+  play_.mirror_reveal = true;
+  ASSERT_EQ(play({}, {"P01", "P02"}), 0);
+  EXPECT_EQ(sessions_with("mirror opened"), 2);
+  EXPECT_EQ(sessions_with("pages mirrored"), 0);
 }
 
 }  // namespace

@@ -204,6 +204,16 @@ const std::vector<Flow>& all_flows() {
   const auto withdraw = [](const fs::path& folder) {
     return vip_study({"withdraw", "P02", "--db", folder / "s.db", "--yes"});
   };
+  const auto upgrade_from = [&](int schema) {
+    const std::string number = std::to_string(schema);
+    return Flow{"upgrade from schema " + number,
+                fixture("study_v" + number + ".db"),
+                of("s.db", resume_arguments),
+                of("s.db", resume_arguments),
+                upgraded_content,
+                {"s.db"},
+                "s.db"};
+  };
   static const std::vector<Flow> flows{
       {"run", write_protocol, run, go_on, sessions, {}, "s.db"},
       {"resume", cut_session, of("s.db", resume_arguments), go_on, sessions, {"s.db"}, "s.db"},
@@ -227,27 +237,10 @@ const std::vector<Flow>& all_flows() {
        {},
        ""},
       {"salvage", prepare_salvage, salvage_arguments, salvage_or_look, salvage_content, {}, ""},
-      {"upgrade from schema 1",
-       fixture("study_v1.db"),
-       of("s.db", resume_arguments),
-       of("s.db", resume_arguments),
-       upgraded_content,
-       {"s.db"},
-       "s.db"},
-      {"upgrade from schema 2",
-       fixture("study_v2.db"),
-       of("s.db", resume_arguments),
-       of("s.db", resume_arguments),
-       upgraded_content,
-       {"s.db"},
-       "s.db"},
-      {"upgrade from schema 3",
-       fixture("study_v3.db"),
-       of("s.db", resume_arguments),
-       of("s.db", resume_arguments),
-       upgraded_content,
-       {"s.db"},
-       "s.db"},
+      upgrade_from(1),
+      upgrade_from(2),
+      upgrade_from(3),
+      upgrade_from(4),
   };
   return flows;
 }

@@ -97,6 +97,10 @@ XrResult get_system(XrInstance instance, const XrSystemGetInfo* info, XrSystemId
   if (info->formFactor != XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY || all.profile.headset == "unsupported")
     return XR_ERROR_FORM_FACTOR_UNSUPPORTED;
   if (all.profile.headset == "unavailable") return XR_ERROR_FORM_FACTOR_UNAVAILABLE;
+  if (double& left = all.knobs.at("unfound"); left > 0) {
+    --left;
+    return XR_ERROR_FORM_FACTOR_UNAVAILABLE;
+  }
   all.asked_system = true;
   *system = the_system;
   return XR_SUCCESS;

@@ -59,7 +59,8 @@ Gaze gaze_at(XrTime time) {
   const Runtime& all = runtime();
   // The newest sample of a grid of its own that can have been taken.
   const double rate = knob("gaze_rate");
-  const XrDuration since = std::min(time, now()) - all.clock.start - 3'100'000;
+  const auto age = static_cast<XrDuration>(1e6 * knob("gaze_age"));
+  const XrDuration since = std::min(time, now()) - age - all.clock.start - 3'100'000;
   const auto number = static_cast<std::int64_t>(std::floor(seconds(since) * rate));
   Gaze out;
   out.time = all.clock.start + 3'100'000 +

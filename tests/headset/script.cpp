@@ -12,10 +12,10 @@ void recentre(XrSession session, double degrees) {
   XrEventDataReferenceSpaceChangePending event{};
   event.session = session;
   event.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
-  event.changeTime = now();
+  event.changeTime = now() + static_cast<XrDuration>(1e9 * runtime().knobs.at("recentre_lead"));
   event.poseValid = XR_TRUE;
   event.poseInPreviousSpace = to_xr({turned(degrees, 0, 0), {}});
-  runtime().local_yaw += degrees;
+  runtime().local_turns.push_back({event.changeTime, degrees});
   queue_event(event, XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING);
 }
 

@@ -96,7 +96,9 @@ Pose place_of(const Space& space, XrTime time) {
   if (space.action) return (is_gaze(space) ? gaze_at(time).pose : hand_at(time)) * space.offset;
   if (space.type == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
   if (space.type == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
-  return Pose{turned(runtime().local_yaw, 0, 0), {0, eye_height, 0}} * space.offset;
+  double yaw = 0;
+  for (const LocalTurn& turn : runtime().local_turns) yaw += turn.from <= time ? turn.degrees : 0;
+  return Pose{turned(yaw, 0, 0), {0, eye_height, 0}} * space.offset;
 }
 
 Placed locate(const Space& what, const Space& from, XrTime time) {

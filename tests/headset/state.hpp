@@ -101,6 +101,12 @@ struct Page {
   XrTime since;
 };
 
+/// LOCAL is turned to the left from a time on.
+struct LocalTurn {
+  XrTime from;
+  double degrees;
+};
+
 /// Time as the runtime tells it. It is no clock of the system: XrTime less `ahead_of_monotonic` is.
 struct Clock {
   bool real = false;
@@ -139,7 +145,7 @@ struct Runtime {
   int dropped = 0;                                ///< slots that the next wait leaves out
   bool repeats = false;                           ///< the next wait predicts the last time again
   double hang_seconds = 0;                        ///< for which the next wait does not return
-  double local_yaw = 0;                           ///< degrees by which recentring turned LOCAL
+  std::vector<LocalTurn> local_turns;             ///< of LOCAL, by recentring
 };
 Runtime& runtime();
 /// Forgets everything if the profile or the log is another one than before.

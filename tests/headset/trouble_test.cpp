@@ -92,6 +92,23 @@ TEST_F(TroubleGl, EventsThatNobodyExpects) {
   EXPECT_NEAR(local.orientation.y, std::sin(15 * radians_per_degree), 1e-6);
 }
 
+TEST_F(TroubleGl, ARecentringMayComeIntoForceLater) {
+  Client client("at=4:recentre/30;recentre_lead=0.1");
+  const auto yaw_at = [&](XrTime time) {
+    return 2 *
+           std::asin(client.locate(client.local, client.make_space(XR_REFERENCE_SPACE_TYPE_STAGE), time)
+                         .pose.orientation.y) /
+           radians_per_degree;
+  };
+  frames(client, 6);
+  ASSERT_THAT(client.events, SizeIs(1));
+  const XrTime change =
+      reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(client.events[0]).changeTime;
+  EXPECT_GT(change, client.state.predictedDisplayTime);
+  EXPECT_NEAR(yaw_at(change - 1), 0, 1e-4);
+  EXPECT_NEAR(yaw_at(change), 30, 1e-4);
+}
+
 TEST_F(TroubleGl, SlotsAreLeftOutAndPredictedTwice) {
   Client client("at=4:drop/3,6:repeat");
   EXPECT_THAT(steps(frames(client, 9)), ElementsAre(1, 1, 1, 4, 1, 0, 2, 1));

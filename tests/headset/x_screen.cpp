@@ -11,8 +11,8 @@
 
 namespace simulated {
 
-XScreen::XScreen() {
-  start();
+XScreen::XScreen(const std::string& size) {
+  start(size);
   make_context();
 }
 
@@ -26,14 +26,15 @@ XScreen::~XScreen() {
   ::waitpid(server_, nullptr, 0);
 }
 
-void XScreen::start() {
+void XScreen::start(const std::string& size) {
+  const std::string mode = size + "x24";
   int told[2];
   if (::pipe2(told, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
   server_ = ::fork();
   if (server_ == 0) {
     ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
     ::dup2(told[1], 3);
-    ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-noreset", "-screen", "0", "64x48x24", nullptr);
+    ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-noreset", "-screen", "0", mode.c_str(), nullptr);
     ::_exit(126);
   }
   ::close(told[1]);

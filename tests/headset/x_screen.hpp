@@ -10,8 +10,8 @@ namespace simulated {
 /// Xvfb while the object lives; its context is current on the thread that made it.
 class XScreen {
  public:
-  /// std::runtime_error when there is no Xvfb, or no OpenGL 4.5 on it.
-  XScreen();
+  /// size: "640x480". std::runtime_error when there is no Xvfb, or no OpenGL 4.5 on it.
+  explicit XScreen(const std::string& size = "64x48");
   ~XScreen();
   XScreen(const XScreen&) = delete;
   XScreen& operator=(const XScreen&) = delete;
@@ -21,7 +21,7 @@ class XScreen {
   const std::string& name() const { return name_; }
 
  private:
-  void start();
+  void start(const std::string& size);
   void make_context();
 
   int server_ = 0;

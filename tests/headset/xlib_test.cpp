@@ -109,6 +109,15 @@ TEST_F(XlibProgramGl, ShowsATestSceneAndTheValidationLayerIsSilent) {
   EXPECT_FALSE(std::filesystem::exists(validation_.file())) << validation_.says();
 }
 
+TEST_F(XlibProgramGl, ADriverWithoutOpenGl45IsAnErrorOfOurs) {
+  ::setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+  const auto ended = run("", {"headset", "--show", "1"});
+  ::unsetenv("MESA_GL_VERSION_OVERRIDE");
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("OpenGL: no OpenGL 4.5 core context on the X display"));
+  EXPECT_THAT(ended.err, ::testing::Not(HasSubstr("X Error")));
+}
+
 TEST_F(XlibProgramGl, PlaysAWholeSessionOnBothClocksAndTheValidationLayerIsSilent) {
   std::string pilot = read_text(base::resource("protocols/ptpe_pilot.toml"));
   pilot = std::regex_replace(pilot, std::regex("mean_fps = .*"), "mean_fps = [5, 10]");

@@ -200,6 +200,11 @@ std::vector<Flow> all_flows() {
        [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
        [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
        {"s.db"}},
+      {"upgrade from schema 4",
+       fixture("study_v4.db"),
+       [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
+       [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
+       {"s.db"}},
   };
 }
 

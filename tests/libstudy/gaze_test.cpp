@@ -143,7 +143,7 @@ TEST(Gaze, IsCommittedInTheBackgroundWithTheFrames) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
   test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}});
-  FrameJournal journal(store, 1, 0, GazeOrigin::Mouse, true);
+  FrameJournal journal(store, {1, 1, 0}, GazeOrigin::Mouse, true);
   const auto gaze_rows = [&] { return test::column(folder / "study.db", "SELECT sampled_ns FROM gaze"); };
   FrameRecord frame = test::frames(0, 51).back();
   journal.add(frame, {{{11, {}, true, GazePoint{0, 0}}, {12, {}, false, {}}}, {}});

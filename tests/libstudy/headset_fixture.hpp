@@ -1,6 +1,8 @@
 #pragma once
 /// What a headset brings in, for tests.
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/session/session.hpp"
@@ -14,6 +16,7 @@ inline HeadsetFacts headset_facts() {
   facts.headset = "a headset";
   facts.eyes = {EyeFacts{2064, 2208, -52, 42, 46, -50}, EyeFacts{2060, 2200, -42, 52, 46, -50}};
   facts.format = "SRGB8_ALPHA8";
+  facts.blend = "opaque";
   facts.refresh_told_hz = 90;
   facts.refresh_measured_hz = 89.5;
   facts.times_convert = facts.position_tracking = facts.eye_tracking = true;
@@ -54,7 +57,10 @@ class SlotEvery10ms final : public SlotSource {
   void stop_slots() override {}
   std::optional<double> ipd_mm() override { return ipd_of ? ipd_of(clock_.now_ns()) : 63; }
 
+  std::vector<std::string> take_news() override { return std::exchange(news, {}); }
+
   std::function<double(std::int64_t)> ipd_of;
+  std::vector<std::string> news;
 
  private:
   const Clock& clock_;

@@ -55,13 +55,13 @@ struct Worn : test::OneSession {
     person.says[gaze_question] = test::score(gaze_kept);
     person.says["rating"] = test::score(4);
   }
-  void run() {
+  void run(const SessionHooks& hooks = {}) {
     SessionParts parts = desk.parts(person, store);
     parts.gaze = &eyes;
     parts.slots = &slots;
     auto runs = open();
     runs.at(0).sessions.at(0).plan.gaze_source = "tracked";
-    run_session(protocol, runs.at(0).sessions.at(0), parts, {});
+    run_session(protocol, runs.at(0).sessions.at(0), parts, hooks);
   }
   Eyes eyes{desk.clock};
   test::SlotEvery10ms slots{desk.clock};
@@ -107,9 +107,34 @@ TEST(HeadsetRecords, HoldTheDistanceOfTheEyesWhenItChanges) {
     const std::int64_t gone_ms = (now_ns - begun_ns) / 1'000'000;
     return gone_ms < 300 ? 63.0 : gone_ms < 400 ? 63.15 : 64.0;
   };
-  worn.run();
+  // Between two frames nothing waits for the disk: it is written with them.
+  std::int64_t between_frames = 0;
+  SessionHooks hooks;
+  hooks.shown = [&](const FrameRecord&) {
+    if (worn.count("presentation") == 1) between_frames = worn.count("ipd");
+  };
+  worn.run(hooks);
+  EXPECT_EQ(between_frames, 1);
   EXPECT_THAT(test::column(worn.folder / "study.db", "SELECT ipd_mm FROM ipd ORDER BY ipd_id"),
               ElementsAre("63.0", "64.0"));
+}
+
+TEST(HeadsetRecords, HoldWhatHappenedToTheHeadset) {
+  Worn worn(1);
+  int frames = 0;
+  SessionHooks hooks;
+  hooks.shown = [&](const FrameRecord&) { ++frames; };
+  hooks.wish = [&] {
+    if (frames != 5) return Wish::GoOn;
+    ++frames;
+    worn.slots.news = {"it was lost", "it was made anew"};
+    return Wish::NotShown;
+  };
+  worn.run(hooks);
+  EXPECT_EQ(worn.count("note WHERE words = 'the screen did not show it: it was lost, it was made anew'"), 1);
+  EXPECT_THAT(test::column(worn.folder / "study.db", "SELECT detail FROM event WHERE kind = 'headset'"),
+              ElementsAre("it was lost", "it was made anew"));
+  EXPECT_EQ(worn.count("presentation WHERE state = 'played'"), 2);
 }
 
 TEST(HeadsetRecords, EyesLostForTooLongCutATrialAndAreNoted) {
@@ -332,6 +357,50 @@ TEST(HeadsetRecords, AreMotionAndAnEyeInTheHeadInBids) {
   EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["headset"], "a headset");
   EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["ipd_mm"][0], 63);
   EXPECT_FALSE(fs::exists(folder / "bids/sub-P02/ses-askingv1/motion")) << "refused gaze";
+}
+
+TEST(HeadsetRecords, OfASingleSampleHaveTheDisplaysRateInBidsOrNoPlaceThere) {
+  const test::TemporaryFolder folder;
+  const fs::path path = headset_study(folder, "study.db", {{"P01", 1, 1}});
+  const std::string session = "sub-P01/ses-askingv1/", stem = "sub-P01_ses-askingv1_task-asking";
+  const std::vector<std::string> recordings{"motion/" + stem + "_tracksys-headset_motion",
+                                            "beh/" + stem + "_recording-eye1_physio"};
+  export_bids(path, folder / "bids", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
+  for (const std::string& recording : recordings) {
+    const auto json =
+        nlohmann::json::parse(test::bytes_of(folder / "bids" / session / (recording + ".json")));
+    EXPECT_EQ(json["SamplingFrequency"], 89.5);
+  }
+  Connection(path, Open::Write).execute("DELETE FROM headset; UPDATE session SET refresh_hz = NULL");
+  export_bids(path, folder / "unknown", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "unknown"), IsEmpty());
+  for (const std::string& recording : recordings)
+    EXPECT_FALSE(fs::exists(folder / "unknown" / session / (recording + ".json"))) << recording;
+}
+
+TEST(HeadsetRecords, OfAHeadThatStoodInAreBehaviourInBids) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  {
+    Store store(path, Open::Create);
+    test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}});
+    store.add_headset(1, test::headset_facts());
+    const std::vector<GazeSample> samples{{10'000'000, {}, false, {}, false, {}},
+                                          {20'000'000, {}, true, GazePoint{0.5, 0.25}, true, GazeRay{}}};
+    store.add_gaze(1, 0, GazeOrigin::Head, samples);
+  }
+  export_bids(path, folder / "bids", true);
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
+  const fs::path head =
+      folder / "bids/sub-P01/ses-askingv1/beh/sub-P01_ses-askingv1_task-asking_acq-head_beh";
+  EXPECT_EQ(test::bytes_of(head.string() + ".tsv"),
+            "timestamp\tx_coordinate\ty_coordinate\tvalid\ttracked\n"
+            "0.01\tn/a\tn/a\t0\t0\n0.02\t0.5\t0.25\t1\t1\n");
+  const auto json = nlohmann::json::parse(test::bytes_of(head.string() + ".json"));
+  EXPECT_THAT(json["Description"].get<std::string>(), HasSubstr("No eye was recorded"));
+  export_bids(path, folder / "few");
+  EXPECT_FALSE(fs::exists(folder / "few/sub-P01/ses-askingv1/beh" / head.filename().concat(".tsv")));
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ TEST(FrameJournal, EveryFrameIsInTheStoreOrHandedBackOnce) {
   for (const bool in_background : {false, true}) {
     const OpenUnit& unit = session.units.at(in_background ? 3 : 2);
     const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
-    FrameJournal journal(store, id, 0, GazeOrigin::Mouse, in_background);
+    FrameJournal journal(store, {1, id, 0}, GazeOrigin::Mouse, in_background);
     for (const FrameRecord& frame : test::frames(0, 1000)) journal.add(frame, {});
     const auto rest = journal.finish({});
     store.add_frames(id, 0, rest);

@@ -28,6 +28,8 @@ struct HeadsetEvent {
     Refresh,      ///< the display went from one rate to another, Hz
     Recentred,    ///< the world's origin is another from `at_ns` on
     EventsLost,   ///< some events never came
+    Lost,         ///< the session is gone; no slots come until MadeAnew
+    MadeAnew,     ///< another session stands in for one that was lost
   };
   Kind kind = Kind::State;
   HeadsetState state = HeadsetState::Unknown;

@@ -30,15 +30,33 @@ std::int64_t period_of(const LoopFacts& facts) {
   return hz ? std::llround(1e9 / *hz) : facts.last.period_ns;
 }
 
+SessionFacts facts_of(const HeadsetSession& session) {
+  return {session.description(), session.names(), session.times_convert(), session.has_eye_gaze(),
+          session.picture_size()};
+}
+
+/// What the loop and its program go by must be as it was.
+void require_alike(const SessionFacts& before, const SessionFacts& after) {
+  const bool same_size =
+      after.picture.width == before.picture.width && after.picture.height == before.picture.height;
+  if (same_size && (after.eye_gaze || !before.eye_gaze)) return;
+  throw base::Error("headset",
+                    std::string("its session was lost, and the next one has ") +
+                        (same_size ? "no eye tracker" : "pictures of another size"),
+                    "see the headset's software and continue with vip-study resume");
+}
+
 }  // namespace
 
 FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
-    : gl_(make_headset_context()), drive_(drive) {
+    : gl_(make_headset_context()), drive_(drive), page_size_{choice.page_width_px, choice.page_height_px} {
   if (drive == SlotDrive::Caller) {
-    session_ = std::make_unique<HeadsetSession>(gl_, choice);
+    maker_.emplace(gl_, choice);
+    make_session();
   } else {
     slots_gl_.emplace(gl_.make_shared());
-    thread_ = std::thread([this, choice] { run(choice); });
+    maker_.emplace(*slots_gl_, choice);
+    thread_ = std::thread([this] { run(); });
     std::unique_lock held(mutex_);
     changed_.wait(held, [this] { return session_ || error_; });
     if (error_) {
@@ -48,19 +66,22 @@ FrameLoop::FrameLoop(const HeadsetChoice& choice, SlotDrive drive)
     }
   }
   try {
-    make_pictures(choice);
+    make_pictures(PictureTurns::count);
   } catch (...) {
     stop();
     throw;
   }
 }
 
-void FrameLoop::make_pictures(const HeadsetChoice& choice) {
-  const PictureSize size = session_->picture_size();
-  for (std::size_t i = 0; i < PictureTurns::count; ++i) {
-    canvases_.push_back(std::make_unique<sim::Offscreen>(size.width, size.height));
-    if (choice.page_width_px > 0)
-      pages_.push_back(std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px));
+void FrameLoop::make_pictures(std::size_t count) {
+  const PictureSize size = session().picture;
+  while (canvases_.size() < count) {
+    auto canvas = std::make_unique<sim::Offscreen>(size.width, size.height);
+    std::unique_ptr<sim::Offscreen> page;
+    if (page_size_.width > 0) page = std::make_unique<sim::Offscreen>(page_size_.width, page_size_.height);
+    const std::lock_guard held(mutex_);
+    canvases_.push_back(std::move(canvas));
+    if (page) pages_.push_back(std::move(page));
   }
 }
 
@@ -75,17 +96,47 @@ void FrameLoop::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
+void FrameLoop::make_session() {
+  auto made = maker_->make(facts_.last.predicted_ns);
+  SessionFacts told = facts_of(*made);
+  {
+    const std::scoped_lock held(asking_, mutex_);
+    session_ = std::move(made);
+    told_ = std::move(told);
+  }
+  changed_.notify_all();
+}
+
+/// The runtime lost the session.
+void FrameLoop::make_anew() {
+  std::unique_ptr<HeadsetSession> lost;
+  const SessionFacts before = session();
+  {
+    const std::scoped_lock held(asking_, mutex_);
+    lost = std::move(session_);
+    running_ = false;
+    facts_.state = HeadsetState::LossPending;
+    facts_.rate = {};
+    facts_.last.runtime_time = facts_.last.index = 0;  // the next session counts anew
+    ++facts_.world;
+    moves_ns_.clear();
+    black_out();
+    events_.push_back({.kind = HeadsetEvent::Kind::Lost});
+  }
+  changed_.notify_all();
+  lost.reset();
+  make_session();
+  require_alike(before, session());
+  const std::lock_guard held(mutex_);
+  events_.push_back({.kind = HeadsetEvent::Kind::MadeAnew});
+}
+
 /// The thread's. The session lives and ends on it, in its context.
-void FrameLoop::run(const HeadsetChoice& choice) {
+void FrameLoop::run() {
   try {
     const study::RealTimeScheduling real_time;
     slots_gl_->make_current();
-    auto made = std::make_unique<HeadsetSession>(*slots_gl_, choice);
-    {
-      const std::lock_guard held(mutex_);
-      session_ = std::move(made);
-    }
-    changed_.notify_all();
+    make_session();
     draw_slots();
   } catch (...) {
     const std::lock_guard held(mutex_);
@@ -111,22 +162,52 @@ void FrameLoop::draw_slots() {
 
 /// False where frames must not come now.
 bool FrameLoop::turn_slot() {
-  const std::vector<HeadsetEvent> events = session_->poll();
-  {
-    const std::lock_guard held(mutex_);
-    events_.insert(events_.end(), events.begin(), events.end());
-    facts_.state = session_->state();
-    running_ = session_->running();
-    if (!running_) return false;
+  try {
+    if (poll()) {
+      const HeadsetSlot slot = session_->wait();
+      session_->begin(slot);
+      session_->end(slot, take_in({slot, session_->views(slot), session_->input(slot)}));
+      return true;
+    }
+    if (session_->state() != HeadsetState::LossPending || runtime_ends_) return false;
+  } catch (const HeadsetLost& lost) {
+    if (lost.with_runtime() || runtime_ends_) throw;
   }
-  const HeadsetSlot slot = session_->wait();
-  session_->begin(slot);
-  session_->end(slot, take_in({slot, session_->views(slot), session_->input(slot)}));
-  return true;
+  make_anew();
+  return false;
+}
+
+/// Whether frames must come.
+bool FrameLoop::poll() {
+  const std::vector<HeadsetEvent> events = session_->poll();
+  const std::lock_guard held(mutex_);
+  events_.insert(events_.end(), events.begin(), events.end());
+  for (const HeadsetEvent& event : events) {
+    using Kind = HeadsetEvent::Kind;
+    // Among events that never came may have been a move; at_ns of -1 is before all slots.
+    if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
+    runtime_ends_ |= event.kind == Kind::RuntimeEnds;
+  }
+  facts_.state = session_->state();
+  return running_ = session_->running();
+}
+
+/// A move of the world's origin comes into force with the first slot that is seen at its time or later.
+void FrameLoop::follow_world(std::int64_t predicted_ns) {
+  if (std::erase_if(moves_ns_, [&](std::int64_t at_ns) { return at_ns <= predicted_ns; }) == 0) return;
+  ++facts_.world;
+  black_out();
+}
+
+/// What was placed in another world would jump.
+void FrameLoop::black_out() {
+  unseen_ |= picture_turns_.shows() || picture_turns_.waits();
+  picture_turns_.drop();
+  page_turns_.drop();
 }
 
 /// What the slot shows.
-HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
+HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   const HeadsetSlot& slot = record.slot;
   const RateMeter& meter = session_->meter();
   HeadsetRate rate{facts_.rate.told_hz, meter.hz()};
@@ -136,13 +217,13 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
   {
     const std::lock_guard held(mutex_);
     facts_.rate = rate;
-    facts_.trusted = session_->times_convert() && meter.repeated() == 0 && meter.off_grid() == 0;
+    doubted_ |= meter.repeated() > 0 || meter.off_grid() > 0;
+    facts_.trusted = session_->times_convert() && !doubted_;
     facts_.last = slot;
+    facts_.views = record.views;
     last_system_ns_ = system_ns();
     ++slots_;
-    if (records_.size() >= most_records)
-      records_.erase(records_.begin(), records_.begin() + most_records / 2);
-    records_.push_back(record);
+    follow_world(slot.predicted_ns);
     if (picture_turns_.waits() && slot.predicted_ns >= due_ns_ - period_of(facts_) / 2) {
       picture_turns_.take();
       shown_from_ = waiting_from_;
@@ -153,16 +234,43 @@ HeadsetLayers FrameLoop::take_in(const HeadsetRecord& record) {
       shown_place_ = waiting_place_;
     }
     unseen_ |= picture_turns_.shows() && !slot.should_render;
-    const std::size_t picture = picture_turns_.read(), page = page_turns_.read();
-    if (picture_turns_.shows()) out.picture = canvases_[picture].get();
-    if (page_turns_.shows()) out.page = pages_[page].get();
-    out.views = shown_from_.views;
-    out.in_head = shown_from_.in_head;
-    out.light = light_at(slot.predicted_ns);
-    out.place = shown_place_;
+    out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
+    if (out.picture) record.shown = shown_from_;
+    record.world = facts_.world;
+    if (records_.size() >= most_records)
+      records_.erase(records_.begin(), records_.begin() + most_records / 2);
+    records_.push_back(record);
   }
   changed_.notify_all();
   return out;
+}
+
+HeadsetLayers FrameLoop::layers_at(std::int64_t at_ns, std::size_t picture, std::size_t page) const {
+  HeadsetLayers out;
+  if (picture_turns_.shows()) out.picture = canvases_[picture].get();
+  if (page_turns_.shows()) out.page = pages_[page].get();
+  out.views = shown_from_.views;
+  out.in_head = shown_from_.in_head;
+  out.light = light_at(at_ns);
+  out.place = shown_place_;
+  return out;
+}
+
+sim::GlContext FrameLoop::admit_onlooker() {
+  make_pictures(PictureTurns::count_with_onlooker);
+  onlooker_ = true;
+  return gl_.make_shared();
+}
+
+SeenNow FrameLoop::look() {
+  const std::lock_guard held(mutex_);
+  return {layers_at(facts_.last.predicted_ns, picture_turns_.look(), page_turns_.look()), facts_.views};
+}
+
+void FrameLoop::look_away() {
+  const std::lock_guard held(mutex_);
+  picture_turns_.look_away();
+  page_turns_.look_away();
 }
 
 void FrameLoop::turn() {
@@ -171,7 +279,7 @@ void FrameLoop::turn() {
     while (!turn_slot()) {
       if (!events_.empty()) return;  // one may say that no slot comes any more
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "nobody wears it", "put it on and continue with vip-study resume");
+        throw base::Error("headset", "nobody wears it", "put it on; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return;
@@ -180,6 +288,11 @@ void FrameLoop::turn() {
   changed_.wait_for(held, one_wait, [this, before = slots_] { return slots_ > before || error_; });
   // Events that came before say better what happened.
   if (error_ && events_.empty()) std::rethrow_exception(error_);
+}
+
+SessionFacts FrameLoop::session() const {
+  const std::lock_guard held(mutex_);
+  return told_;
 }
 
 LoopFacts FrameLoop::facts() const {
@@ -203,15 +316,21 @@ std::int64_t FrameLoop::now_ns() const {
   return facts_.last.predicted_ns + period_ns + counted_ns;
 }
 
-EyeViews FrameLoop::views_at(std::int64_t at_ns) { return session_->views_at(runtime_time_of(at_ns)); }
+EyeViews FrameLoop::views_at(std::int64_t at_ns) { return ask_views(&HeadsetSession::views_at, at_ns); }
 
 EyeViews FrameLoop::views_in_head(std::int64_t at_ns) {
-  return session_->views_in_head(runtime_time_of(at_ns));
+  return ask_views(&HeadsetSession::views_in_head, at_ns);
 }
 
-std::int64_t FrameLoop::runtime_time_of(std::int64_t at_ns) const {
+EyeViews FrameLoop::ask_views(AskViews ask, std::int64_t at_ns) {
+  const std::lock_guard asking(asking_);
   const HeadsetSlot last = facts().last;
-  return last.runtime_time + at_ns - last.predicted_ns;
+  if (!session_ || last.runtime_time == 0) return {};
+  try {
+    return (session_.get()->*ask)(last.runtime_time + at_ns - last.predicted_ns);
+  } catch (const HeadsetLost&) {
+    return {};  // the next slot tells
+  }
 }
 
 const sim::Offscreen& FrameLoop::canvas() {
@@ -225,7 +344,7 @@ const sim::Offscreen& FrameLoop::page() {
 }
 
 HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
-  if (drive_ == SlotDrive::Thread) glFinish();  // the other context reads it
+  if (others_read()) glFinish();
   {
     const std::lock_guard held(mutex_);
     picture_turns_.post();
@@ -235,9 +354,9 @@ HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
   for (;;) {
     turn();
     const std::lock_guard held(mutex_);
-    if (!picture_turns_.waits()) return came_on_;
-    if (running_ && !error_) continue;
-    // Nobody sees it: the headset is off.
+    if (picture_turns_.shows() && !picture_turns_.waits()) return came_on_;
+    if (picture_turns_.waits() && running_ && !error_) continue;
+    // Nobody sees it: the headset is off, or all went black.
     picture_turns_.clear();
     unseen_ = true;
     return {.predicted_ns = due_ns};
@@ -250,7 +369,7 @@ void FrameLoop::clear() {
 }
 
 void FrameLoop::show_page(const HeadsetPage& place) {
-  if (drive_ == SlotDrive::Thread) glFinish();
+  if (others_read()) glFinish();
   const std::lock_guard held(mutex_);
   page_turns_.post();
   waiting_place_ = place;

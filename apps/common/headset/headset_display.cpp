@@ -24,6 +24,12 @@ constexpr int most_slots = 3000;
 constexpr double same_rate = 0.02;
 bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
 
+const char* rate_problem(const study::HeadsetRules& rules) {
+  return rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
+                          : "its predicted times show no steady rate";
+}
+constexpr const char* rate_mend = "choose that refresh rate, and a fixed one, in the headset's software";
+
 HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) {
   choice.refresh_hz = rules.refresh_hz;
   return choice;
@@ -47,17 +53,30 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
     : rules_(rules), loop_(with_rate(choice, rules), drive), slots_by_thread_(drive == SlotDrive::Thread) {
   await([this] { return focused(); }, "nobody wears it, or another program has its focus",
         "put it on, and close what lies before this program");
-  const auto measured = [this] { return facts().rate.measured_hz; };
-  const auto meets = [&] { return !rules.refresh_hz || near_rate(*measured(), *rules.refresh_hz); };
-  await([&] { return measured() && meets(); },
-        rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
-                         : "its predicted times show no steady rate",
-        "choose that refresh rate, and a fixed one, in the headset's software");
+  await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  const HeadsetRate rate = facts().rate;
-  refresh_hz_ =
-      rate.told_hz && near_rate(*rate.told_hz, *rate.measured_hz) ? *rate.told_hz : *rate.measured_hz;
   spoilt_ = false;  // a rate that was asked for has come
+}
+
+/// The rate once it has settled, where the rules have it: in the runtime's words where they are true.
+std::optional<double> HeadsetDisplay::met_hz() const {
+  const auto [told_hz, measured_hz] = facts().rate;
+  if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
+  return told_hz && near_rate(*told_hz, *measured_hz) ? told_hz : measured_hz;
+}
+
+/// A session that was made anew counts once its rate is known: trials are compiled for it.
+void HeadsetDisplay::settle_new_session() {
+  const auto hz = met_hz();
+  if (!hz) {
+    if (facts().last.index > most_slots) throw base::Error("headset", rate_problem(rules_), rate_mend);
+    return;
+  }
+  new_session_ = false;
+  news_.emplace_back("a session was made anew");
+  if (near_rate(*hz, refresh_hz_)) return;
+  refresh_hz_ = *hz;
+  spoilt_ = true;
 }
 
 /// A runtime whose time goes on by itself would drop slots while the program computes.
@@ -81,7 +100,7 @@ void HeadsetDisplay::await(const std::function<bool()>& ready, const char* probl
 }
 
 std::string HeadsetDisplay::description() const {
-  return session().description() + ", " + sim::gl_description();
+  return session().description + ", " + sim::gl_description();
 }
 
 study::TimingGrade HeadsetDisplay::grade() const {
@@ -108,17 +127,21 @@ void HeadsetDisplay::heed() {
     const bool state = event.kind == Kind::State;
     if (state && event.state == HeadsetState::Exiting)
       throw base::Error("headset", "its software asked the program to leave",
-                        "continue with vip-study resume");
-    if (event.kind == Kind::RuntimeEnds || (state && event.state == HeadsetState::LossPending))
-      throw base::Error("headset", "its software ends", "start it again and continue with vip-study resume");
-    if (event.kind == Kind::Refresh) refresh_hz_ = event.to_hz;
-    const bool unseen = state && event.state != HeadsetState::Focused;
-    const bool moved = event.kind == Kind::Recentred || event.kind == Kind::EventsLost;
-    if (unseen || moved) spoilt_ |= playing_;
-    // Also between pictures: the trial that has begun goes by the intervals of the rate before.
-    spoilt_ |= event.kind == Kind::Refresh;
+                        "vip-study resume continues a session");
+    if (event.kind == Kind::RuntimeEnds)
+      throw base::Error("headset", "its software ends",
+                        "start it again; vip-study resume continues a session");
+    if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
+    new_session_ |= event.kind == Kind::Lost;
+    if (event.kind == Kind::Refresh && !new_session_) {
+      refresh_hz_ = event.to_hz;
+      // Also between pictures: the trial that has begun goes by the intervals of the rate before.
+      spoilt_ = true;
+    }
+    spoilt_ |= state && event.state != HeadsetState::Focused && playing_;
   }
   spoilt_ |= loop_.take_unseen() && playing_;
+  if (new_session_) settle_new_session();
 }
 
 void HeadsetDisplay::turn() {
@@ -157,10 +180,10 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
 /// Both eyes into the canvas, as they will be at at_ns; none where the runtime does not know.
 std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
+  const sim::Offscreen& canvas = loop_.canvas();  // first: should the world move now, it never comes on
   EyeViews views = loop_.views_at(at_ns);
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
-  const sim::Offscreen& canvas = loop_.canvas();
   const std::array<study::EyeView, 2> eyes{study_view(views[0], 0, rules_.world_scale),
                                            study_view(views[1], views[0].width_px, rules_.world_scale)};
   pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
@@ -184,7 +207,7 @@ void HeadsetDisplay::render(study::Stimulus& stimulus) {
 study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Clock& clock) {
   playing_ = true;
   clock.wait_until(scheduled_ns - lead_ns());
-  const auto from = draw(scheduled_ns);
+  const auto from = spoilt_ ? std::nullopt : draw(scheduled_ns);
   study::PresentTimes times;
   times.submitted_ns = slots_by_thread_ ? study::RealClock().now_ns() : scheduled_ns;
   if (from) {
@@ -201,7 +224,7 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
 void HeadsetDisplay::hold(std::int64_t until_ns, study::Clock&) {
   if (rules_.hold != study::Hold::State || !playing_) return;
   // What cannot be drawn in time would hold up the next picture.
-  while (loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
+  while (!spoilt_ && loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
     const std::int64_t at_ns = loop_.next_ns() + draw_ns_;
     const auto from = draw(at_ns);
     if (!from) return;

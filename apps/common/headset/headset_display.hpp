@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/headset/frame_loop.hpp"
@@ -16,8 +17,9 @@
 namespace apps {
 
 /// Shows a picture for as long as the schedule says, in every slot that the runtime gives; what it does while
-/// the head moves is the rules' hold mode. Black is a slot without a picture. Destroy stimuli that drew on it
-/// first. All calls on the thread that made it.
+/// the head moves is the rules' hold mode. Black is a slot without a picture. A session that the runtime
+/// loses is made anew in place (FrameLoop). Destroy stimuli that drew on it first. All calls but an
+/// onlooker's on the thread that made it.
 class HeadsetDisplay final : public study::Display {
  public:
   /// Connects, waits until the headset is worn and has settled at its rate. base::Error for what is not
@@ -60,21 +62,28 @@ class HeadsetDisplay final : public study::Display {
   std::vector<HeadsetRecord> next_records();
   /// As take_records(), for whoever keeps the record: what one takes the other still gets.
   std::vector<HeadsetRecord> take_for_record();
-  const HeadsetSession& session() const { return loop_.session(); }
+  SessionFacts session() const { return loop_.session(); }
   const study::HeadsetRules& rules() const { return rules_; }
-  /// Where the eyes will be in the next slot.
-  EyeViews views_now() { return loop_.views_at(loop_.next_ns()); }
   LoopFacts facts() const { return loop_.facts(); }
 
+  /// See FrameLoop.
+  sim::GlContext admit_onlooker() { return loop_.admit_onlooker(); }
+  SeenNow look() { return loop_.look(); }
+  void look_away() { loop_.look_away(); }
+
   /// Whether the participant sees and can answer.
-  bool focused() const { return facts().state == HeadsetState::Focused; }
+  bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }
   /// Whether, since the last question, a picture that was on could not be seen, or the world or the rate
   /// changed under it.
   bool take_spoilt();
+  /// What happened to the session since the last call, for the log: lost, and made anew.
+  std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
  private:
   std::int64_t lead_ns() const;
   void heed();
+  std::optional<double> met_hz() const;
+  void settle_new_session();
   void share_records();
   void check_time_stands_still();
   void await(const std::function<bool()>& ready, const char* problem, const char* mend);
@@ -86,9 +95,11 @@ class HeadsetDisplay final : public study::Display {
   double refresh_hz_ = 0;
   std::int64_t draw_ns_ = 0;  ///< that a picture takes lately; 0: none was drawn, or slots are the caller's
   std::vector<HeadsetRecord> for_pages_, for_record_;
+  std::vector<std::string> news_;
   bool slots_by_thread_;
-  bool playing_ = false;  ///< a presentation is on
-  bool spoilt_ = false;
+  bool playing_ = false;      ///< a presentation is on
+  bool spoilt_ = false;       ///< nothing more of the presentation is shown
+  bool new_session_ = false;  ///< it was made anew, and its rate has not settled yet
 };
 
 /// The time at which what is handed over now would be seen. A wait ends at the slot that is nearest to

@@ -76,9 +76,11 @@ study::GazeSample gaze_of(const HeadsetRecord& record, study::GazeOrigin origin)
   const Triple direction = wide(direction_of(*pose)), place = wide(pose->place_m), from = wide(head.place_m);
   sample.valid = true;
   sample.tracked = pose->turn_tracked;
-  sample.point = point_of(record.views[0], direction);
   study::GazeRay& ray = sample.ray.emplace();
   ray.direction = into(head, direction);
+  // As the picture was drawn: it may have a margin, and the head has moved since.
+  if (record.shown)
+    sample.point = point_of(record.shown->views[0], record.shown->in_head ? ray.direction : direction);
   if (pose->place_valid && head.place_valid)
     ray.origin_m = into(head, {place[0] - from[0], place[1] - from[1], place[2] - from[2]});
   return sample;
@@ -106,14 +108,17 @@ void HeadsetRecorder::drain() {
 
 void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
   study::GazeSample sample = gaze_of(record, origin_);
-  if (sample.valid && sample.device_ns) {
-    if (*sample.device_ns <= last_told_ns_) return;  // the same one again
+  const bool told = sample.device_ns.has_value(), again = told && *sample.device_ns <= last_told_ns_;
+  if (again && sample.valid) return;
+  if (told && !again) {
     last_told_ns_ = *sample.device_ns;
-    lag_ns_ = record.slot.predicted_ns - last_told_ns_;
+    lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_told_ns_);
   } else if (!sample.valid) {
+    // Also where the runtime goes on telling the last sample's time: the eyes are lost.
     sample.device_ns.reset();
-    sample.sampled_ns = record.slot.predicted_ns - lag_ns_;
+    sample.sampled_ns = std::max(record.slot.predicted_ns - lag_ns_, last_ns_);
   }
+  last_ns_ = sample.sampled_ns;
   gaze_.push_back(sample);
 }
 
@@ -133,21 +138,22 @@ void HeadsetRecorder::stop() {
 }
 
 study::HeadsetFacts HeadsetRecorder::facts() const {
-  const HeadsetSession& session = display_.session();
-  const HeadsetNames names = session.names();
+  const SessionFacts session = display_.session();
+  const HeadsetNames& names = session.names;
   study::HeadsetFacts out;
   out.runtime = names.runtime;
   out.runtime_version = names.runtime_version;
   out.headset = names.headset;
   out.format = names.format;
+  out.blend = names.blend;
   out.position_tracking = names.position_tracking;
-  out.times_convert = session.times_convert();
-  out.eye_tracking = session.has_eye_gaze();
+  out.times_convert = session.times_convert;
+  out.eye_tracking = session.eye_gaze;
   out.hold = study::hold_name(display_.rules().hold);
   const HeadsetRate rate = display_.facts().rate;
   out.refresh_told_hz = rate.told_hz;
   out.refresh_measured_hz = rate.measured_hz;
-  const EyeViews views = display_.views_now();
+  const EyeViews views = display_.facts().views;
   for (std::size_t eye = 0; eye < views.size(); ++eye) out.eyes[eye] = facts_of(views[eye]);
   return out;
 }
@@ -163,7 +169,7 @@ std::vector<study::SlotRecord> HeadsetRecorder::take_slots() {
   return std::exchange(slots_, {});
 }
 
-std::optional<double> HeadsetRecorder::ipd_mm() { return ipd_of(display_.views_now()); }
+std::optional<double> HeadsetRecorder::ipd_mm() { return ipd_of(display_.facts().views); }
 
 std::optional<RoomRay> HeadsetRecorder::ray() {
   drain();

@@ -16,7 +16,9 @@ namespace apps {
 
 namespace {
 
-constexpr XrEnvironmentBlendMode opaque = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+/// The one that is chosen, and its name.
+constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+constexpr const char* blend_name = "opaque";
 /// Share of a rate within which a measured one is the one that an event told.
 constexpr double told_well = 0.04;
 
@@ -45,7 +47,7 @@ struct HeadsetSession::Parts {
         xr(connect_to_headset(choice.eye_gaze)),
         system(read_opaque_system(xr)),
         session(xr, system.id, gl),
-        clock(xr),
+        clock(xr, choice.earliest_ns),
         lifecycle(session, clock),
         refresh(session),
         world(session, XR_REFERENCE_SPACE_TYPE_LOCAL),
@@ -99,7 +101,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
     throw base::Error("headset",
                       fmt::format("the runtime has held a frame for {:g} s",
                                   std::chrono::duration<double>(patience).count()),
-                      "start the headset's software anew");
+                      "start the headset's software anew; vip-study resume continues a session");
   }
   check_xr(answer->result, "xrWaitFrame");
   return answer->frame;
@@ -154,7 +156,11 @@ bool HeadsetSession::times_convert() const { return parts_->clock.converts(); }
 bool HeadsetSession::has_eye_gaze() const { return parts_->system.eye_gaze; }
 HeadsetNames HeadsetSession::names() const {
   const auto [runtime, version] = read_runtime(parts_->xr);
-  return {runtime, version, parts_->system.name, gl_format_name(parts_->swapchains[0]->format()),
+  return {runtime,
+          version,
+          parts_->system.name,
+          gl_format_name(parts_->swapchains[0]->format()),
+          blend_name,
           parts_->system.position};
 }
 HeadsetState HeadsetSession::state() const { return parts_->lifecycle.state(); }
@@ -247,7 +253,7 @@ void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
   XrFrameEndInfo info{};
   info.type = XR_TYPE_FRAME_END_INFO;
   info.displayTime = slot.runtime_time;
-  info.environmentBlendMode = opaque;
+  info.environmentBlendMode = blend_mode;
   info.layerCount = static_cast<std::uint32_t>(layers.size());
   info.layers = layers.data();
   parts.session.call<PFN_xrEndFrame>("xrEndFrame", parts.session.get(), &info);

@@ -22,6 +22,8 @@ struct HeadsetChoice {
   double patience_s = 10;                     ///< a wait of the runtime that lasts longer ends the session
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< asked for; see request_rate()
+  /// Where the runtime's times do not convert: their clock does not begin before it.
+  std::int64_t earliest_ns = 0;
 };
 
 /// A picture's turn on the display.
@@ -55,6 +57,7 @@ struct HeadsetLayers {
 struct HeadsetNames {
   std::string runtime, runtime_version, headset;
   std::string format;              ///< of the pictures handed over
+  std::string blend;               ///< environment blend mode that was chosen of those offered
   bool position_tracking = false;  ///< the head's place is followed, not its direction alone
 };
 

@@ -67,6 +67,7 @@ void HeadsetTargets::begin() {
     for (const HeadsetRecord& record : display_.take_for_record()) {
       if (!record.input.head.valid()) continue;
       middle_ = record.input.head;
+      world_ = record.world;
       return;
     }
   }
@@ -90,9 +91,10 @@ void HeadsetTargets::draw() {
 std::vector<study::TargetSample> HeadsetTargets::look_at(double azimuth_deg, double elevation_deg,
                                                          double settle_s, double sample_s,
                                                          const std::function<void()>& check) {
-  const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
-  // Anew where it was not seen: another page stood before it, or the headset was off.
+  // Anew where it was not seen: another page stood before it, the headset was off, or the world moved.
   for (;;) {
+    if (world_ != display_.facts().world && display_.focused()) begin();
+    const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
     if (auto samples = look_once(page, settle_s, sample_s, check)) return *samples;
   }
 }
@@ -109,7 +111,8 @@ std::optional<std::vector<study::TargetSample>> HeadsetTargets::look_once(
   while (display_.now_ns() < until_ns) {
     const std::int64_t before_ns = display_.now_ns();
     if (check) check();
-    if (display_.now_ns() - before_ns > most_checking_ns || !display_.focused()) {
+    const bool moved = display_.facts().world != world_;
+    if (display_.now_ns() - before_ns > most_checking_ns || moved || !display_.focused()) {
       display_.turn();
       return {};
     }

@@ -26,7 +26,8 @@ class HeadsetTargets final : public study::GazeTargets {
                                                             const std::function<void()>& check);
 
   HeadsetDisplay& display_;
-  HeadsetPose middle_;  ///< the head as it was at begin()
+  HeadsetPose middle_;  ///< the head as it was at begin(), or when the world's origin had moved
+  int world_ = 0;       ///< of it
 };
 
 /// Where a target at these angles from straight ahead of a head stands, facing it.

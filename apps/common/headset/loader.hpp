@@ -12,7 +12,14 @@ namespace apps {
 /// The session or the whole runtime is gone; what was made of it can only be destroyed.
 class HeadsetLost final : public base::Error {
  public:
-  using base::Error::Error;
+  HeadsetLost(const std::string& place, const std::string& problem, const std::string& mend,
+              bool with_runtime)
+      : base::Error(place, problem, mend), with_runtime_(with_runtime) {}
+  /// Else another session can be made.
+  bool with_runtime() const { return with_runtime_; }
+
+ private:
+  bool with_runtime_;
 };
 
 /// base::Error that names the call and the result, unless the result is a success: positive codes are none of

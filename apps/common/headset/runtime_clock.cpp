@@ -1,11 +1,13 @@
 #include "apps/common/headset/runtime_clock.hpp"
 
+#include <algorithm>
+
 #include "libstudy/base/clock.hpp"
 
 namespace apps {
 
-RuntimeClock::RuntimeClock(const XrConnection& xr)
-    : xr_(xr), converts_(xr.has(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)) {}
+RuntimeClock::RuntimeClock(const XrConnection& xr, std::int64_t earliest_ns)
+    : xr_(xr), converts_(xr.has(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)), earliest_ns_(earliest_ns) {}
 
 std::int64_t RuntimeClock::to_ns(XrTime time) {
   if (time <= 0) return -1;
@@ -17,7 +19,7 @@ std::int64_t RuntimeClock::to_ns(XrTime time) {
     check_xr(result, "xrConvertTimeToTimespecTimeKHR");
     return found.tv_sec * 1'000'000'000 + found.tv_nsec;
   }
-  if (!guessed_) ahead_ns_ = time - study::RealClock().now_ns();
+  if (!guessed_) ahead_ns_ = time - std::max(study::RealClock().now_ns(), earliest_ns_);
   guessed_ = true;
   return time - ahead_ns_;
 }

@@ -8,10 +8,10 @@
 namespace apps {
 
 /// Nanoseconds of CLOCK_MONOTONIC, by XR_KHR_convert_timespec_time. Where that is not offered, the relation
-/// between the clocks is guessed once: the first time asked for is now.
+/// between the clocks is guessed once: the first time asked for is now, or earliest_ns where that is later.
 class RuntimeClock {
  public:
-  explicit RuntimeClock(const XrConnection& xr);
+  explicit RuntimeClock(const XrConnection& xr, std::int64_t earliest_ns = 0);
   bool converts() const { return converts_; }
   /// -1 for a time that the runtime itself does not know.
   std::int64_t to_ns(XrTime time);
@@ -20,7 +20,7 @@ class RuntimeClock {
   const XrConnection& xr_;
   bool converts_;
   bool guessed_ = false;
-  std::int64_t ahead_ns_ = 0;
+  std::int64_t earliest_ns_, ahead_ns_ = 0;
 };
 
 }  // namespace apps

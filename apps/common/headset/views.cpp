@@ -1,7 +1,5 @@
 #include "apps/common/headset/views.hpp"
 
-#include <cmath>
-
 namespace apps {
 
 bool can_be_shown(const EyeViews& views) { return views[0].pose.valid() && views[1].pose.valid(); }
@@ -31,19 +29,6 @@ study::EyeView study_view(const EyeView& eye, int x_px, double world_scale) {
   out.width_px = eye.width_px;
   out.height_px = eye.height_px;
   return out;
-}
-
-sim::View view_of(const EyeView& eye, double near_m, double far_m) {
-  sim::View view;
-  const auto& [x, y, z] = eye.pose.place_m;
-  const auto& turn = eye.pose.turn;
-  view.view = sim::rigid_inverse(sim::rigid_pose({x, y, z}, {turn[0], turn[1], turn[2], turn[3]}));
-  view.projection = sim::frustum(std::tan(eye.fov.left), std::tan(eye.fov.right), std::tan(eye.fov.down),
-                                 std::tan(eye.fov.up), near_m, far_m);
-  view.viewport = {0, 0, eye.width_px, eye.height_px};
-  view.near_m = near_m;
-  view.far_m = far_m;
-  return view;
 }
 
 }  // namespace apps

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "libsim/view/camera.hpp"
 #include "libstudy/display/canvas.hpp"
 
 namespace apps {
@@ -46,8 +45,5 @@ std::array<float, 3> direction_of(const HeadsetPose& pose);
 /// An eye as stimuli take it, whose picture begins at x_px of the canvas. world_scale: metres of the room for
 /// a metre of the scene.
 study::EyeView study_view(const EyeView& eye, int x_px, double world_scale = 1);
-
-/// The same eye as the renderers take it, 0 < near_m < far_m.
-sim::View view_of(const EyeView& eye, double near_m, double far_m);
 
 }  // namespace apps

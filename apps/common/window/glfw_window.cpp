@@ -79,6 +79,8 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor), l
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+    if (choice.in_background) glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
+    if (choice.in_background) glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
     const bool whole = choice.width_px == 0 || choice.height_px == 0;
     GLFWmonitor* monitor = whole ? find_monitor(choice.monitor, choice.mend) : nullptr;
     const Monitor mode = describe(monitor);

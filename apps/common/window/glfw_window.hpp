@@ -17,7 +17,8 @@ struct WindowChoice {
   std::string title;
   int width_px = 0, height_px = 0;  ///< 0: the whole of `monitor`
   int monitor = 0;                  ///< 0: the primary one
-  std::string mend;                 ///< what to do where there is no display, for messages
+  std::string mend{};               ///< what to do where there is no display, for messages
+  bool in_background = false;       ///< takes no keyboard from another window when it opens
 };
 
 /// A monitor as the system describes it.

@@ -79,7 +79,10 @@ void HeadsetSurface::take_in(const std::vector<HeadsetRecord>& records) {
 
 void HeadsetSurface::take_in(const HeadsetRecord& record) {
   const std::int64_t now_ns = record.slot.predicted_ns;
-  if (record.input.head.valid()) head_ = record.input.head;
+  if (record.input.head.valid()) {
+    head_ = record.input.head;
+    head_world_ = record.world;
+  }
   if (be_away(record.input.focused, now_ns)) return;
   take_hands(record.input.hands, now_ns);
   if (ways_.dwell) take_look(record.input, now_ns);
@@ -88,7 +91,7 @@ void HeadsetSurface::take_in(const HeadsetRecord& record) {
 /// Nothing counts then, and what is held down when it is over.
 bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   if (!focused && !away_since_ns_) {
-    away_since_ns_ = now_ns;
+    away_since_ns_ = last_ns_.value_or(now_ns);  // no slots come while it is off or its session is lost
     pointer_.reset();
     pressed_ = false;
     dwell_.reset();
@@ -98,6 +101,7 @@ bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
     away_since_ns_.reset();
     hand_keys_.forget();
   }
+  last_ns_ = now_ns;
   return !focused;
 }
 
@@ -131,7 +135,7 @@ void HeadsetSurface::take_hands(const HeadsetHands& hands, std::int64_t now_ns) 
 
 /// Along the eyes' ray or, without a tracker, the head's.
 void HeadsetSurface::take_look(const HeadsetInput& input, std::int64_t now_ns) {
-  const bool eyes = display_.session().has_eye_gaze();
+  const bool eyes = display_.session().eye_gaze;
   const HeadsetPose ray = !eyes ? input.head : input.gaze ? input.gaze->ray : HeadsetPose();
   const bool seen = ray.valid();
   if (clicks_ > 0) --clicks_;  // the eyes move on while the button goes down and up
@@ -196,7 +200,10 @@ void HeadsetSurface::end() {
 
 void HeadsetSurface::show() {
   if (!page_) display_.clear();  // what was shown before would stand still around the page
-  if (!page_ || is_left_behind(*page_, head_)) page_ = place_page(head_);
+  if (!page_ || page_world_ != head_world_ || is_left_behind(*page_, head_)) {
+    page_ = place_page(head_);
+    page_world_ = head_world_;
+  }
   display_.show_page(*page_);
 }
 

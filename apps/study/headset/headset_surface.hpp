@@ -70,14 +70,16 @@ class HeadsetSurface final : public PageSurface {
   std::vector<PageEvent> events_;
   std::optional<std::pair<std::int64_t, std::int64_t>> away_;
   std::optional<std::int64_t> away_since_ns_;
-  HeadsetPose head_;                 ///< the last one that was known
-  std::optional<HeadsetPage> page_;  ///< where it stands; none: it is not shown
-  Place pointer_;                    ///< px on the page
-  Place stick_from_;                 ///< where the pointer was when the stick was pushed: it is put away
-  bool pressed_ = false;             ///< the pointer's button
-  int clicks_ = 0;                   ///< pictures until a click of the eyes is over
-  std::size_t hand_ = 1;             ///< that pointed last
-  std::int64_t used_ns_;             ///< steady clock
+  std::optional<std::int64_t> last_ns_;  ///< of the slot before
+  HeadsetPose head_;                     ///< the last one that was known
+  int head_world_ = 0, page_world_ = 0;  ///< in which it was, and the page is
+  std::optional<HeadsetPage> page_;      ///< where it stands; none: it is not shown
+  Place pointer_;                        ///< px on the page
+  Place stick_from_;                     ///< where the pointer was when the stick was pushed: it is put away
+  bool pressed_ = false;                 ///< the pointer's button
+  int clicks_ = 0;                       ///< pictures until a click of the eyes is over
+  std::size_t hand_ = 1;                 ///< that pointed last
+  std::int64_t used_ns_;                 ///< steady clock
 };
 
 }  // namespace apps

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int most_width_px = 640;
 constexpr std::chrono::milliseconds between_pictures{100};
-constexpr const char* title = "vip-study: the participant's view (logged)";
 
 GlfwWindow::Size mirror_size(GlfwWindow::Size picture) {
   const int width = std::min(picture.width, most_width_px);
@@ -40,7 +39,7 @@ GLFWmonitor* experimenters_monitor(GLFWwindow* participant) {
 }
 
 /// In the lower right corner of its monitor, without the keyboard.
-GLFWwindow* open_window(GLFWwindow* participant, GlfwWindow::Size size) {
+GLFWwindow* open_window(GLFWwindow* participant, GlfwWindow::Size size, const char* title) {
   GLFWmonitor* const monitor = experimenters_monitor(participant);
   glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
   glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
@@ -63,10 +62,11 @@ GlfwWindow::Size framebuffer_size(GLFWwindow* window) {
 
 }  // namespace
 
-MirrorWindow::MirrorWindow(const GlfwWindow& participant)
+MirrorWindow::MirrorWindow(const GlfwWindow& participant, bool logged)
     : from_(participant.size()),
       size_(mirror_size(from_)),
-      window_(open_window(participant.get(), size_)),
+      window_(open_window(participant.get(), size_,
+                          logged ? "vip-study: the participant's view (logged)" : "vip-study: pages")),
       shown_(framebuffer_size(window_)),
       copies_{sim::Offscreen(size_.width, size_.height), sim::Offscreen(size_.width, size_.height)},
       thread_([this] { show_all(); }) {

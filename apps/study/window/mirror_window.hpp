@@ -16,9 +16,10 @@ namespace apps {
 /// second, and waits for no screen. What happens at the window counts for nothing.
 class MirrorWindow {
  public:
-  /// In the thread and with the current context of the participant's window, which outlives it. base::Error
+  /// In the thread and with the current context of the participant's window, which outlives it. logged: its
+  /// title says so. base::Error
   /// when that window fills the only monitor.
-  explicit MirrorWindow(const GlfwWindow& participant);
+  MirrorWindow(const GlfwWindow& participant, bool logged);
   ~MirrorWindow();
   MirrorWindow(const MirrorWindow&) = delete;
   MirrorWindow& operator=(const MirrorWindow&) = delete;

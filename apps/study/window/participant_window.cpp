@@ -74,10 +74,13 @@ void ParticipantWindow::show() {
   glfwSwapBuffers(window_.get());
 }
 
-void ParticipantWindow::open_mirror() { mirror_ = std::make_unique<MirrorWindow>(window_); }
+void ParticipantWindow::open_mirror(bool reveal) {
+  mirror_ = std::make_unique<MirrorWindow>(window_, reveal);
+  mirror_reveals_ = reveal;
+}
 
 void ParticipantWindow::mirror(unsigned framebuffer) {
-  if (mirror_) mirror_->take_some(framebuffer);
+  if (mirror_ && mirror_reveals_) mirror_->take_some(framebuffer);
 }
 
 std::vector<PageEvent> ParticipantWindow::take_events() {

@@ -38,9 +38,10 @@ class ParticipantWindow final : public PageSurface {
   bool unseen() const override { return window_.minimised(); }
   void set_over(bool over) override { over_ = over; }
 
-  /// From now on the experimenter sees the participant's view too. base::Error as MirrorWindow.
-  void open_mirror();
-  /// For the mirror, where one is open: the picture of a stimulus in this framebuffer object, which was just
+  /// From now on the experimenter sees the participant's pages too and, with reveal, stimuli: black without.
+  /// base::Error as MirrorWindow.
+  void open_mirror(bool reveal);
+  /// For a mirror that reveals it: the picture of a stimulus in this framebuffer object, which was just
   /// handed over.
   void mirror(unsigned framebuffer);
 
@@ -66,6 +67,7 @@ class ParticipantWindow final : public PageSurface {
   Gamepad gamepad_;
   bool over_ = false;  ///< see set_over()
   std::unique_ptr<MirrorWindow> mirror_;
+  bool mirror_reveals_ = false;
 };
 
 }  // namespace apps

@@ -1,5 +1,6 @@
 #include "apps/study/window_parts.hpp"
 
+#include "apps/common/window/headset_mirror.hpp"
 #include "apps/study/desk/mouse_gaze.hpp"
 #include "apps/study/pages/page_participant.hpp"
 #include "apps/study/window/participant_window.hpp"
@@ -64,9 +65,13 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   parts.mouse = std::make_unique<WindowMouse>(window);
   parts.poll = [window] { window->poll(0); };
   parts.idle = [window] { return window->window().idle_s(); };
-  parts.open_mirror = [window] { window->open_mirror(); };
+  parts.open_mirror = [window](bool reveal) { window->open_mirror(reveal); };
   parts.wish = [pages](const std::function<study::Wish()>& others) { return pages->wish(others); };
   return parts;
+}
+
+std::shared_ptr<void> open_headset_mirror(HeadsetDisplay& display, bool reveal) {
+  return std::make_shared<HeadsetMirror>(display, reveal);
 }
 
 }  // namespace apps

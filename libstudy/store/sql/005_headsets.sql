@@ -89,10 +89,10 @@ CREATE TABLE gaze_2 (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   sample_index INTEGER NOT NULL CHECK (sample_index >= 0), -- from 0
   source TEXT NOT NULL CHECK (source IN ('tracker', 'head', 'mouse')), -- tracker: an eye tracker; head: straight ahead of the head, which is no eye; mouse: the pointer, which people often do not look at
-  sampled_ns INTEGER NOT NULL, -- when the sample came, after the presentation's start_ns; of a headset: when the eyes were there where its runtime tells that, else the predicted time of the slot, ns
+  sampled_ns INTEGER NOT NULL, -- when the sample came, after the presentation's start_ns; of a headset: when the eyes were there where its runtime tells that, else the predicted time of the slot; of a headset and not valid, where no time is told: that time less the greatest age of a sample so far, and not before the last sample, ns
   device_ns INTEGER, -- the device's own time stamp; of a headset: the time of the sample on the session's clock as the runtime tells it; empty: it gives none, ns
   valid INTEGER NOT NULL CHECK (valid IN (0, 1)), -- 1: the source knew where; 0: a blink, or a pointer off the picture
-  x REAL, -- from the left edge, as a share of the picture's width; empty: not known
+  x REAL, -- from the left edge, as a share of the picture's width; of a headset: on the left eye's picture as it was drawn, with its margin; empty: not known, or black
   y REAL, -- from the top edge, as a share of the picture's height; empty: not known
   tracked INTEGER CHECK (tracked IN (0, 1)), -- 1: of the source's usual quality; 0: sub-nominal, a guess of the runtime (OpenXR's valid without tracked); empty: the source does not tell
   origin_x_m REAL, -- where the ray of gaze begins, in the head's frame (right, up and back of the middle between the eyes): to the right; empty: no ray, m

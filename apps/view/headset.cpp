@@ -1,0 +1,157 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/common/fluid_stimulus.hpp"
+#include "apps/common/headset/headset_recorder.hpp"
+#include "apps/view/options.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "stats/base/error.hpp"
+#include "stats/fps_window.hpp"
+
+namespace apps {
+
+namespace {
+
+std::sig_atomic_t volatile interrupted = 0;
+
+/// While it lives, Ctrl-C ends the view in order: the runtime sees the session end.
+class Interrupt {
+ public:
+  Interrupt() : before_(std::signal(SIGINT, [](int) { interrupted = 1; })) { interrupted = 0; }
+  ~Interrupt() { std::signal(SIGINT, before_); }
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+/// What was shown.
+struct Shown {
+  int frames = 0;
+  stats::FpsWindow fps{30};
+  std::string ended;
+};
+
+/// The scene around the person, as fast as its own time goes, or slower where the fluid takes longer.
+class HeadsetViewer {
+ public:
+  HeadsetViewer(HeadsetDisplay& display, const ViewOptions& options)
+      : frames_(options.frames),
+        display_(display),
+        clock_(display),
+        recorder_(display,
+                  display.session().eye_gaze ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
+    recorder_.start();  // nothing of it is kept
+    fmt::print("shown in    {}\n", display.description());
+    fmt::print("levels      follow {}\n",
+               display.session().eye_gaze ? "the eye tracker" : "the head's direction");
+    PreparedFluid prepared = prepare_fluid(options);
+    prepared.scene.view = prepared.camera;
+    frame_ns_ = std::llround(1e9 * prepared.scene.frame_dt_s);
+    Viewing viewing;
+    viewing.ray = [this] { return recorder_.ray(); };
+    // It begins once: no step is behind another.
+    const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
+    const auto make = [fluid] { return std::move(*fluid); };
+    fluid_.emplace(prepared.scene, prepared.scene.frame_dt_s, prepared.scene.name, make, viewing);
+  }
+
+  Shown run() {
+    Shown shown;
+    try {
+      play(shown);
+    } catch (const base::Error&) {
+      if (display_.facts().state != HeadsetState::Exiting) throw;
+      shown.ended = "the headset's software asked to leave";
+    }
+    return shown;
+  }
+
+ private:
+  void play(Shown& shown) {
+    std::int64_t due_ns = 0, on_ns = 0;
+    while (!interrupted && (!frames_ || shown.frames < *frames_)) {
+      if (!seen()) {  // the fluid waits for who watches it
+        on_ns = 0;
+        display_.turn();
+        continue;
+      }
+      display_.take_spoilt();  // the next picture is drawn anew in any case
+      const std::int64_t before_ns = display_.now_ns();
+      fluid_->prepare(shown.frames);
+      recorder_.take();
+      recorder_.take_slots();
+      display_.render(*fluid_);
+      const std::int64_t computed_ns = display_.now_ns() - before_ns;
+      // The slot that is the nearest to when the frame is due, or the first one that can be met.
+      const auto period_ns = std::llround(1e9 / display_.refresh_hz());
+      const auto times = display_.present(display_.first_onset(due_ns - period_ns / 2), clock_);
+      if (on_ns > 0 && times.predicted_display_ns > on_ns)
+        shown.fps.push(1e-9 * static_cast<double>(times.predicted_display_ns - on_ns));
+      on_ns = times.predicted_display_ns;
+      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // what is behind is not made up
+      due_ns += frame_ns_;
+      ++shown.frames;
+      display_.hold(due_ns - computed_ns, clock_);
+    }
+    shown.ended = interrupted ? "by Ctrl-C" : "after its frames";
+  }
+
+  bool seen() const {
+    const HeadsetState state = display_.facts().state;
+    return state == HeadsetState::Visible || state == HeadsetState::Focused;
+  }
+
+  std::optional<int> frames_;
+  HeadsetDisplay& display_;
+  HeadsetClock clock_;
+  HeadsetRecorder recorder_;
+  std::optional<LiveFluid> fluid_;
+  std::int64_t frame_ns_ = 0;  ///< of the fluid
+};
+
+void print(const Shown& shown) {
+  const stats::FpsMoments fps = shown.fps.moments();
+  fmt::print("frames      {}, of the last {} mean {:.1f}, SD {:.1f} frames/s\n", shown.frames, fps.frames,
+             fps.mean, fps.sd);
+  fmt::print("ended       {}\n", shown.ended);
+}
+
+/// None where there is no headset; says why.
+std::unique_ptr<HeadsetDisplay> connect(const std::string& clock) {
+  const bool stands_still = clock == "virtual";
+  study::HeadsetRules rules;
+  rules.hold = study::Hold::State;
+  ::setenv("XR_LOADER_DEBUG", "none", 0);  // one line says what is missing: ours
+  try {
+    return std::make_unique<HeadsetDisplay>(stands_still ? SlotDrive::Caller : SlotDrive::Thread,
+                                            HeadsetChoice{.eye_gaze = true}, rules);
+  } catch (const base::Error& error) {
+    if (stands_still) throw;  // nobody is there to watch
+    const std::string told = error.what();
+    fmt::print(stderr, "no headset: {}; shown on the desktop\n", told.substr(0, told.find('\n')));
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+void run_in_headset(const ViewOptions& options) {
+  if (options.overlay != "none")
+    throw base::Error("--overlay " + options.overlay, "is not painted in a headset",
+                      "leave it out, or use --display window");
+  const auto display = connect(options.clock);
+  if (!display) return run_window(options);
+  const Interrupt interrupt;
+  print(HeadsetViewer(*display, options).run());
+}
+
+}  // namespace apps
