@@ -319,10 +319,10 @@ class FluidSimulation final : public Simulation {
   Schedule schedule_;
   SubstepRule substeps_;
   SubstepCount substeps_taken_;
-  TwoFramesAgo<double> compression_;  ///< mean of max(rho / rho_0 - 1, 0)
   ToleranceSwitch tolerance_;
   GlSharing gl_{GlSharing::Access::Overwrite};
   int frame_;
+  TwoFramesAgo<double> compression_;           ///< mean of max(rho / rho_0 - 1, 0)
   int finest_level_ = 0, coarsest_level_ = 0;  ///< that particles can have
   AccountKeeper keeper_;
 };
