@@ -52,8 +52,9 @@ struct SimulationOptions {
   std::int64_t particle_capacity = 0;          ///< of these methods; 0 = 8 n_*
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
   int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
-  int substeps = 0;          ///< a frame; 0 = by the scene's rule
-  double frame_dt_s = 0;     ///< 0 = the scene's
+  int substeps = 0;          ///< in every frame; 0 = as many as the fastest particle asks for (scene.hpp)
+  int most_substeps = 0;  ///< a frame, where the fastest particle is followed; 0 = 32, or the scene's least
+  double frame_dt_s = 0;  ///< 0 = the scene's
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
@@ -73,9 +74,9 @@ struct SimulationOptions {
   // (libsim/solver/stages/fluid_state.hpp).
   double relaxation = -1;
   double tensile = -1;
-  double viscosity = -1;
+  double viscosity_m2_s = -1;
   double momentum = -1;
-  double longest_step = -1;
+  double courant = -1;
   int coarse_cycles = -1;
   double coarse_edge = -1;
 };
@@ -127,6 +128,12 @@ struct FrameAccount {
   }
 };
 
+/// Substeps of a frame.
+struct SubstepCount {
+  int taken = 0;   ///< 0 = no frame yet
+  int wished = 0;  ///< that the fastest particle asked for: more than were taken where the most of them bound
+};
+
 /// Milliseconds of the last frame's parts, as the paper's Table 2 splits them.
 struct PartTimes {
   double saliency_ms = 0;    ///< Eq. 1-9
@@ -143,7 +150,8 @@ struct RelaxedStart {
 
 /// State of the fluid after a frame.
 struct FrameReport {
-  int frame = 0;  ///< frames since the gate opened
+  int frame = 0;          ///< frames since the gate opened
+  SubstepCount substeps;  ///< of the last frame
   double time_s = 0;
   std::int64_t particles = 0;
   std::vector<std::int64_t> particles_by_level;  ///< up to the coarsest level that is present
@@ -198,6 +206,8 @@ class Simulation {
   virtual void frame_time(double) {}
   /// Of the frame that step_frame computed last; before the first, who is there.
   virtual const FrameAccount& account() const = 0;
+  /// Of the frame that step_frame computed last.
+  virtual SubstepCount substeps() const { return {}; }
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;

@@ -37,6 +37,7 @@ struct FrameOptions {
   std::string json;
   int frames = 100;
   int warm_up = 5;
+  int measure_every = 0;
   sim::SimulationOptions
       fluid;  ///< the solver's numbers; method, n_* and back end are read from the words above
   bool no_render = false;
@@ -66,8 +67,7 @@ double h_over_d(const sim::Simulation& fluid) {
   return particles.empty() ? 0 : 4 * static_cast<double>(particles.front().radius_m) / fluid.spacing_m();
 }
 
-/// Density error averaged over ten states spread over the run, so that one calm or wild moment does not
-/// decide.
+/// Density error averaged over states spread over the run, so that one calm or wild moment does not decide.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;
@@ -103,6 +103,18 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
   return out;
 }
 
+/// Substeps over all frames.
+struct Substeps {
+  int taken = 0, most = 0;
+  int bound = 0;  ///< frames whose fastest particle asked for more than were allowed
+  void add(sim::SubstepCount count) {
+    taken += count.taken;
+    most = std::max(most, count.taken);
+    bound += count.wished > count.taken;
+  }
+  double mean(int frames) const { return static_cast<double>(taken) / frames; }
+};
+
 /// What each frame's account says, and the share of particles solved over all of them.
 struct Accounts {
   nlohmann::json all = nlohmann::json::array();
@@ -129,13 +141,15 @@ nlohmann::json run_frames(const FrameOptions& options) {
   Accuracy accuracy;
   Accounts accounts;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
-  const int stride = std::max(1, options.frames / 10);
+  const int stride = options.measure_every > 0 ? options.measure_every : std::max(1, options.frames / 10);
+  Substeps substeps;
   for (int frame = 0; frame < options.frames; ++frame) {
     if (pictures.watcher) pictures.watcher->look(*fluid);
     const double start = milliseconds_now();
     fluid->step_frame();
     fluid->synchronize();
     solve_ms.push_back(milliseconds_now() - start);
+    substeps.add(fluid->substeps());
     if (pictures.timer) {
       const auto times = pictures.timer->draw(*fluid);
       frame_ms.push_back(solve_ms.back() + times.transfer + times.render);
@@ -174,6 +188,10 @@ nlohmann::json run_frames(const FrameOptions& options) {
       {"neighbours_mean", accuracy.neighbours_mean},
       {"density_error_mean", accuracy.error_mean},
       {"density_max", accuracy.density_max},
+      {"states_measured", accuracy.samples},
+      {"substeps_mean", substeps.mean(options.frames)},
+      {"substeps_most", substeps.most},
+      {"frames_short_of_substeps", substeps.bound},
       {"speed_max_m_s", report.speed_max_m_s},
       {"particle_bytes", fluid->particle_bytes()},
       {"temporal",
@@ -222,6 +240,10 @@ void print_table(const nlohmann::json& result) {
   std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
               100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
   const auto& temporal = result["temporal"];
+  std::printf(
+      "  substeps     %8.2f a frame on average, %d at most; %d frames asked for more than were allowed\n",
+      result["substeps_mean"].get<double>(), result["substeps_most"].get<int>(),
+      result["frames_short_of_substeps"].get<int>());
   std::printf("  temporal     tau %s frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
               temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
               temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
@@ -254,8 +276,10 @@ void add_frame_command(CLI::App& app) {
                     "Temporal acceleration also for a method without it");
   add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
   add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
-  command->add_option("--substeps", options->fluid.substeps, "Substeps a frame; 0 = the scene's rule")
-      ->check(CLI::Range(0, 64));
+  auto* substeps = command
+                       ->add_option("--substeps", options->fluid.substeps,
+                                    "Substeps in every frame; 0 = as many as the fastest particle asks for")
+                       ->check(CLI::Range(0, 64));
   command->add_option("--iterations", options->fluid.iterations, "Projections a substep; 0 = the scene's")
       ->check(CLI::Range(0, 64));
   command->add_option("--dt", options->fluid.frame_dt_s, "Frame step in s; the scene's when left out")
@@ -263,9 +287,19 @@ void add_frame_command(CLI::App& app) {
   command->add_option("--relaxation", options->fluid.relaxation, "Constraint relaxation")
       ->check(number_in(0.0, 100.0));
   command->add_option("--tensile", options->fluid.tensile, "s_corr strength")->check(number_in(0.0, 100.0));
-  command->add_option("--viscosity", options->fluid.viscosity, "XSPH c")->check(number_in(0.0, 100.0));
-  command->add_option("--longest-step", options->fluid.longest_step, "Speed limit in h a substep")
-      ->check(number_in(0.0, 100.0));
+  command
+      ->add_option("--viscosity", options->fluid.viscosity_m2_s,
+                   "Kinematic viscosity in m2/s; the scene's when left out")
+      ->check(number_in(0.0, 1e3));
+  command
+      ->add_option("--courant", options->fluid.courant,
+                   "Way of the fastest particle in a substep at most, in h; the scene's when left out")
+      ->check(number_in(0.05, 4.0));
+  command
+      ->add_option("--most-substeps", options->fluid.most_substeps,
+                   "Substeps a frame at most while the fastest particle is followed")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(substeps);
   command->add_option("--momentum", options->fluid.momentum, "Share of the last projection taken again")
       ->check(number_in(0.0, 100.0));
   command
@@ -274,6 +308,8 @@ void add_frame_command(CLI::App& app) {
       ->check(CLI::Range(0, 16));
   command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
       ->check(number_in(0.5, 8.0));
+  add_count(*command, "--measure-every", options->measure_every, 0, 100000,
+            "Measure the density every so many frames, untimed; 0 = ten times");
   command->add_flag("--passes", options->passes, "Also time every launch of the solver (slows it down)");
   auto* no_render = command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command

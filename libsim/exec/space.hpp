@@ -133,6 +133,8 @@ struct OneLane {
     all = mine;
     return 0;
   }
+  /// What any lane has written is there for all.
+  SIM_FN void wait() const {}
 };
 
 #ifdef SIM_CUDA
@@ -206,6 +208,7 @@ struct Lanes {
     all = __popc(votes & whole);
     return __popc(votes & ((1u << rank()) - 1));
   }
+  __device__ void wait() const { __syncwarp(mask()); }
 
  private:
   static constexpr unsigned whole = (1u << Size) - 1;
@@ -278,6 +281,17 @@ SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
+/// *target += amount; gives what it was.
+SIM_FN int atomic_take(int* target, int amount) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(target, amount);
+#else
+  const int was = *target;
+  *target += amount;
+  return was;
+#endif
+}
+
 SIM_FN void atomic_max(int* target, int value) {
 #ifdef __CUDA_ARCH__
   atomicMax(target, value);
@@ -343,6 +357,17 @@ template <class T>
 void atomic_add(T* target, T value) {
 #pragma omp atomic
   *target += value;
+}
+
+/// *target += amount; gives what it was.
+inline int atomic_take(int* target, int amount) {
+  int was;
+#pragma omp atomic capture
+  {
+    was = *target;
+    *target += amount;
+  }
+  return was;
 }
 
 inline void atomic_max(int* target, int value) {

@@ -18,6 +18,7 @@ struct Jets {
   bool by_target = false;  ///< the layers' level follows the targets round the mouth
   int level = 0;           ///< of the particles that are poured
   int frame = 0;           ///< the frame that begins
+  bool pouring = false;    ///< this frame began with new layers
   CornerColumns columns;
   Exchange exchange;
   Array<int> mass_by_target;   ///< near a mouth

@@ -35,6 +35,11 @@ struct MixedRows {
   }
 };
 
+struct EmptyStore {
+  NeighbourList::Need* need;
+  SIM_FN void operator()(int) const { need->stored = 0; }
+};
+
 template <class Rows, class Selection>
 struct ListNeighbours {
   Selection select;
@@ -44,7 +49,9 @@ struct ListNeighbours {
   Neighbours list;
   int* entry;
   int* count;
-  int* longest;
+  int* store;
+  int store_size;
+  NeighbourList::Need* need;
   std::uint64_t* dropped;
   float margin;
 
@@ -59,10 +66,7 @@ struct ListNeighbours {
     SIM_FN void operator()(int begin, int end) const {
       for (int first = begin; first < end; first += Team::size) {
         const int j = first + team.rank();
-        const Vec4 other = task.predicted[j < end ? j : begin];
-        const Vec3 offset = xyz(self) - xyz(other);
-        const float radius = task.margin * 0.5f * (self.w + other.w);
-        const bool near = dot(offset, offset) < radius * radius && j != i && j < end;
+        const bool near = task.near(self, task.predicted[j < end ? j : begin]) && j != i && j < end;
         int all;
         const int place = found + team.before(near, all);
         task.append(slot, place, j, near);
@@ -80,14 +84,42 @@ struct ListNeighbours {
     int found = 0;
     const Vec4 self = predicted[i];
     rows(cell_of[i], self, margin, Take<Team>{*this, team, slot, i, self, found});
+    team.wait();
     if (team.rank() > 0) return;
-    // The last slot only takes what is not kept.
-    const int kept = list.capacity - 1;
-    if (found > kept) {
-      atomic_add(dropped, static_cast<std::uint64_t>(found - kept));
-      atomic_max(longest, found);
+    count[slot] = found;
+    if (found > list.room()) put_in_store(slot, i, self, found);
+  }
+
+  struct Put {
+    const ListNeighbours& task;
+    int i;
+    Vec4 self;
+    int* next;
+    SIM_FN void operator()(int begin, int end) {
+      for (int j = begin; j < end; ++j) {
+        if (j != i && task.near(self, task.predicted[j])) *next++ = j;
+      }
     }
-    count[slot] = found < kept ? found : kept;
+  };
+
+  /// Walks the cells once more for what has no room of its own; few particles do, and one lane is enough.
+  SIM_FN void put_in_store(int slot, int i, Vec4 self, int found) const {
+    atomic_max(&need->longest, found);
+    const int first = atomic_take(&need->stored, found);
+    if (first > store_size - found) {
+      atomic_add(dropped, static_cast<std::uint64_t>(found - list.room()));
+      count[slot] = list.room();
+      return;
+    }
+    Put put{*this, i, self, store + first};
+    rows(cell_of[i], self, margin, [&put](int begin, int end) { put(begin, end); });
+    entry[list.place(slot, 0)] = first;
+  }
+
+  SIM_FN bool near(Vec4 self, Vec4 other) const {
+    const Vec3 offset = xyz(self) - xyz(other);
+    const float radius = margin * 0.5f * (self.w + other.w);
+    return dot(offset, offset) < radius * radius;
   }
 
   SIM_FN void append(int slot, int place, int j, bool near) const {
@@ -116,14 +148,16 @@ void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, S
   entry_.reserve(entries(room));
   count_.resize(n);
   entry_.resize(entries(n));
-  if (longest_.size() == 0) {
-    longest_.resize(1);
-    longest_.zero();
+  if (need_.size() == 0) {
+    store_.resize(least_store);
+    need_.from_host({{0, 0}});
   }
+  for_each("empty store", 1, EmptyStore{need_.data()});
   for_each_team(
       "list neighbours", particles.size(),
       ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows, view(),
-                                      entry_.data(), count_.data(), longest_.data(), dropped, margin});
+                                      entry_.data(), count_.data(), store_.data(),
+                                      static_cast<int>(store_.size()), need_.data(), dropped, margin});
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
@@ -169,13 +203,34 @@ void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {
   entry_.from_host(entries);
 }
 
-bool NeighbourList::grow() { return longest_.size() > 0 && grow(longest_.to_host()[0]); }
+std::vector<std::vector<int>> NeighbourList::lists() const {
+  const auto count = count_.to_host();
+  const auto entry = entry_.to_host();
+  const auto store = store_.to_host();
+  const Neighbours on_host{count.data(), entry.data(), store.data(), capacity_};
+  std::vector<std::vector<int>> out(count.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const int slot = static_cast<int>(i);
+    for (int k = 0; k < count[i]; ++k) out[i].push_back(on_host(slot, k));
+  }
+  return out;
+}
 
-bool NeighbourList::grow(int longest) {
-  if (longest < capacity_ || capacity_ >= most_capacity) return false;
-  capacity_ = std::min(most_capacity, (longest + 1) * 5 / 4);
-  longest_.zero();
-  return true;
+bool NeighbourList::grow() { return need_.size() > 0 && grow(need_.to_host()[0]); }
+
+bool NeighbourList::grow(Need met) {
+  bool grew = false;
+  if (const auto stored = static_cast<std::size_t>(met.stored);
+      stored > store_.size() && store_.size() < most_store) {
+    store_.resize(std::min(most_store, 2 * stored));
+    grew = true;
+  }
+  if (met.longest >= capacity_ && capacity_ < most_capacity) {
+    capacity_ = std::min(most_capacity, (met.longest + 1) * 5 / 4);
+    grew = true;
+  }
+  if (grew) need_.zero();
+  return grew;
 }
 
 }  // namespace sim::SIM_BACKEND

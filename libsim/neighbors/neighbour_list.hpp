@@ -14,13 +14,28 @@ constexpr int list_interleave = 32;
 constexpr int list_interleave = 1;
 #endif
 
-/// The list as kernels see it. i is a slot of the pass that reads it (particles/selection.hpp): the particle
+/// One particle's neighbours.
+struct NeighbourRun {
+  const int* first;
+#ifdef SIM_CUDA
+  int stride;
+#else
+  static constexpr int stride = 1;  // known to the compiler, which loads several at once
+#endif
+  SIM_FN int operator[](int k) const { return first[k * stride]; }
+};
+
+/// The list as kernels see it. A list that is longer than its room lies whole in a common store, and its
+/// first entry says where. i is a slot of the pass that reads it (particles/selection.hpp): the particle
 /// itself while everyone is solved.
 struct Neighbours {
   const int* count;
   const int* entry;
+  const int* store;
   int capacity;
   SIM_FN int size(int i) const { return count[i]; }
+  /// The longest list that has room of its own: the last place only takes what is not kept.
+  SIM_FN int room() const { return capacity - 1; }
   SIM_FN std::size_t place(int i, int k) const {
     const int group = i / list_interleave;
     const int lane = i % list_interleave;
@@ -29,7 +44,16 @@ struct Neighbours {
                list_interleave +
            static_cast<std::size_t>(lane);
   }
-  SIM_FN int operator()(int i, int k) const { return entry[place(i, k)]; }
+  SIM_FN NeighbourRun run(int i) const {
+    const int* first = entry + place(i, 0);
+    const bool stored = count[i] > room();
+#ifdef SIM_CUDA
+    return {stored ? store + *first : first, stored ? 1 : list_interleave};
+#else
+    return {stored ? store + *first : first};
+#endif
+  }
+  SIM_FN int operator()(int i, int k) const { return run(i)[k]; }
 };
 
 /// The list of particle i where lists belong to slots that were chosen in the last substep; slot_of is null
@@ -39,6 +63,7 @@ struct ParticleNeighbours {
   const int* slot_of;
   SIM_FN int slot(int i) const { return slot_of ? slot_of[i] : i; }
   SIM_FN int size(int i) const { return list.size(slot(i)); }
+  SIM_FN NeighbourRun run(int i) const { return list.run(slot(i)); }
   SIM_FN int operator()(int i, int k) const { return list(slot(i), k); }
 };
 
@@ -49,8 +74,8 @@ class NeighbourList {
   /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
   static constexpr float margin = 1.1f;
 
-  /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Neighbours beyond
-  /// the capacity are left out and counted in `dropped`.
+  /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Lists beyond the
+  /// capacity go to the store; what finds no room there either is left out and counted in `dropped`.
   void build(PredictedView particles, const Grid& grid, std::uint64_t* dropped);
   /// For the active particles only, a list for each of their slots.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
@@ -61,27 +86,38 @@ class NeighbourList {
   void build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone, std::uint64_t* dropped);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
-  Neighbours view() const { return {count_.data(), entry_.data(), capacity_}; }
+  /// Every slot's list, for tests.
+  std::vector<std::vector<int>> lists() const;
+  Neighbours view() const { return {count_.data(), entry_.data(), store_.data(), capacity_}; }
 
-  /// Reads back the longest list of the last build and makes room for it, at most `most_capacity` entries.
-  /// True when it grew.
+  /// What lists asked for that had no room of their own.
+  struct Need {
+    int longest;  ///< since the lists grew last
+    int stored;   ///< entries of the store that the last build asked for
+  };
+  /// Reads the need back and makes room for it: at most `most_capacity` entries a list, and the store. True
+  /// when it grew.
   bool grow();
-  /// The same with the longest list as longest() had it.
-  bool grow(int longest);
-  /// Length of the longest list of the last build, in the back end's memory; nullptr before the first.
-  const int* longest() const { return longest_.data(); }
+  /// The same with the need as need() had it.
+  bool grow(Need met);
+  /// In the back end's memory; nullptr before the first build.
+  const Need* need() const { return need_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
 
  private:
   /// A coarse particle among the finest has 113 within the support, some 150 within the margin.
   static constexpr int mixed_capacity = 192;
+  /// A thousand particles in one place, 4 MB.
+  static constexpr std::size_t least_store = 1 << 20;
+  static constexpr std::size_t most_store = 1 << 26;
 
   template <class Rows, class Selection>
   void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, std::uint64_t* dropped);
 
   int capacity_ = 80;
-  Array<int> count_, entry_, longest_;
+  Array<int> count_, entry_, store_;
+  Array<Need> need_;
 };
 
 }  // namespace sim::SIM_BACKEND

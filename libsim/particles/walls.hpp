@@ -61,6 +61,24 @@ struct Walls {
     return true;
   }
 
+  /// Takes x, which lies inside the walls, on its way `to`, but over at most a share of its distance from a
+  /// wall (`gap` before it): what moves at one speed keeps its order, where a clamp would lay layers on one
+  /// plane. True when it had to hold back.
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap) const {
+    bool held = false;
+    for (int k = 0; k < count; ++k) {
+      const float border = planes[k].offset + gap;
+      const float least = kept_distance * fmaxf(dot(planes[k].normal, x) - border, 0.0f);
+      const float beyond = least - (dot(planes[k].normal, to) - border);
+      if (beyond <= 0) continue;
+      to += beyond * planes[k].normal;
+      held = true;
+    }
+    x = to;
+    return held;
+  }
+  static constexpr float kept_distance = 0.25f;
+
   /// Moves x to at least `gap` inside every wall; true when it had to.
   SIM_FN bool project(Vec3& x, float gap) const {
     bool moved = false;

@@ -43,4 +43,10 @@ int substeps_of(const Scene& scene, std::int64_t n_star) {
   return std::max(scene.min_substeps, static_cast<int>(std::ceil(steps - 1e-9)));
 }
 
+double viscosity_of(const Scene& scene, std::int64_t n_star) {
+  if (scene.viscosity_m2_s >= 0) return scene.viscosity_m2_s;
+  const double support = 4 * resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
+  return 0.05 * support * std::sqrt(scene.gravity_m_s2 * support);
+}
+
 }  // namespace sim

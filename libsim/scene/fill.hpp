@@ -23,4 +23,9 @@ std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::in
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
 int substeps_of(const Scene& scene, std::int64_t n_star);
 
+/// Kinematic viscosity, m2/s, the same for all methods, levels and time steps: the scene's or, where it names
+/// none, 0.05 h sqrt(g h) with the support h of particles of level 3. With less the solver's own jitter stirs
+/// water at rest; it goes to zero with h.
+double viscosity_of(const Scene& scene, std::int64_t n_star);
+
 }  // namespace sim

@@ -54,6 +54,7 @@ void read_water(const base::TomlTable& table, Scene& scene) {
   }
   scene.gate = table.boolean("gate");
   scene.settle_frames = static_cast<int>(table.integer("settle_frames", {0, 10'000}));
+  if (table.has("viscosity_m2_s")) scene.viscosity_m2_s = table.number("viscosity_m2_s", {0, 1e3});
 }
 
 /// The mouth must lie within the walls, below the drawn rim and above the floor.
@@ -130,6 +131,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   scene.v_ref_m_s = time.number("v_ref_m_s", {0, 1000});
   scene.min_substeps = static_cast<int>(time.integer("min_substeps", {1, 64}));
   scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
+  if (time.has("courant")) scene.courant = time.number("courant", {0.05, 4});
 
   read_nozzles(root, scene);
   scene.view = camera(root.table("view"));

@@ -52,6 +52,10 @@ struct Scene {
   int settle_frames = 0;
   int solver_iterations = 4;
   int min_substeps = 2;
+  /// Way of the fastest particle in a substep at most, as a share of the finest h.
+  double courant = 0.5;
+  /// Kinematic viscosity of the water; < 0 = by the particles' size (viscosity_of in libsim/scene/fill.hpp).
+  double viscosity_m2_s = -1;
   std::vector<int> checkpoints;
   std::vector<GazeKey> gaze;
   std::vector<VisibleBox> visible;

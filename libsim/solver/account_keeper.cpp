@@ -4,14 +4,48 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// Each index looks at every `stride`th particle, so that neighbours in a warp read neighbours in memory.
+struct Gather {
+  const Vec4* velocity;
+  const float* density;
+  const std::uint8_t* level;
+  const std::uint8_t* active;  ///< nullptr when everyone was solved
+  int n, stride;
+  Extremes* out;
+  SIM_FN void operator()(int first) const {
+    float fastest = 0;
+    float excess = 0;
+    int mass = 0;
+    for (int i = first; i < n; i += stride) {
+      const Vec3 v = xyz(velocity[i]);
+      fastest = fmaxf(fastest, dot(v, v));
+      if (active && !active[i]) continue;
+      const int units = 1 << level[i];
+      mass += units;
+      excess += static_cast<float>(units) * fminf(fmaxf(density[i] - 1, 0.0f), 1.0f);
+    }
+    atomic_max(&out->fastest_bits, bits_of(sqrtf(fastest)));
+    atomic_add(&out->excess, static_cast<std::uint64_t>(excess / FrameTally::excess_unit));
+    atomic_add(&out->mass, static_cast<std::uint64_t>(mass));
+  }
+  SIM_FN static int bits_of(float value) {
+#ifdef __CUDA_ARCH__
+    return __float_as_int(value);
+#else
+    return std::bit_cast<int>(value);
+#endif
+  }
+};
+
 /// Index `level` counts one level between its two borders, which halving finds; the first also takes the
 /// rest.
 struct Tally {
   const Guards* guards;
-  const int* longest_list;
+  const NeighbourList::Need* lists;
   const int* active_ranks;  ///< inclusive sums of who was solved; nullptr when everyone was
   const std::uint8_t* level_of;
   int n;
+  const Extremes* extremes;
   FrameTally* out;
 
   SIM_FN void operator()(int level) const {
@@ -19,7 +53,10 @@ struct Tally {
     out->by_level[level] = first_of(level + 1) - first_of(level);
     if (level > 0) return;
     out->guards = *guards;
-    out->longest_list = longest_list ? *longest_list : 0;
+    out->fastest_bits = extremes->fastest_bits;
+    out->excess = extremes->excess;
+    out->mass = extremes->mass;
+    out->lists = lists ? *lists : NeighbourList::Need{0, 0};
     out->active = active_ranks && n > 0 ? active_ranks[n - 1] : n;
   }
 
@@ -72,12 +109,26 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   const auto& a = state.activation;
   const bool left_out = a.columns_set && !a.all_marked;
   tally_.resize(1);
+  extremes_.resize(1);
+  extremes_.zero();
+  const int n = state.particles.size();
+  const int lookers = (n + 31) / 32;
+  const auto& p = state.particles.all();
+  for_each("gather extremes", lookers,
+           Gather{.velocity = p.velocity.data(),
+                  .density = p.density.data(),
+                  .level = p.level.data(),
+                  .active = left_out ? p.active.data() : nullptr,
+                  .n = n,
+                  .stride = lookers,
+                  .out = extremes_.data()});
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
-                 .longest_list = state.neighbours.longest(),
+                 .lists = state.neighbours.need(),
                  .active_ranks = left_out ? a.ranks.data() : nullptr,
                  .level_of = state.particles.all().level.data(),
-                 .n = state.particles.size(),
+                 .n = n,
+                 .extremes = extremes_.data(),
                  .out = tally_.data()});
   const FrameTally tally = tally_.to_host()[0];
   account_.particles_by_level.assign(tally.by_level + finest_level_, tally.by_level + coarsest_level_ + 1);

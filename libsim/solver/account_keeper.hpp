@@ -2,6 +2,8 @@
 /// The account of each frame (sim::FrameAccount): what the host knows already, and the few numbers that stand
 /// in the back end's memory, brought over in one copy.
 
+#include <bit>
+
 #include "libsim/simulation.hpp"
 #include "libsim/solver/stages/fluid_state.hpp"
 
@@ -9,10 +11,28 @@ namespace sim::SIM_BACKEND {
 
 /// What is brought over.
 struct FrameTally {
-  Guards guards;                      ///< since the run began
-  int longest_list;                   ///< neighbours, of the last substep
-  int active;                         ///< particles that the frame solved
+  Guards guards;              ///< since the run began
+  NeighbourList::Need lists;  ///< of the last substep
+  int active;                 ///< particles that the frame solved
+  int fastest_bits;           ///< of the largest speed as a float, m/s: the order of floats >= 0
+  std::uint64_t excess;       ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
+                              ///< projection met it; in excess_unit
+  std::uint64_t mass;         ///< of these, in m_*
   int by_level[LevelSupports::most];  ///< particles
+
+  static constexpr float excess_unit = 1.0f / (1 << 20);
+  /// Mean over the water.
+  double compression() const {
+    return mass ? static_cast<double>(excess_unit) * static_cast<double>(excess) / static_cast<double>(mass)
+                : 0;
+  }
+  float fastest() const { return std::bit_cast<float>(fastest_bits); }
+};
+
+/// What is gathered over the particles.
+struct Extremes {
+  int fastest_bits;
+  std::uint64_t excess, mass;
 };
 
 /// What the guards met since the run began.
@@ -32,6 +52,7 @@ class AccountKeeper {
   FrameAccount account_;
   GuardCounts met_;  ///< up to the last frame
   Array<FrameTally> tally_;
+  Array<Extremes> extremes_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -1,6 +1,7 @@
 /// What scene, method and readings mean for each part of the solver.
 
 #include <algorithm>
+#include <cmath>
 
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
@@ -20,12 +21,49 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   };
   choose(out.relaxation, options.relaxation);
   choose(out.tensile, options.tensile);
-  choose(out.viscosity, options.viscosity);
+  out.viscosity = static_cast<float>(viscosity_of(scene, options.n_star));
+  choose(out.viscosity, options.viscosity_m2_s);
   choose(out.momentum, options.momentum);
   if (options.coarse_cycles >= 0) out.coarse_cycles = options.coarse_cycles;
   choose(out.coarse_edge, options.coarse_edge);
-  choose(out.longest_step, options.longest_step);
   return out;
+}
+
+double start_speed(const Scene& scene, const std::vector<ParticleState>& start) {
+  double out = 0;
+  for (const Nozzle& nozzle : scene.nozzles) out = std::max(out, nozzle.speed_m_s);
+  for (const ParticleState& p : start) {
+    const double speed = std::hypot(static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s),
+                                    static_cast<double>(p.vz_m_s));
+    if (std::isfinite(speed)) out = std::max(out, speed);
+  }
+  return out;
+}
+
+double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
+  double height = scene.fill_max_m[1];
+  for (const Nozzle& nozzle : scene.nozzles) height = std::max(height, nozzle.position_m[1]);
+  for (const ParticleState& p : start) {
+    const auto y = static_cast<double>(p.y_m);
+    if (std::isfinite(y)) height = std::max(height, y);
+  }
+  const double speed = start_speed(scene, start);
+  return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height);
+}
+
+SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
+                         double fastest) {
+  constexpr int usual_most = 32;
+  SubstepLimits out;
+  out.frame_dt_s = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  out.courant = options.courant > 0 ? options.courant : scene.courant;
+  out.gravity_m_s2 = scene.gravity_m_s2;
+  const MethodTraits& method = traits_of(options.method);
+  out.support_m = 2 * (method.adaptive() ? resolution.finest_spacing_m : resolution.spacing_m);
+  out.least = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
+  out.most = std::max(out.least, options.most_substeps > 0 ? options.most_substeps : usual_most);
+  if (options.substeps > 0) out.most = out.least;
+  return {out, fastest};
 }
 
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters) {

@@ -8,6 +8,7 @@
 #include "libsim/scene/fill.hpp"
 #include "libsim/simulation.hpp"
 #include "libsim/solver/schedule.hpp"
+#include "libsim/solver/substeps.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -15,6 +16,14 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
+/// sqrt(v0^2 + 2 g H), m/s: what water that starts so, pours in or falls all the way to the floor gets to at
+/// most without being pushed. v0 is the fastest of the start and the nozzles, H their largest height.
+double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
+/// Number of substeps from now on; `fastest` m/s are what the start and the nozzles bring.
+SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
+                         double fastest);
+/// Speed of the fastest of the start and the nozzles, m/s.
+double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
 /// base::Error for a level that does not exist.

@@ -69,8 +69,8 @@ std::string settled_key(const Scene& scene, const SimulationOptions& options) {
   text << std::hexfloat << program_digest() << ' ' << scene.sha256 << ' ' << method_name(options.method)
        << ' ' << options.n_star << ' ' << backend_name(options.backend) << ' ' << options.iterations << ' '
        << options.substeps << ' ' << options.frame_dt_s << ' ' << options.relaxation << ' ' << options.tensile
-       << ' ' << options.viscosity << ' ' << options.momentum << ' ' << options.longest_step << ' '
-       << options.coarse_cycles << ' ' << options.coarse_edge;
+       << ' ' << options.viscosity_m2_s << ' ' << options.momentum << ' ' << options.courant << ' '
+       << options.most_substeps << ' ' << options.coarse_cycles << ' ' << options.coarse_edge;
   return base::sha256_hex(text.str());
 }
 

@@ -33,6 +33,8 @@ class Run {
                 report.density_error_mean, report.density_max, report.speed_max_m_s,
                 static_cast<unsigned long long>(report.guards.speed_limited));
     EXPECT_LT(report.density_error_mean, 0.002);
+    // S8. Poured layers that overlap once threw water of Faucet at 1.9 times the speed of a fall.
+    EXPECT_LT(report.speed_max_m_s, 1.5 * fall_speed());
     EXPECT_LT(report.density_max, 1.05);
     EXPECT_EQ(report.guards.not_finite, 0u);
     EXPECT_EQ(report.guards.neighbours_dropped, 0u);
@@ -42,6 +44,15 @@ class Run {
   }
 
  private:
+  double fall_speed() const {
+    double height = scene_.fill_max_m[1], speed = 0;
+    for (const auto& nozzle : scene_.nozzles) {
+      height = std::max(height, nozzle.position_m[1]);
+      speed = std::max(speed, nozzle.speed_m_s);
+    }
+    return std::sqrt(speed * speed + 2 * scene_.gravity_m_s2 * height);
+  }
+
   sim::Scene scene_;
   std::unique_ptr<sim::Simulation> fluid_;
   int frame_ = 0;

@@ -154,7 +154,7 @@ TEST(Scene, ErrorsNameThePlaceAndTheMend) {
               testing::HasSubstr("'water.gate' is missing"));
   EXPECT_THAT(error_of(text + "\n[extra]\n"), testing::HasSubstr("'extra' is not a known key"));
   EXPECT_THAT(error_of(replaced(text, "frames_per_s = 60.0", "frames_per_s = \"60\"")),
-              testing::HasSubstr("scene.toml:18:16"));
+              testing::HasSubstr("scene.toml:19:16"));
   EXPECT_THAT(error_of(replaced(text, "iterations = 4", "iterations = 0")),
               testing::HasSubstr("out of range"));
   EXPECT_THAT(error_of(replaced(text, "max_m = [9.6,", "max_m = [29.6,")),

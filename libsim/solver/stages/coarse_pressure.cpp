@@ -147,12 +147,8 @@ float cell_edge(const FluidState& state) {
   return fmaxf(finest, fminf(wish, across));
 }
 
-using Columns = ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),
-                           columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
-                           columns(Column::Ease)>;
-
 template <class Selection>
-void launch(FluidState& state, Columns p, Selection select) {
+void launch(FluidState& state, CoarsePressureView p, Selection select) {
   auto& coarse = state.coarse;
   // While the water settles at one level, nobody has written the shares.
   const float* ease = state.one_level ? nullptr : p.ease();
@@ -183,11 +179,13 @@ void launch(FluidState& state, Columns p, Selection select) {
                             .wall_gap = state.parameters.wall_gap});
 }
 
-void run(FluidState& state, Columns p) {
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
-}
+void run(FluidState& state, CoarsePressureView p) { press(state, p); }
 
 }  // namespace
+
+void press(FluidState& state, CoarsePressureView p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+}
 
 Stage coarse_pressure_stage() {
   return stage_of<run>({.name = "coarse pressure",

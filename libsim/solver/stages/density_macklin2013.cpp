@@ -35,9 +35,10 @@ struct Density {
     float squares = 0;
     int zero = 0;
     const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(rho, gx, gy, gz, squares, zero)
     for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = neighbours(slot, k);
+      const int j = run[k];
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const float ratio = pair.mass_ratio(other.w);

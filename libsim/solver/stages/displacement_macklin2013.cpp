@@ -32,9 +32,10 @@ struct Displace {
     float pz = 0;
     int zero = 0;
     const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(px, py, pz, zero)
     for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = neighbours(slot, k);
+      const int j = run[k];
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const float dx = self.x - other.x;

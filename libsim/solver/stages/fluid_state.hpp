@@ -30,10 +30,10 @@ struct SolverParameters {
   int coarse_cycles = 2;
   /// Edge of its cells as a share of the finest h, before it is fitted between the walls.
   float coarse_edge = 2;
-  /// XSPH c; 0 leaves the pass out.
-  float viscosity = 0.1f;
-  /// Longest way of a particle in a substep, as a share of h.
-  float longest_step = 2.0f;
+  /// Kinematic viscosity nu, m2/s; 0 leaves the pass out.
+  float viscosity = 0;
+  /// No water gets so fast by itself, m/s: what is faster is braked and counted.
+  float most_speed = 0;
   /// Nearest distance to a wall, as a share of d.
   float wall_gap = 0.1f;
 };
@@ -48,8 +48,9 @@ struct FluidState {
   std::int64_t mass_units =
       0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
   LevelSupports supports{};
-  Vec3 refuge{};          ///< where a particle goes whose place is lost
-  bool one_level = true;  ///< all particles have one level, for good
+  Vec3 refuge{};           ///< where a particle goes whose place is lost
+  bool one_level = true;   ///< all particles have one level, for good
+  bool compressed = true;  ///< was lately, or may be: frames begin with a pre-stabilisation
   int substep = 0;
   int iteration = 0;  ///< projection within the substep
   Particles particles;
@@ -84,7 +85,7 @@ struct FluidState {
   Guards* guard() { return guards.data(); }
 };
 
-/// v, or as much of it as moves a particle by longest_step h in a substep; counted when that is less.
+/// v, or as much of it as `limit` m/s allow; counted when that is less.
 SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
   const float speed = length(v);
   if (!(speed > limit)) return v;

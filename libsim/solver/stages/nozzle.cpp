@@ -131,6 +131,7 @@ void run_nozzle(FluidState& state, Columns p, const Nozzle& nozzle, Poured& befo
 
 void run(FluidState& state, Columns p) {
   auto& jets = state.jets;
+  const std::int64_t made = jets.made;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
     // At one level the timetable is a pure function of the frame.
     if (!jets.by_target)
@@ -138,6 +139,7 @@ void run(FluidState& state, Columns p) {
                                      jets.frame, jets.frame_dt_s);
     run_nozzle(state, p, jets.nozzles[k], jets.before[k]);
   }
+  jets.pouring = jets.made > made;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Predict {
   Walls walls;
   Vec3 refuge;
   Guards* guards;
-  float gravity, dt, longest_step, wall_gap;
+  float gravity, dt, most_speed, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
@@ -27,10 +27,10 @@ struct Predict {
     } else {
       v.y -= select.falls(i) * gravity * dt;
     }
-    v = limited(v, longest_step * h / dt, guards);
+    v = limited(v, most_speed, guards);
     velocity[i] = with_w(v, 0);
-    x = fused(x, dt, v);
-    if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
@@ -61,7 +61,7 @@ void launch(FluidState& state, Columns p, Selection select) {
                               .guards = state.guard(),
                               .gravity = k.gravity,
                               .dt = k.dt,
-                              .longest_step = k.longest_step,
+                              .most_speed = k.most_speed,
                               .wall_gap = k.wall_gap});
 }
 

@@ -31,6 +31,8 @@ Stage neighbours_stage();
 Stage ease_stage();
 /// The slow part of the pressure, solved on cells and applied first.
 Stage coarse_pressure_stage();
+/// Takes compression away that was there before the substep, without giving it speed.
+Stage pre_stabilisation_stage();
 /// Parts what overlaps after a split or a merge, without giving it speed.
 Stage parting_stage();
 /// Density, unilateral constraint and its multiplier lambda.
@@ -75,6 +77,13 @@ using DisplacementView =
                columns(Column::PredictedNext, Column::Predicted)>;
 /// Moves those whom the frame solves by their multipliers.
 void displace(FluidState& state, DisplacementView particles);
+
+using CoarsePressureView =
+    ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),
+               columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
+               columns(Column::Ease)>;
+/// Shifts the predicted positions by the pressure on cells.
+void press(FluidState& state, CoarsePressureView particles);
 
 /// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
 /// place in both buffers.

@@ -11,12 +11,12 @@ struct Advance {
   Vec4* velocity;
   Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
   Guards* guards;
-  float dt, longest_step;
+  float dt, most_speed;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
-    velocity[i] = with_w(limited(after, longest_step * predicted[i].w / dt, guards), 0);
+    velocity[i] = with_w(limited(after, most_speed, guards), 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     position[i] = predicted[i];
   }
@@ -37,7 +37,7 @@ void run(FluidState& state, Columns p) {
                    .kick = kick,
                    .guards = state.guard(),
                    .dt = k.dt,
-                   .longest_step = k.longest_step});
+                   .most_speed = k.most_speed});
 }
 
 }  // namespace

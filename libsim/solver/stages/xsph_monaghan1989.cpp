@@ -19,8 +19,13 @@ struct KickFilter {
   SIM_FN float share(int i, int j) const { return strength * (1 - fminf(ease[i], ease[j])); }
 };
 
+/// More of the difference than this is not taken in one substep: the explicit step stays stable.
+constexpr float most_share = 0.5f;
+
 /// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
-/// Particles that are not solved keep their velocity and count as at the rest density.
+/// The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c h^2 /
+/// 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Particles that
+/// are not solved keep their velocity and count as at the rest density.
 template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
   Selection select;
@@ -29,7 +34,7 @@ struct Xsph {
   const float* density;
   Neighbours neighbours;
   Vec4* next;
-  float viscosity;
+  float spread;  ///< 22 nu dt, m2
   Filter filter;
 
   template <class Team>
@@ -51,9 +56,10 @@ struct Xsph {
     float vy = 0;
     float vz = 0;
     const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(vx, vy, vz)
     for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = neighbours(slot, k);
+      const int j = run[k];
       const Vec4 other = position[j];
       const Kernel kernel = pair.with(other.w);
       const float dx = self.x - other.x;
@@ -68,7 +74,7 @@ struct Xsph {
         vy += share * (kick.y - own_kick.y);
         vz += share * (kick.z - own_kick.z);
       }
-      const float flow = viscosity * weight;
+      const float flow = fminf(spread * reciprocal(kernel.h2), most_share) * weight;
       const Vec4 v = velocity[j];
       vx += flow * (v.x - own.x);
       vy += flow * (v.y - own.y);
@@ -89,6 +95,7 @@ using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::D
 
 template <bool OneLevel, class Filter, class Selection>
 void launch(FluidState& state, Columns p, Filter filter, Selection select) {
+  const auto& k = state.parameters;
   for_each_team("xsph", p.size(),
                 Xsph<OneLevel, Filter, Selection>{.select = select,
                                                   .position = p.position(),
@@ -96,7 +103,7 @@ void launch(FluidState& state, Columns p, Filter filter, Selection select) {
                                                   .density = p.density(),
                                                   .neighbours = state.neighbours.view(),
                                                   .next = p.velocity_next(),
-                                                  .viscosity = state.parameters.viscosity,
+                                                  .spread = 22 * k.viscosity * k.dt,
                                                   .filter = filter});
   p.swap<Column::Velocity, Column::VelocityNext>();
 }
@@ -128,7 +135,7 @@ Stage xsph_stage() {
                         .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
                         .phase = Phase::SubstepEnd,
                         .called_for = [](const Demand& demand) -> std::string {
-                          return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity c > 0" : "";
+                          return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity > 0" : "";
                         }});
 }
 

@@ -26,26 +26,36 @@ std::uint8_t level_of(float h) {
   return static_cast<std::uint8_t>(std::lround(3 * std::log2(static_cast<double>(h) / finest)));
 }
 
-/// Lists as one level, or as mixed levels of `finest`.
-Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed = false) {
-  const int n = static_cast<int>(points.size());
+Particles particles_at(const std::vector<Vec4>& points) {
   Particles particles;
   particles.allocate(
-      columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level), n);
-  std::vector<Vec4> at = points;
+      columns(Column::Position, Column::Predicted, Column::Velocity, Column::Id, Column::Level),
+      static_cast<int>(points.size()));
+  particles.all().position.from_host(points);
+  particles.all().predicted.from_host(points);
   std::vector<int> id(points.size());
-  for (int i = 0; i < n; ++i) id[static_cast<std::size_t>(i)] = i;
-  if (reversed) {
-    std::reverse(at.begin(), at.end());
-    std::reverse(id.begin(), id.end());
-  }
-  particles.all().position.from_host(at);
-  particles.all().predicted.from_host(at);
+  for (std::size_t i = 0; i < id.size(); ++i) id[i] = static_cast<int>(i);
   particles.all().id.from_host(id);
   particles.all().velocity.zero();
-  std::vector<std::uint8_t> level(points.size(), 0);
-  if (mixed) std::transform(at.begin(), at.end(), level.begin(), [](Vec4 p) { return level_of(p.w); });
-  particles.all().level.from_host(level);
+  particles.all().level.zero();
+  return particles;
+}
+
+/// Lists as one level, or as mixed levels of `finest`.
+Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed = false) {
+  std::vector<Vec4> at = points;
+  if (reversed) std::reverse(at.begin(), at.end());
+  Particles particles = particles_at(at);
+  if (reversed) {
+    auto id = particles.all().id.to_host();
+    std::reverse(id.begin(), id.end());
+    particles.all().id.from_host(id);
+  }
+  if (mixed) {
+    std::vector<std::uint8_t> level(points.size());
+    std::transform(at.begin(), at.end(), level.begin(), [](Vec4 p) { return level_of(p.w); });
+    particles.all().level.from_host(level);
+  }
   Grid grid;
   NeighbourList neighbours;
   Array<std::uint64_t> dropped(1);
@@ -67,18 +77,10 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed =
   out.dropped = dropped.to_host()[0];
   out.cells = grid.count_cells();
   out.sets.resize(points.size());
-  const Neighbours view = neighbours.view();
-  std::vector<int> count(points.size());
-  std::vector<int> entry((points.size() + list_interleave) * static_cast<std::size_t>(view.capacity));
-  copy_to_host(count.data(), view.count, count.size() * sizeof(int));
-  const std::size_t groups = (points.size() + list_interleave - 1) / list_interleave;
-  copy_to_host(entry.data(), view.entry,
-               groups * list_interleave * static_cast<std::size_t>(view.capacity) * sizeof(int));
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < count[static_cast<std::size_t>(i)]; ++k) {
-      const int j = entry[view.place(i, k)];
-      out.sets[static_cast<std::size_t>(out.id[static_cast<std::size_t>(i)])].insert(
-          out.id[static_cast<std::size_t>(j)]);
+  const auto lists = neighbours.lists();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    for (const int j : lists[i]) {
+      out.sets[static_cast<std::size_t>(out.id[i])].insert(out.id[static_cast<std::size_t>(j)]);
       ++out.entries;
     }
   }
@@ -192,14 +194,48 @@ SIM_TEST(NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(points);
 }
 
-SIM_TEST(NeighbourList, CountsWhatFindsNoRoom) {
-  // 600 coincident points: each has 599 neighbours, the longest list holds 511.
-  const std::vector<Vec4> points(600, Vec4{1, 1, 1, 0.3f});
-  const Listed listed = list(points);
-  EXPECT_EQ(listed.dropped, 600u * (599 - (NeighbourList::most_capacity - 1)));
-  EXPECT_EQ(listed.cells, 1);
-  for (const auto& set : listed.sets)
-    EXPECT_EQ(set.size(), static_cast<std::size_t>(NeighbourList::most_capacity - 1));
+SIM_TEST(NeighbourList, PutsListsWithoutRoomInTheStore) {
+  // The first build of a list has room for 80 neighbours; nothing grows in between.
+  std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
+  const std::vector<Vec4> few = random_points(60, 0.05f, 0.3f, 4);
+  for (const Vec4& p : few) points.push_back({p.x + 7, p.y, p.z, p.w});
+  Particles particles = particles_at(points);
+  Grid grid;
+  grid.build(particles, NeighbourList::margin);
+  NeighbourList neighbours;
+  Array<std::uint64_t> dropped(1);
+  dropped.zero();
+  neighbours.build(PredictedView(particles), grid, dropped.data());
+  EXPECT_EQ(dropped.to_host()[0], 0u);
+  const auto id = particles.all().id.to_host();
+  const auto lists = neighbours.lists();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    const std::set<int> distinct(lists[i].begin(), lists[i].end());
+    EXPECT_EQ(distinct.size(), lists[i].size());
+    EXPECT_EQ(lists[i].size(), id[i] < 400 ? 399u : 59u);
+    EXPECT_FALSE(distinct.contains(static_cast<int>(i)));
+  }
+}
+
+SIM_TEST(NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
+  // 1,500 coincident points ask for 2.2 million entries; the store begins with 1 million.
+  const std::vector<Vec4> points(1500, Vec4{1, 1, 1, 0.3f});
+  Particles particles = particles_at(points);
+  Grid grid;
+  grid.build(particles, NeighbourList::margin);
+  NeighbourList neighbours;
+  Array<std::uint64_t> dropped(1);
+  dropped.zero();
+  neighbours.build(PredictedView(particles), grid, dropped.data());
+  std::size_t listed = 0;
+  for (const auto& one : neighbours.lists()) listed += one.size();
+  EXPECT_GT(dropped.to_host()[0], 0u);
+  EXPECT_EQ(listed + dropped.to_host()[0], 1500u * 1499u);
+  EXPECT_TRUE(neighbours.grow());
+  const Listed grown = list(points);
+  EXPECT_EQ(grown.dropped, 0u);
+  EXPECT_EQ(grown.cells, 1);
+  EXPECT_EQ(grown.entries, 1500u * 1499u);
 }
 
 SIM_TEST(NeighbourList, TakesNoneAndOne) {

@@ -1,0 +1,38 @@
+#pragma once
+/// What the tests of hard cases share. Cases S1 to S24 stand in docs/stability.md.
+
+#include <gtest/gtest.h>
+
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace stability_test {
+
+using fluid_test::ParticleState;
+using sim::Backend;
+
+inline constexpr double d = 0.15;  ///< finest spacing, m
+inline constexpr double gravity = 9.81;
+
+/// nx x ny x nz particles of level 0 on the lattice from `low`, moving at `speed` along x.
+inline std::vector<ParticleState> block(int nx, int ny, int nz, const sim::Vec3d& low, double speed = 0) {
+  std::vector<ParticleState> out;
+  const auto at = [&](std::size_t axis, int k) { return static_cast<float>(low[axis] + d * (k + 0.5)); };
+  for (int i = 0; i < nx * ny * nz; ++i) {
+    out.push_back(
+        {i, 0, at(0, i % nx), at(1, i / nx / nz), at(2, i / nx % nz), static_cast<float>(speed), 0, 0});
+  }
+  return out;
+}
+
+/// A run of HiRes from these particles at spacing d in an open tank.
+inline std::unique_ptr<sim::Simulation> start_from(Backend backend, sim::Scene scene,
+                                                   const std::vector<ParticleState>& start,
+                                                   sim::SimulationOptions options = {}) {
+  scene.fill_max_m = {8 * d, 8 * d, 8 * d};
+  options.n_star = 64;  // 512 particles in the block: spacing d
+  options.backend = backend;
+  options.start = start;
+  return sim::make_simulation(scene, options);
+}
+
+}  // namespace stability_test
