@@ -194,21 +194,29 @@ SIM_TEST(NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(points);
 }
 
+/// The first build of a list, whose room nothing has grown yet.
+struct FirstBuild {
+  Particles particles;
+  Grid grid;
+  NeighbourList neighbours;
+  Array<std::uint64_t> dropped{1};
+
+  explicit FirstBuild(const std::vector<Vec4>& points) : particles(particles_at(points)) {
+    grid.build(particles, NeighbourList::margin);
+    dropped.zero();
+    neighbours.build(PredictedView(particles), grid, dropped.data());
+  }
+};
+
 SIM_TEST(NeighbourList, PutsListsWithoutRoomInTheStore) {
   // The first build of a list has room for 80 neighbours; nothing grows in between.
   std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
   const std::vector<Vec4> few = random_points(60, 0.05f, 0.3f, 4);
   for (const Vec4& p : few) points.push_back({p.x + 7, p.y, p.z, p.w});
-  Particles particles = particles_at(points);
-  Grid grid;
-  grid.build(particles, NeighbourList::margin);
-  NeighbourList neighbours;
-  Array<std::uint64_t> dropped(1);
-  dropped.zero();
-  neighbours.build(PredictedView(particles), grid, dropped.data());
-  EXPECT_EQ(dropped.to_host()[0], 0u);
-  const auto id = particles.all().id.to_host();
-  const auto lists = neighbours.lists();
+  const FirstBuild first(points);
+  EXPECT_EQ(first.dropped.to_host()[0], 0u);
+  const auto id = first.particles.all().id.to_host();
+  const auto lists = first.neighbours.lists();
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const std::set<int> distinct(lists[i].begin(), lists[i].end());
     EXPECT_EQ(distinct.size(), lists[i].size());
@@ -220,18 +228,12 @@ SIM_TEST(NeighbourList, PutsListsWithoutRoomInTheStore) {
 SIM_TEST(NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
   // 1,500 coincident points ask for 2.2 million entries; the store begins with 1 million.
   const std::vector<Vec4> points(1500, Vec4{1, 1, 1, 0.3f});
-  Particles particles = particles_at(points);
-  Grid grid;
-  grid.build(particles, NeighbourList::margin);
-  NeighbourList neighbours;
-  Array<std::uint64_t> dropped(1);
-  dropped.zero();
-  neighbours.build(PredictedView(particles), grid, dropped.data());
+  FirstBuild first(points);
   std::size_t listed = 0;
-  for (const auto& one : neighbours.lists()) listed += one.size();
-  EXPECT_GT(dropped.to_host()[0], 0u);
-  EXPECT_EQ(listed + dropped.to_host()[0], 1500u * 1499u);
-  EXPECT_TRUE(neighbours.grow());
+  for (const auto& one : first.neighbours.lists()) listed += one.size();
+  EXPECT_GT(first.dropped.to_host()[0], 0u);
+  EXPECT_EQ(listed + first.dropped.to_host()[0], 1500u * 1499u);
+  EXPECT_TRUE(first.neighbours.grow());
   const Listed grown = list(points);
   EXPECT_EQ(grown.dropped, 0u);
   EXPECT_EQ(grown.cells, 1);

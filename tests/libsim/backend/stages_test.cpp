@@ -1,6 +1,7 @@
 #include "libsim/solver/stages/stages.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "libsim/solver/schedule.hpp"
@@ -10,10 +11,9 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A state with all pairs listed, whatever their supports.
-FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
+/// A state of resting particles, without lists.
+FluidState resting(const std::vector<Vec4>& points) {
   FluidState state;
-  state.one_level = one_level;
   state.guards.resize(1);
   state.guards.zero();
   auto& p = state.particles;
@@ -21,36 +21,32 @@ FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   p.all().position.from_host(points);
   p.all().predicted.from_host(points);
   std::vector<int> id(points.size());
+  std::iota(id.begin(), id.end(), 0);
+  p.all().id.from_host(id);
+  p.all().level.zero();
+  p.all().velocity.zero();
+  return state;
+}
+
+/// A state with all pairs listed, whatever their supports.
+FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
+  FluidState state = resting(points);
+  state.one_level = one_level;
   std::vector<std::vector<int>> lists(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    id[i] = static_cast<int>(i);
     for (std::size_t j = 0; j < points.size(); ++j) {
       if (j != i) lists[i].push_back(static_cast<int>(j));
     }
   }
-  p.all().id.from_host(id);
-  p.all().level.zero();
-  p.all().velocity.zero();
   state.neighbours.assign(lists);
   return state;
 }
 
 /// A state of one level with the grid's lists.
 FluidState listed(const std::vector<Vec4>& points) {
-  FluidState state;
-  state.guards.resize(1);
-  state.guards.zero();
-  auto& p = state.particles;
-  p.allocate(all_columns(), static_cast<int>(points.size()));
-  p.all().position.from_host(points);
-  p.all().predicted.from_host(points);
-  std::vector<int> id(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) id[i] = static_cast<int>(i);
-  p.all().id.from_host(id);
-  p.all().level.zero();
-  p.all().velocity.zero();
+  FluidState state = resting(points);
   do {
-    find_neighbours(state, NeighboursView(p));
+    find_neighbours(state, NeighboursView(state.particles));
   } while (state.neighbours.grow());
   return state;
 }
