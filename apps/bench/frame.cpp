@@ -294,7 +294,8 @@ void add_frame_command(CLI::App& app) {
   command
       ->add_option("--courant", options->fluid.courant,
                    "Way of the fastest particle in a substep at most, in h; the scene's when left out")
-      ->check(number_in(0.05, 4.0));
+      ->check(number_in(0.05, 4.0))
+      ->excludes(substeps);
   command
       ->add_option("--most-substeps", options->fluid.most_substeps,
                    "Substeps a frame at most while the fastest particle is followed")

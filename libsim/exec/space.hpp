@@ -282,11 +282,11 @@ SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
 }
 
 /// *target += amount; gives what it was.
-SIM_FN int atomic_take(int* target, int amount) {
+SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
 #ifdef __CUDA_ARCH__
-  return atomicAdd(target, amount);
+  return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
 #else
-  const int was = *target;
+  const std::uint64_t was = *target;
   *target += amount;
   return was;
 #endif
@@ -360,8 +360,8 @@ void atomic_add(T* target, T value) {
 }
 
 /// *target += amount; gives what it was.
-inline int atomic_take(int* target, int amount) {
-  int was;
+inline std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
+  std::uint64_t was;
 #pragma omp atomic capture
   {
     was = *target;

@@ -50,7 +50,7 @@ struct ListNeighbours {
   int* entry;
   int* count;
   int* store;
-  int store_size;
+  std::size_t store_size;
   NeighbourList::Need* need;
   std::uint64_t* dropped;
   float margin;
@@ -105,15 +105,15 @@ struct ListNeighbours {
   /// Walks the cells once more for what has no room of its own; few particles do, and one lane is enough.
   SIM_FN void put_in_store(int slot, int i, Vec4 self, int found) const {
     atomic_max(&need->longest, found);
-    const int first = atomic_take(&need->stored, found);
-    if (first > store_size - found) {
+    const std::uint64_t first = atomic_take(&need->stored, static_cast<std::uint64_t>(found));
+    if (first + static_cast<std::uint64_t>(found) > store_size) {
       atomic_add(dropped, static_cast<std::uint64_t>(found - list.room()));
       count[slot] = list.room();
       return;
     }
     Put put{*this, i, self, store + first};
     rows(cell_of[i], self, margin, [&put](int begin, int end) { put(begin, end); });
-    entry[list.place(slot, 0)] = first;
+    entry[list.place(slot, 0)] = static_cast<int>(first);
   }
 
   SIM_FN bool near(Vec4 self, Vec4 other) const {
@@ -153,11 +153,10 @@ void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, S
     need_.from_host({{0, 0}});
   }
   for_each("empty store", 1, EmptyStore{need_.data()});
-  for_each_team(
-      "list neighbours", particles.size(),
-      ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows, view(),
-                                      entry_.data(), count_.data(), store_.data(),
-                                      static_cast<int>(store_.size()), need_.data(), dropped, margin});
+  for_each_team("list neighbours", particles.size(),
+                ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows,
+                                                view(), entry_.data(), count_.data(), store_.data(),
+                                                store_.size(), need_.data(), dropped, margin});
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
@@ -220,9 +219,8 @@ bool NeighbourList::grow() { return need_.size() > 0 && grow(need_.to_host()[0])
 
 bool NeighbourList::grow(Need met) {
   bool grew = false;
-  if (const auto stored = static_cast<std::size_t>(met.stored);
-      stored > store_.size() && store_.size() < most_store) {
-    store_.resize(std::min(most_store, 2 * stored));
+  if (met.stored > store_.size() && store_.size() < most_store) {
+    store_.resize(std::min<std::size_t>(most_store, 2 * met.stored));
     grew = true;
   }
   if (met.longest >= capacity_ && capacity_ < most_capacity) {

@@ -92,8 +92,8 @@ class NeighbourList {
 
   /// What lists asked for that had no room of their own.
   struct Need {
-    int longest;  ///< since the lists grew last
-    int stored;   ///< entries of the store that the last build asked for
+    int longest;           ///< since the lists grew last
+    std::uint64_t stored;  ///< entries of the store that the last build asked for
   };
   /// Reads the need back and makes room for it: at most `most_capacity` entries a list, and the store. True
   /// when it grew.

@@ -25,7 +25,7 @@ struct Gather {
       excess += static_cast<float>(units) * fminf(fmaxf(density[i] - 1, 0.0f), 1.0f);
     }
     atomic_max(&out->fastest_bits, bits_of(sqrtf(fastest)));
-    atomic_add(&out->excess, static_cast<std::uint64_t>(excess / FrameTally::excess_unit));
+    atomic_add(&out->excess, static_cast<std::uint64_t>(excess / Extremes::excess_unit));
     atomic_add(&out->mass, static_cast<std::uint64_t>(mass));
   }
   SIM_FN static int bits_of(float value) {
@@ -53,9 +53,7 @@ struct Tally {
     out->by_level[level] = first_of(level + 1) - first_of(level);
     if (level > 0) return;
     out->guards = *guards;
-    out->fastest_bits = extremes->fastest_bits;
-    out->excess = extremes->excess;
-    out->mass = extremes->mass;
+    out->extremes = *extremes;
     out->lists = lists ? *lists : NeighbourList::Need{0, 0};
     out->active = active_ranks && n > 0 ? active_ranks[n - 1] : n;
   }

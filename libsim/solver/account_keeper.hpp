@@ -9,16 +9,12 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What is brought over.
-struct FrameTally {
-  Guards guards;              ///< since the run began
-  NeighbourList::Need lists;  ///< of the last substep
-  int active;                 ///< particles that the frame solved
-  int fastest_bits;           ///< of the largest speed as a float, m/s: the order of floats >= 0
-  std::uint64_t excess;       ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
-                              ///< projection met it; in excess_unit
-  std::uint64_t mass;         ///< of these, in m_*
-  int by_level[LevelSupports::most];  ///< particles
+/// What is gathered over the particles.
+struct Extremes {
+  int fastest_bits;      ///< of the largest speed as a float, m/s: the order of floats >= 0
+  std::uint64_t excess;  ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
+                         ///< projection met it; in excess_unit
+  std::uint64_t mass;  ///< of these, in m_*
 
   static constexpr float excess_unit = 1.0f / (1 << 20);
   /// Mean over the water.
@@ -29,10 +25,13 @@ struct FrameTally {
   float fastest() const { return std::bit_cast<float>(fastest_bits); }
 };
 
-/// What is gathered over the particles.
-struct Extremes {
-  int fastest_bits;
-  std::uint64_t excess, mass;
+/// What is brought over.
+struct FrameTally {
+  Guards guards;              ///< since the run began
+  NeighbourList::Need lists;  ///< of the last substep
+  int active;                 ///< particles that the frame solved
+  Extremes extremes;
+  int by_level[LevelSupports::most];  ///< particles
 };
 
 /// What the guards met since the run began.

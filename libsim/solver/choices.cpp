@@ -9,9 +9,13 @@
 
 namespace sim::SIM_BACKEND {
 
+double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
+  return options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+}
+
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
   SolverParameters out;
-  const double frame_dt = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  const double frame_dt = frame_dt_of(scene, options);
   out.substeps = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
   out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
   out.dt = static_cast<float>(frame_dt / out.substeps);
@@ -55,7 +59,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
                          double fastest) {
   constexpr int usual_most = 32;
   SubstepLimits out;
-  out.frame_dt_s = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  out.frame_dt_s = frame_dt_of(scene, options);
   out.courant = options.courant > 0 ? options.courant : scene.courant;
   out.gravity_m_s2 = scene.gravity_m_s2;
   const MethodTraits& method = traits_of(options.method);

@@ -85,8 +85,8 @@ class FluidSimulation final : public Simulation {
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     const FrameTally tally = keeper_.take(state_, went_by());
-    substeps_.frame_ended(static_cast<double>(tally.fastest()));
-    compression_.frame_ended(tally.compression());
+    substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
+    compression_.frame_ended(tally.extremes.compression());
     // Longer lists lie elsewhere: what they held is gone.
     if (state_.neighbours.grow(tally.lists)) state_.lists_hold = false;
     ++frame_;
@@ -302,7 +302,7 @@ class FluidSimulation final : public Simulation {
     state_.parameters.substeps = count;
     state_.parameters.dt = static_cast<float>(frame_dt() / count);
   }
-  double frame_dt() const { return options_.frame_dt_s > 0 ? options_.frame_dt_s : scene_.frame_dt_s; }
+  double frame_dt() const { return frame_dt_of(scene_, options_); }
 
   void prepare_start() {
     relaxed_ = relax_start(state_, options_.start_projections);

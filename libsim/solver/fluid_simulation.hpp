@@ -14,6 +14,8 @@ namespace sim::SIM_BACKEND {
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 
+/// Content time of a frame, s.
+double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// sqrt(v0^2 + 2 g H), m/s: what water that starts so, pours in or falls all the way to the floor gets to at

@@ -111,7 +111,7 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
   auto& jets = state.jets;
   jets.nozzles = scene.nozzles;
   jets.finest_spacing_m = resolution.finest_spacing_m;
-  jets.frame_dt_s = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
+  jets.frame_dt_s = frame_dt_of(scene, options);
   jets.level = resolution.level;
   jets.by_target = state.particles.has(Column::Target);
   jets.before.clear();

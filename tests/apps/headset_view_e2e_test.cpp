@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/apps/headset_runs.hpp"
+#include "tests/apps/small_dam.hpp"
 
 namespace apps {
 namespace {
@@ -15,30 +16,7 @@ using ::testing::Not;
 class HeadsetViewE2e : public test::HeadsetRuns {
  protected:
   /// A small dam that breaks at once, seen from near.
-  void SetUp() override {
-    base::write_file_atomically(folder_ / "dam.toml", R"(format = 1
-name = "SmallDam"
-gravity_m_s2 = 9.81
-checkpoints = []
-[tank]
-size_m = [2.0, 1.0, 1.0]
-[water]
-min_m = [0.0, 0.0, 0.0]
-max_m = [1.0, 0.8, 1.0]
-gate = false
-settle_frames = 0
-[time]
-frames_per_s = 60.0
-v_ref_m_s = 4.0
-min_substeps = 2
-iterations = 2
-[view]
-eye_m = [1.0, 0.6, 2.6]
-target_m = [1.0, 0.4, 0.5]
-vertical_fov_deg = 60.0
-near_m = 0.1
-)");
-  }
+  void SetUp() override { base::write_file_atomically(folder_ / "dam.toml", test::small_dam); }
 
   std::vector<std::string> arguments(const std::vector<std::string>& more) const {
     std::vector<std::string> all{bin + "/vip-view", folder_ / "dam.toml", "--display",

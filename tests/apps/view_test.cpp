@@ -8,6 +8,7 @@
 #include "libsim/render/png.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/apps/small_dam.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace {
@@ -19,30 +20,7 @@ using apps::test::Ended;
 /// vip-view on a small dam: 64 particles, nothing to settle.
 class ViewE2e : public ::testing::Test {
  protected:
-  ViewE2e() {
-    base::write_file_atomically(scene(), R"(format = 1
-name = "SmallDam"
-gravity_m_s2 = 9.81
-checkpoints = []
-[tank]
-size_m = [2.0, 1.0, 1.0]
-[water]
-min_m = [0.0, 0.0, 0.0]
-max_m = [1.0, 0.8, 1.0]
-gate = false
-settle_frames = 0
-[time]
-frames_per_s = 60.0
-v_ref_m_s = 4.0
-min_substeps = 2
-iterations = 2
-[view]
-eye_m = [1.0, 0.6, 2.6]
-target_m = [1.0, 0.4, 0.5]
-vertical_fov_deg = 60.0
-near_m = 0.1
-)");
-  }
+  ViewE2e() { base::write_file_atomically(scene(), apps::test::small_dam); }
 
   std::string scene() const { return (folder / "dam.toml").string(); }
 

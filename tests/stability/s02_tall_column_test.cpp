@@ -46,8 +46,8 @@ void column_stands(Backend backend, int frames) {
   const Column column = stand(backend, 80, frames);
   EXPECT_LT(column.loss, 0.03);
   EXPECT_LT(column.densest, 1.15);
-  // Before compression was taken away at the frame's beginning the lattice shot up at 7 m/s, and 40 % of it
-  // stood above its height.
+  // Before compression was taken away at the frame's beginning the lattice shot up at 7 m/s, and its centre
+  // rose by 41 %.
   EXPECT_LT(column.fastest_rms, 1.5);
   EXPECT_LT(column.top_m, 84 * d);
 }
