@@ -288,7 +288,8 @@ class FluidSimulation final : public Simulation {
                       static_cast<float>(scene_.tank_size_m[2])}};
     keeper_.begin(start, finest_level_, coarsest_level_);
     state_.parameters.most_speed = static_cast<float>(speed_bound(start));
-    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start));
+    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
+                             start_acceleration(scene_, start));
     put_in(state_, start);
     if (adaptive()) state_.levels.begin(NewLevelsView(p));
     state_.walls = walls_of(scene_, false);

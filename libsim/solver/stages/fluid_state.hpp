@@ -13,10 +13,18 @@
 
 namespace sim::SIM_BACKEND {
 
+/// Acceleration -strength r towards an axis (sim::CentralForce).
+struct CentralPull {
+  float strength = 0;  ///< Omega^2, 1/s2; 0 leaves it out of the kernel
+  Vec3 centre{};
+  Vec3 axis{0, 0, 1};
+};
+
 /// Numbers of the solver. Defaults are measured ones; docs/solver_notes.md says how.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
   float gravity = 9.81f;      ///< along -y, m/s2
+  CentralPull pull;           ///< beside gravity
   float dt = 1.0f / 180;      ///< substep, s
   int substeps = 3;           ///< a frame
   int iterations = 4;         ///< constraint projections a substep

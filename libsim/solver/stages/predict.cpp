@@ -4,17 +4,34 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A particle that is not solved flies at the velocity it was given: gravity and pressure are both in it.
-template <class Selection>
+struct Gravity {
+  float gravity;
+  /// What it does to v in a time of dt.
+  SIM_FN void act(Vec3, Vec3& v, float dt) const { v.y -= gravity * dt; }
+};
+
+struct GravityAndPull {
+  Gravity down;
+  CentralPull pull;
+  SIM_FN void act(Vec3 x, Vec3& v, float dt) const {
+    down.act(x, v, dt);
+    const Vec3 from = x - pull.centre;
+    v += -(pull.strength * dt) * (from - dot(from, pull.axis) * pull.axis);
+  }
+};
+
+/// A particle that is not solved flies at the velocity it was given: forces and pressure are both in it.
+template <class Selection, class Forces>
 struct Predict {
   Selection select;
+  Forces forces;
   Vec4* position;
   Vec4* velocity;
   Vec4* predicted;
   Walls walls;
   Vec3 refuge;
   Witness witness;
-  float gravity, dt, most_speed, wall_gap;
+  float dt, most_speed, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
@@ -23,9 +40,9 @@ struct Predict {
     quarantine(x, v, i);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
-      v.y -= gravity * dt;
+      forces.act(x, v, dt);
     } else {
-      v.y -= select.falls(i) * gravity * dt;
+      forces.act(x, v, select.falls(i) * dt);
     }
     v = limited(v, most_speed, witness, i);
     velocity[i] = with_w(v, 0);
@@ -49,21 +66,29 @@ struct Predict {
 using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                            columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
+template <class Selection, class Forces>
+void launch(FluidState& state, Columns p, Selection select, Forces forces) {
+  const auto& k = state.parameters;
+  for_each("predict", p.size(),
+           Predict<Selection, Forces>{.select = select,
+                                      .forces = forces,
+                                      .position = p.position(),
+                                      .velocity = p.velocity(),
+                                      .predicted = p.predicted(),
+                                      .walls = state.walls,
+                                      .refuge = state.refuge,
+                                      .witness = state.witness(p.id(), 0),
+                                      .dt = k.dt,
+                                      .most_speed = k.most_speed,
+                                      .wall_gap = k.wall_gap});
+}
+
 template <class Selection>
 void launch(FluidState& state, Columns p, Selection select) {
   const auto& k = state.parameters;
-  for_each("predict", p.size(),
-           Predict<Selection>{.select = select,
-                              .position = p.position(),
-                              .velocity = p.velocity(),
-                              .predicted = p.predicted(),
-                              .walls = state.walls,
-                              .refuge = state.refuge,
-                              .witness = state.witness(p.id(), 0),
-                              .gravity = k.gravity,
-                              .dt = k.dt,
-                              .most_speed = k.most_speed,
-                              .wall_gap = k.wall_gap});
+  const Gravity down{k.gravity};
+  k.pull.strength > 0 ? launch(state, p, select, GravityAndPull{down, k.pull})
+                      : launch(state, p, select, down);
 }
 
 void run(FluidState& state, Columns p) {
