@@ -91,13 +91,16 @@ struct FluidState {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
   Guards* guard() { return guards.data(); }
+  /// For a pass in the first (0) or second (1) half of the present substep.
+  Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
 };
 
-/// v, or as much of it as `limit` m/s allow; counted when that is less.
-SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
+/// v of particle i, or as much of it as `limit` m/s allow; counted when that is less.
+SIM_FN Vec3 limited(Vec3 v, float limit, Witness witness, int i) {
   const float speed = length(v);
   if (!(speed > limit)) return v;
-  atomic_add(&guards->speed_limited, std::uint64_t{1});
+  atomic_add(&witness.guards->speed_limited, std::uint64_t{1});
+  witness.note(Trouble::TooFast, i);
   return (limit / speed) * v;
 }
 

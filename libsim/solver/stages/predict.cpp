@@ -30,39 +30,40 @@ struct Predict {
   Vec4* predicted;
   Walls walls;
   Vec3 refuge;
-  Guards* guards;
+  Witness witness;
   float dt, most_speed, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
     Vec3 v = xyz(velocity[i]);
-    quarantine(x, v);
+    quarantine(x, v, i);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
       forces.act(x, v, dt);
     } else {
       forces.act(x, v, select.falls(i) * dt);
     }
-    v = limited(v, most_speed, guards);
+    v = limited(v, most_speed, witness, i);
     velocity[i] = with_w(v, 0);
     if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&guards->wall_projected, std::uint64_t{1});
+      atomic_add(&witness.guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
   /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
   /// either.
-  SIM_FN void quarantine(Vec3& x, Vec3& v) const {
+  SIM_FN void quarantine(Vec3& x, Vec3& v, int i) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
-    atomic_add(&guards->not_finite, std::uint64_t{1});
+    atomic_add(&witness.guards->not_finite, std::uint64_t{1});
+    witness.note(Trouble::NotFinite, i);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity),
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                            columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
 template <class Selection, class Forces>
@@ -76,7 +77,7 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces) {
                                       .predicted = p.predicted(),
                                       .walls = state.walls,
                                       .refuge = state.refuge,
-                                      .guards = state.guard(),
+                                      .witness = state.witness(p.id(), 0),
                                       .dt = k.dt,
                                       .most_speed = k.most_speed,
                                       .wall_gap = k.wall_gap});
