@@ -32,9 +32,13 @@ TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
 
 TEST(S09Jet, FallingCountsBeforeItIsMeasured) {
   // A frame of 0.25 s: two of them add 4.9 m/s.
-  const sim::SubstepRule rule(
-      {.frame_dt_s = 0.25, .support_m = 0.3, .courant = 0.5, .gravity_m_s2 = gravity, .least = 1, .most = 32},
-      0);
+  const sim::SubstepRule rule({.frame_dt_s = 0.25,
+                               .support_m = 0.3,
+                               .courant = 0.5,
+                               .acceleration_m_s2 = gravity,
+                               .least = 1,
+                               .most = 32},
+                              0);
   EXPECT_EQ(rule.next(), 9);
 }
 
