@@ -69,6 +69,13 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
   return out;
 }
 
+/// Processor and cores; the operating system has no say in the numbers.
+std::string processor() {
+  const std::string machine = study::describe_machine();
+  const auto end = machine.find("; ");
+  return end == std::string::npos ? machine : machine.substr(end + 2);
+}
+
 /// What failed of a case; empty when nothing did.
 std::string failure(const Outcome& outcome) {
   if (outcome.passes()) return "";
@@ -165,7 +172,7 @@ StabilityMap map_of(const StabilityOptions& options) {
   StabilityMap out;
   out.most = options.most;
   out.resolution = options.resolution;
-  out.circumstances = study::describe_machine() + "; back end " + sim::backend_name(backend) + "; " +
+  out.circumstances = processor() + "; back end " + sim::backend_name(backend) + "; " +
                       (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration";
   const auto methods = methods_of(options.methods);
   for (const auto method : methods) out.methods.push_back(sim::method_name(method));

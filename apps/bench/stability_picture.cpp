@@ -9,7 +9,6 @@ namespace apps {
 
 namespace {
 
-using svg::number;
 using svg::Point;
 
 constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 22;
@@ -123,8 +122,8 @@ std::string to_svg(const StabilityMap& map) {
     left += panel_px + gap_px;
   }
   picture.body += legend(rows_end + 30);
-  picture.body += svg::text({8, rows_end + 76}, map.circumstances + "; factors up to " + number(map.most, 1) +
-                                                    ", resolution " + number(map.resolution, 2) +
+  picture.body += svg::text({8, rows_end + 76}, map.circumstances + "; factors up to " + shortest(map.most) +
+                                                    ", resolution " + shortest(map.resolution) +
                                                     "; + : all that was tried passed");
   picture.body += "</g>\n";
   return svg::document(picture);

@@ -238,13 +238,17 @@ SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
 SIM_TEST(CoarsePressure, CellsHoldTheVolumeOfTheirParticles) {
   auto state = column_of(8, 8, 0.1f, 1);
   auto points = state.particles.all().predicted.to_host();
+  std::vector<std::uint8_t> levels;
   double volume = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const int level = static_cast<int>(i % 4);
     points[i].w *= std::exp2(static_cast<float>(level) / 3);
+    levels.push_back(static_cast<std::uint8_t>(level));
     volume += 1 << level;
   }
   state.one_level = false;
+  state.supports = level_supports(0.2);
+  state.particles.all().level.from_host(levels);
   state.particles.all().predicted.from_host(points);
   state.particles.all().ease.from_host(std::vector<float>(points.size(), 1));
   neighbours_stage().run(state);
