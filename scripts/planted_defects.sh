@@ -93,7 +93,7 @@ copy_sources() {  # as they lie here, committed or not
 }
 build() { cmake --build "$copy/build/dev" --target "$@" >"$log" 2>&1; }
 run() {  # run PROGRAM FILTER
-  (cd "$copy" && timeout "${VIP_PLANTED_SECONDS:-300}" "build/dev/tests/$1" --gtest_filter="$2" --gtest_brief=1) >>"$log" 2>&1
+  { (cd "$copy" && timeout "${VIP_PLANTED_SECONDS:-300}" "build/dev/tests/$1" --gtest_filter="$2" --gtest_brief=1); } >>"$log" 2>&1
 }
 row() { printf '%-20s %-58s %s\n' "$@" | tee -a "$table"; }
 

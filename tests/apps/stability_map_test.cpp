@@ -114,7 +114,7 @@ TEST_F(StabilityE2e, RefusesWhatIsNotThereAndSaysWhatIs) {
   expect_refused("--case S99", "S2,");
   expect_refused("--method Water", "FovFluid");
   expect_refused("--resolution 1.5", "--quick");
-  expect_refused("--csv /nowhere/map.csv --case S9", "/nowhere");
+  expect_refused("--case S9 --csv " + path("."), path("."));
   const auto coarse = table("stability --most 1.5 --resolution 2");
   EXPECT_THAT(coarse.out, HasSubstr("--resolution 2"));
   EXPECT_EQ(coarse.exit_code, 1);
