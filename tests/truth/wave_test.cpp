@@ -58,7 +58,7 @@ void wave_swings(Run run, const TruthFile& file, std::size_t row, double d, doub
 }
 
 /// The first `rows` of each file, in tanks so many spacings long.
-void waves_swing(Backend backend, int spacings, std::size_t rows) {
+void waves_swing(Run run, int spacings, std::size_t rows) {
   constexpr double length = 2;
   const double d = length / spacings;
   const auto files = truth_of("standing_wave");
@@ -66,13 +66,13 @@ void waves_swing(Backend backend, int spacings, std::size_t rows) {
   for (const auto& file : files) {
     for (std::size_t row = 0; row < std::min(rows, file.column("kh").size()); ++row) {
       const double depth = d * std::round(file.column("kh")[row] * length / pi / d);
-      const State rest = settled(backend, {length, depth, 6 * d}, d, 40);
-      for (const auto method : methods) wave_swings({backend, method}, file, row, d, length, rest);
+      wave_swings(run, file, row, d, length, settled(run.backend, {length, depth, 6 * d}, d, 40));
     }
   }
 }
-TEST(TruthWave, SwingsWithItsPeriod) { waves_swing(Backend::Cpu, 32, 1); }
-TEST(TruthWaveSlow, SwingsWithItsPeriod) { waves_swing(Backend::Cpu, 48, 3); }
-TEST(TruthWaveGpu, SwingsWithItsPeriod) { waves_swing(Backend::Cuda, 128, 3); }
+TEST(TruthWave, HiResSwingsWithItsPeriod) { waves_swing({Backend::Cpu, MethodKind::HiRes}, 32, 1); }
+TEST(TruthWave, OursSwingsWithItsPeriod) { waves_swing({Backend::Cpu, MethodKind::Ours}, 32, 1); }
+TEST(TruthWaveGpu, HiResSwingsWithItsPeriod) { waves_swing({Backend::Cuda, MethodKind::HiRes}, 128, 3); }
+TEST(TruthWaveGpu, OursSwingsWithItsPeriod) { waves_swing({Backend::Cuda, MethodKind::Ours}, 128, 3); }
 
 }  // namespace
