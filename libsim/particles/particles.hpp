@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libsim/particles/columns.hpp"
+#include "libsim/particles/momentum.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -19,6 +20,7 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
+  Momentum braked;  ///< that the limit of speed and the quarantine took
 };
 
 /// Support radius of each mass level, m: cbrt(2^level) h_* (Eq. 10).

@@ -3,6 +3,7 @@
 
 #include "libsim/activation/activation.hpp"
 #include "libsim/flow/jets.hpp"
+#include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/particles/kernels.hpp"
@@ -46,6 +47,27 @@ struct SolverParameters {
   float wall_gap = 0.1f;
 };
 
+/// Takes from a particle's velocity what guards do not allow, and counts it.
+struct Brake {
+  Guards* guards;
+  float most_speed, finest_support;
+
+  /// v, or as much of it as is allowed, of a particle of support h.
+  SIM_FN Vec3 limited(Vec3 v, float h) const {
+    const float speed = length(v);
+    if (!(speed > most_speed)) return v;
+    atomic_add(&guards->speed_limited, std::uint64_t{1});
+    const Vec3 left = (most_speed / speed) * v;
+    take(v - left, h);
+    return left;
+  }
+  SIM_FN void take(Vec3 v, float h) const {
+    Momentum taken{};
+    taken.add(mass_units_of(h, finest_support), v);
+    guards->braked.add_at_once(taken);
+  }
+};
+
 /// The fluid between two passes. Arrays of particles are in the grid's order of the last substep.
 struct FluidState {
   SolverParameters parameters;
@@ -78,6 +100,7 @@ struct FluidState {
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
+  ImpulseRecorder impulse;
   PartClock clock;
 
   /// Who was solved in the last frame; nullptr when everyone was.
@@ -91,14 +114,7 @@ struct FluidState {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
   Guards* guard() { return guards.data(); }
+  Brake brake() { return {guard(), parameters.most_speed, finest_support}; }
 };
-
-/// v, or as much of it as `limit` m/s allow; counted when that is less.
-SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
-  const float speed = length(v);
-  if (!(speed > limit)) return v;
-  atomic_add(&guards->speed_limited, std::uint64_t{1});
-  return (limit / speed) * v;
-}
 
 }  // namespace sim::SIM_BACKEND

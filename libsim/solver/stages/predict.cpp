@@ -30,33 +30,34 @@ struct Predict {
   Vec4* predicted;
   Walls walls;
   Vec3 refuge;
-  Guards* guards;
-  float dt, most_speed, wall_gap;
+  Brake brake;
+  float dt, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
     Vec3 v = xyz(velocity[i]);
-    quarantine(x, v);
+    quarantine(x, v, h);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
       forces.act(x, v, dt);
     } else {
       forces.act(x, v, select.falls(i) * dt);
     }
-    v = limited(v, most_speed, guards);
+    v = brake.limited(v, h);
     velocity[i] = with_w(v, 0);
     if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&guards->wall_projected, std::uint64_t{1});
+      atomic_add(&brake.guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
   /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
   /// either.
-  SIM_FN void quarantine(Vec3& x, Vec3& v) const {
+  SIM_FN void quarantine(Vec3& x, Vec3& v, float h) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
-    atomic_add(&guards->not_finite, std::uint64_t{1});
+    atomic_add(&brake.guards->not_finite, std::uint64_t{1});
+    brake.take(v, h);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
   }
@@ -76,9 +77,8 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces) {
                                       .predicted = p.predicted(),
                                       .walls = state.walls,
                                       .refuge = state.refuge,
-                                      .guards = state.guard(),
+                                      .brake = state.brake(),
                                       .dt = k.dt,
-                                      .most_speed = k.most_speed,
                                       .wall_gap = k.wall_gap});
 }
 
@@ -100,7 +100,8 @@ Stage predict_stage() {
   return stage_of<run>({.name = "predict",
                         .source = "Macklin and Mueller 2013, Alg. 1 lines 1-4",
                         .phase = Phase::Substep,
-                        .called_for = always_moves});
+                        .called_for = always_moves,
+                        .changes = Change::Forces});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -10,13 +10,13 @@ struct Advance {
   const Vec4* predicted;
   Vec4* velocity;
   Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
-  Guards* guards;
-  float dt, most_speed;
+  Brake brake;
+  float dt;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
-    velocity[i] = with_w(limited(after, most_speed, guards), 0);
+    velocity[i] = with_w(brake.limited(after, predicted[i].w), 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     position[i] = predicted[i];
   }
@@ -27,7 +27,6 @@ using Columns =
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
 void run(FluidState& state, Columns p) {
-  const auto& k = state.parameters;
   // The old places that PredictedNext holds are done with.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -35,9 +34,8 @@ void run(FluidState& state, Columns p) {
                    .predicted = p.predicted(),
                    .velocity = p.velocity(),
                    .kick = kick,
-                   .guards = state.guard(),
-                   .dt = k.dt,
-                   .most_speed = k.most_speed});
+                   .brake = state.brake(),
+                   .dt = state.parameters.dt});
 }
 
 }  // namespace
@@ -46,7 +44,8 @@ Stage velocity_stage() {
   return stage_of<run>({.name = "velocity",
                         .source = "Macklin and Mueller 2013, Alg. 1 lines 20-23",
                         .phase = Phase::SubstepEnd,
-                        .called_for = always_moves});
+                        .called_for = always_moves,
+                        .changes = Change::Projections});
 }
 
 }  // namespace sim::SIM_BACKEND
