@@ -87,7 +87,7 @@ class FluidSimulation final : public Simulation {
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
-    const FrameTally tally = keeper_.take(state_, went_by());
+    const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
     // Longer lists lie elsewhere: what they held is gone.
@@ -98,6 +98,12 @@ class FluidSimulation final : public Simulation {
   const FrameAccount& account() const override { return keeper_.account(); }
   MomentumAccount momentum() const override { return momentum_; }
   SubstepCount substeps() const override { return substeps_taken_; }
+  std::optional<Divergence> divergence() const override { return keeper_.divergence(); }
+
+  void put(const std::vector<ParticleState>& particles) override {
+    put_again(state_, particles);
+    state_.lists_hold = false;
+  }
 
   void force_targets(const TargetRegion& region) override {
     if (!options_.forced_targets) {

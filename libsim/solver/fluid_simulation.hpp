@@ -56,6 +56,8 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
 std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
 /// Particles of a start, in columns that have room for them, and the mass units that they make.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
+/// Places and velocities of particles that are there, by id. base::Error for an id that nobody has.
+void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// The scene's jets as they stand before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);

@@ -49,14 +49,15 @@ struct SolverParameters {
 
 /// Takes from a particle's velocity what guards do not allow, and counts it.
 struct Brake {
-  Guards* guards;
+  Witness witness;
   float most_speed, finest_support;
 
-  /// v, or as much of it as is allowed, of a particle of support h.
-  SIM_FN Vec3 limited(Vec3 v, float h) const {
+  /// v, or as much of it as is allowed, of particle i with support h.
+  SIM_FN Vec3 limited(Vec3 v, float h, int i) const {
     const float speed = length(v);
     if (!(speed > most_speed)) return v;
-    atomic_add(&guards->speed_limited, std::uint64_t{1});
+    atomic_add(&witness.guards->speed_limited, std::uint64_t{1});
+    witness.note(Trouble::TooFast, i);
     const Vec3 left = (most_speed / speed) * v;
     take(v - left, h);
     return left;
@@ -64,7 +65,7 @@ struct Brake {
   SIM_FN void take(Vec3 v, float h) const {
     Momentum taken{};
     taken.add(mass_units_of(h, finest_support), v);
-    guards->braked.add_at_once(taken);
+    witness.guards->braked.add_at_once(taken);
   }
 };
 
@@ -114,7 +115,9 @@ struct FluidState {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
   Guards* guard() { return guards.data(); }
-  Brake brake() { return {guard(), parameters.most_speed, finest_support}; }
+  /// For a pass in the first (0) or second (1) half of the present substep.
+  Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
+  Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -37,33 +37,34 @@ struct Predict {
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
     Vec3 v = xyz(velocity[i]);
-    quarantine(x, v, h);
+    quarantine(x, v, h, i);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
       forces.act(x, v, dt);
     } else {
       forces.act(x, v, select.falls(i) * dt);
     }
-    v = brake.limited(v, h);
+    v = brake.limited(v, h, i);
     velocity[i] = with_w(v, 0);
     if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&brake.guards->wall_projected, std::uint64_t{1});
+      atomic_add(&brake.witness.guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
   /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
   /// either.
-  SIM_FN void quarantine(Vec3& x, Vec3& v, float h) const {
+  SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
-    atomic_add(&brake.guards->not_finite, std::uint64_t{1});
+    atomic_add(&brake.witness.guards->not_finite, std::uint64_t{1});
+    brake.witness.note(Trouble::NotFinite, i);
     brake.take(v, h);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity),
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                            columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
 template <class Selection, class Forces>
@@ -77,7 +78,7 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces) {
                                       .predicted = p.predicted(),
                                       .walls = state.walls,
                                       .refuge = state.refuge,
-                                      .brake = state.brake(),
+                                      .brake = state.brake(p.id(), 0),
                                       .dt = k.dt,
                                       .wall_gap = k.wall_gap});
 }

@@ -16,14 +16,17 @@ struct Advance {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
-    velocity[i] = with_w(brake.limited(after, predicted[i].w), 0);
+    const Vec3 kept = brake.limited(after, predicted[i].w, i);
+    velocity[i] = with_w(kept, 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
-    position[i] = predicted[i];
+    // Nobody is carried farther than the limit allows: a crowd in one place would reach others at once.
+    position[i] = length(after) > brake.most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w)
+                                                   : predicted[i];
   }
 };
 
 using Columns =
-    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity),
+    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
 void run(FluidState& state, Columns p) {
@@ -34,7 +37,7 @@ void run(FluidState& state, Columns p) {
                    .predicted = p.predicted(),
                    .velocity = p.velocity(),
                    .kick = kick,
-                   .brake = state.brake(),
+                   .brake = state.brake(p.id(), 1),
                    .dt = state.parameters.dt});
 }
 
