@@ -52,7 +52,7 @@ defect cells-by-number "cells weigh particles by number, not by mass" $stages/co
 defect cells-leak "cells of a wall take part in the pressure" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
   'if (here == CellKind::Solid || before == CellKind::Solid) continue;' ''
 defect braked-way "the guard brakes a speed and not its way" $stages/velocity.cpp stability_test 'Divergence.AThousand*' \
-  'length(after) > most_speed' 'length(after) > 1e30f'
+  'length(after) > brake.most_speed' 'length(after) > 1e30f'
 
 index_of() {  # index_of NAME
   for i in "${!names[@]}"; do [ "${names[$i]}" = "$1" ] && { echo "$i"; return; }; done
