@@ -11,11 +11,58 @@ struct Plane {
   float offset;
 };
 
-/// Walls of a tank as signed distances.
+/// A hole in a plane: the box that holds it, without end across the plane.
+struct Opening {
+  int plane;
+  Vec3 low, high;
+
+  SIM_FN bool holds(Vec3 x) const {
+    return x.x >= low.x && x.y >= low.y && x.z >= low.z && x.x <= high.x && x.y <= high.y && x.z <= high.z;
+  }
+};
+
+/// Walls of a tank as signed distances. Before an opening its plane is not there. Water comes to the far side
+/// of a plane through its openings only: what is there is through and meets that plane no more.
 struct Walls {
   static constexpr int most = 8;
+  static constexpr int most_openings = 4;
   Plane planes[most];
   int count;
+  Opening openings[most_openings];
+  int opening_count;
+
+  SIM_FN float distance(int plane, Vec3 x) const {
+    return dot(planes[plane].normal, x) - planes[plane].offset;
+  }
+  /// Does x lie before an opening in this plane?
+  SIM_FN bool opens(int plane, Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (openings[o].plane == plane && openings[o].holds(x)) return true;
+    }
+    return false;
+  }
+  /// Is x on the far side of a plane that has an opening?
+  SIM_FN bool through(int plane, Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (openings[o].plane == plane) return distance(plane, x) < 0;
+    }
+    return false;
+  }
+  SIM_FN bool through(Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (distance(openings[o].plane, x) < 0) return true;
+    }
+    return false;
+  }
+  /// Is the plane not there for what moves from `from` to `to`? Only asked near and beyond the plane.
+  SIM_FN bool lets(int plane, Vec3 from, Vec3 to) const {
+    if (opening_count == 0) return false;
+    if (through(plane, from)) return true;
+    const float before = distance(plane, from);
+    const float after = distance(plane, to);
+    // The straight way meets the plane there.
+    return opens(plane, after < 0 ? from + (before / (before - after)) * (to - from) : to);
+  }
 
   /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
   /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
@@ -27,6 +74,7 @@ struct Walls {
     for (int k = 0; k < count; ++k) {
       const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
       if (q >= 1) continue;
+      if (opening_count > 0 && (through(k, x) || opens(k, x))) continue;
       const float inside = fmaxf(q, 0.0f);
       const float kept = 1 - behind(inside);
       // Product rule; the wall's share falls along its normal.
@@ -56,7 +104,7 @@ struct Walls {
   /// True where x lies at least `gap` inside every wall.
   SIM_FN bool holds(Vec3 x, float gap = 0) const {
     for (int k = 0; k < count; ++k) {
-      if (dot(planes[k].normal, x) < planes[k].offset + gap) return false;
+      if (dot(planes[k].normal, x) < planes[k].offset + gap && !opens(k, x)) return false;
     }
     return true;
   }
@@ -70,7 +118,7 @@ struct Walls {
       const float border = planes[k].offset + gap;
       const float least = kept_distance * fmaxf(dot(planes[k].normal, x) - border, 0.0f);
       const float beyond = least - (dot(planes[k].normal, to) - border);
-      if (beyond <= 0) continue;
+      if (beyond <= 0 || lets(k, x, to)) continue;
       to += beyond * planes[k].normal;
       held = true;
     }
@@ -79,12 +127,12 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x to at least `gap` inside every wall; true when it had to.
-  SIM_FN bool project(Vec3& x, float gap) const {
+  /// Moves x, which comes from `from`, to at least `gap` inside every wall; true when it had to.
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap) const {
     bool moved = false;
     for (int k = 0; k < count; ++k) {
       const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
-      if (depth <= 0) continue;
+      if (depth <= 0 || lets(k, from, x)) continue;
       x += depth * planes[k].normal;
       moved = true;
     }

@@ -64,7 +64,7 @@ struct Displace {
     if (zero) x += parted(slot, self, own);
     // `next` still holds the positions before the last projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
-    if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    if (walls.project(x, xyz(self), wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
     next[i] = with_w(x, self.w);
   }
 

@@ -17,7 +17,7 @@ struct Follow {
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     Vec3 to = xyz(led_to[i]) + (xyz(mended[i]) - xyz(at));
-    walls.project(to, wall_gap * at.w / 2);
+    walls.project(to, xyz(led_to[i]), wall_gap * at.w / 2);
     position[i] = with_w(xyz(mended[i]), at.w);
     predicted[i] = with_w(to, at.w);
     predicted_next[i] = predicted[i];

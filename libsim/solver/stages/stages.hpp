@@ -50,6 +50,9 @@ Stage xsph_of_levels_stage();
 /// Velocity x 0.9 a frame while the water settles.
 Stage settling_stage();
 
+/// What is through an outlet leaves; last in a frame.
+Stage outflow_stage();
+
 /// Which particles the frame solves.
 Stage activation_stage();
 /// Velocity and energy grids; what was not solved inherits from them.
