@@ -15,6 +15,7 @@
 #include "libsim/exec/launch_time.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
+#include "libsim/particles/divergence.hpp"
 #include "libsim/particles/particle_state.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/saliency/looks.hpp"
@@ -210,6 +211,11 @@ class Simulation {
   virtual const FrameAccount& account() const = 0;
   /// Of the frame that step_frame computed last.
   virtual SubstepCount substeps() const { return {}; }
+  /// The first trouble since the simulation was made; none in a sound run. Costs a frame nothing to speak of.
+  virtual std::optional<Divergence> divergence() const { return {}; }
+  /// Gives particles that are there new places and velocities, by id: a test's way to break the water. Levels
+  /// stay. base::Error for an id that nobody has.
+  virtual void put(const std::vector<ParticleState>&) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;

@@ -24,4 +24,15 @@ nlohmann::json account_json(std::int64_t frame, const study::FrameFacts& facts) 
   return out;
 }
 
+nlohmann::json divergence_json(const std::optional<sim::Divergence>& divergence) {
+  if (!divergence) return {};
+  nlohmann::json out{{"frame", divergence->frame},
+                     {"particle", divergence->particle},
+                     {"cause", sim::in_words(divergence->cause)},
+                     {"count", divergence->count},
+                     {"in_words", sim::in_words(*divergence)}};
+  if (const auto& at = divergence->where_m) out["where_m"] = *at;
+  return out;
+}
+
 }  // namespace apps

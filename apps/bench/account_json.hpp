@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "libsim/particles/divergence.hpp"
 #include "libstudy/display/stimulus.hpp"
 
 namespace apps {
@@ -15,5 +16,8 @@ inline nlohmann::json or_null(const std::optional<double>& value) {
 
 /// frame: since the gate opened.
 nlohmann::json account_json(std::int64_t frame, const study::FrameFacts& facts);
+
+/// null: a sound run.
+nlohmann::json divergence_json(const std::optional<sim::Divergence>& divergence);
 
 }  // namespace apps

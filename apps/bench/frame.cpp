@@ -207,6 +207,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
         {"neighbours_dropped", report.guards.neighbours_dropped},
         {"wall_projected", report.guards.wall_projected},
         {"nozzle_waited", report.guards.nozzle_waited}}},
+      {"divergence", divergence_json(fluid->divergence())},
       {"accounts", accounts.all},
       {"launches", launches},
       {"schedule", fluid->explain()}};
@@ -249,6 +250,8 @@ void print_table(const nlohmann::json& result) {
               temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
               100 * temporal["solved_share_mean"].get<double>());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
+  if (const auto& first = result["divergence"]; !first.is_null())
+    std::printf("  divergence   %s\n", first["in_words"].get<std::string>().c_str());
   for (const auto& pass : result["launches"]) {
     std::printf("  %-32s %8.4f ms a frame in %6.1f launches\n", pass["pass"].get<std::string>().c_str(),
                 pass["ms_a_frame"].get<double>(), pass["launches_a_frame"].get<double>());

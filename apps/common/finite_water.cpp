@@ -6,13 +6,21 @@
 
 namespace apps {
 
+namespace {
+std::string first_of(const sim::Simulation& fluid) {
+  const auto divergence = fluid.divergence();
+  return divergence ? "; first trouble: " + sim::in_words(*divergence) : "";
+}
+}  // namespace
+
 void check_finite(sim::Simulation& fluid, const std::string& place) {
   const sim::FrameReport report = fluid.report();
   const bool finite = std::isfinite(report.density_error_mean) && std::isfinite(report.speed_max_m_s);
   if (report.guards.not_finite == 0 && finite) return;
   throw base::Error(place,
                     "the water broke: " + std::to_string(report.guards.not_finite) +
-                        " times a particle was not finite, so that nothing of it can be used",
+                        " times a particle was not finite, so that nothing of it can be used" +
+                        first_of(fluid),
                     "use another time step, more substeps, or numbers of the solver nearer to the defaults");
 }
 

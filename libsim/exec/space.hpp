@@ -300,6 +300,14 @@ SIM_FN void atomic_max(int* target, int value) {
 #endif
 }
 
+SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicMax(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
+#else
+  if (value > *target) *target = value;
+#endif
+}
+
 #else
 
 /// Indices that a thread takes at once: enough to hide what taking costs, and several turns for each thread,
@@ -370,7 +378,8 @@ inline std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
   return was;
 }
 
-inline void atomic_max(int* target, int value) {
+template <class T>
+void atomic_max(T* target, T value) {
 #pragma omp critical(sim_atomic_max)
   if (value > *target) *target = value;
 }

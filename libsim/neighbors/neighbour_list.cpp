@@ -52,7 +52,7 @@ struct ListNeighbours {
   int* store;
   std::size_t store_size;
   NeighbourList::Need* need;
-  std::uint64_t* dropped;
+  Witness witness;
   float margin;
 
   /// Takes the near ones of a run.
@@ -107,7 +107,8 @@ struct ListNeighbours {
     atomic_max(&need->longest, found);
     const std::uint64_t first = atomic_take(&need->stored, static_cast<std::uint64_t>(found));
     if (first + static_cast<std::uint64_t>(found) > store_size) {
-      atomic_add(dropped, static_cast<std::uint64_t>(found - list.room()));
+      atomic_add(&witness.guards->neighbours_dropped, static_cast<std::uint64_t>(found - list.room()));
+      witness.note(Trouble::NeighboursDropped, i);
       count[slot] = list.room();
       return;
     }
@@ -137,7 +138,7 @@ struct ListNeighbours {
 
 template <class Rows, class Selection>
 void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, Selection select,
-                         std::uint64_t* dropped) {
+                         Witness witness) {
   const auto n = static_cast<std::size_t>(particles.size());
   const auto room = static_cast<std::size_t>(particles.capacity());
   const auto entries = [&](std::size_t size) {
@@ -156,33 +157,33 @@ void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, S
   for_each_team("list neighbours", particles.size(),
                 ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows,
                                                 view(), entry_.data(), count_.data(), store_.data(),
-                                                store_.size(), need_.data(), dropped, margin});
+                                                store_.size(), need_.data(), witness, margin});
 }
 
-void NeighbourList::build(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
-  list(particles, grid, OneLevelRows{grid.rows()}, AllParticles{}, dropped);
+void NeighbourList::build(PredictedView particles, const Grid& grid, Witness witness) {
+  list(particles, grid, OneLevelRows{grid.rows()}, AllParticles{}, witness);
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, ActiveParticles active,
-                          std::uint64_t* dropped) {
-  list(particles, grid, OneLevelRows{grid.rows()}, active, dropped);
+                          Witness witness) {
+  list(particles, grid, OneLevelRows{grid.rows()}, active, witness);
 }
 
-void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, std::uint64_t* dropped) {
+void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, Witness witness) {
   capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, AllParticles{}, dropped);
+  list(particles, grid, MixedRows{grid.level_rows()}, AllParticles{}, witness);
 }
 
 void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active,
-                                std::uint64_t* dropped) {
+                                Witness witness) {
   capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, active, dropped);
+  list(particles, grid, MixedRows{grid.level_rows()}, active, witness);
 }
 
 void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone,
-                                std::uint64_t* dropped) {
+                                Witness witness) {
   capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, everyone, dropped);
+  list(particles, grid, MixedRows{grid.level_rows()}, everyone, witness);
 }
 
 void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {

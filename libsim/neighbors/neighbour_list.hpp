@@ -75,15 +75,15 @@ class NeighbourList {
   static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Lists beyond the
-  /// capacity go to the store; what finds no room there either is left out and counted in `dropped`.
-  void build(PredictedView particles, const Grid& grid, std::uint64_t* dropped);
+  /// capacity go to the store; what finds no room there either is left out and told to the witness.
+  void build(PredictedView particles, const Grid& grid, Witness witness);
   /// For the active particles only, a list for each of their slots.
-  void build(PredictedView particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
+  void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
   /// The same for mixed levels.
-  void build_mixed(PredictedView particles, const Grid& grid, std::uint64_t* dropped);
-  void build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active, std::uint64_t* dropped);
+  void build_mixed(PredictedView particles, const Grid& grid, Witness witness);
+  void build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
   /// The same with lists for the others' slots too.
-  void build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone, std::uint64_t* dropped);
+  void build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   /// Every slot's list, for tests.
@@ -113,7 +113,7 @@ class NeighbourList {
   static constexpr std::size_t most_store = 1 << 26;
 
   template <class Rows, class Selection>
-  void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, std::uint64_t* dropped);
+  void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, Witness witness);
 
   int capacity_ = 80;
   Array<int> count_, entry_, store_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libsim/particles/columns.hpp"
+#include "libsim/particles/divergence.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -19,6 +20,30 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
+  std::uint64_t first;  ///< what Witness met first, as a TroubleKey; 0 = nothing
+};
+
+/// When in a frame, what and to whom: the earlier has the larger number, so that atomic_max keeps the first
+/// whatever the order of the threads.
+struct TroubleKey {
+  static constexpr std::uint64_t all = ~std::uint64_t{0};
+  /// `half`: half of a substep, counted over the frame, 0 .. 2^24 - 1.
+  SIM_FN static std::uint64_t of(int half, Trouble cause, int id) {
+    return all - (static_cast<std::uint64_t>(half) << 40 | static_cast<std::uint64_t>(cause) << 32 |
+                  static_cast<std::uint32_t>(id));
+  }
+  SIM_FN static Trouble cause(std::uint64_t key) { return static_cast<Trouble>((all - key) >> 32 & 0xff); }
+  SIM_FN static int id(std::uint64_t key) { return static_cast<int>(static_cast<std::uint32_t>(all - key)); }
+};
+
+/// What a pass tells of particles in trouble.
+struct Witness {
+  Guards* guards;
+  const int* id;
+  int half;  ///< see TroubleKey
+  SIM_FN void note(Trouble cause, int i) const {
+    atomic_max(&guards->first, TroubleKey::of(half, cause, id[i]));
+  }
 };
 
 /// Support radius of each mass level, m: cbrt(2^level) h_* (Eq. 10).

@@ -121,6 +121,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   if (scene.name.empty() || scene.name.size() > 64)
     root.fail("name", "is empty or too long", "use 1 to 64 characters");
   scene.gravity_m_s2 = root.number("gravity_m_s2", {0, 1000});
+  scene.central_force = read_central_force(root);
   for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
     scene.checkpoints.push_back(static_cast<int>(frame));
   scene.tank_size_m = vector(root.table("tank"), "size_m", {1e-2, farthest_m});

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "libsim/scene/central_force.hpp"
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/outlet.hpp"
 
@@ -45,6 +47,7 @@ struct Scene {
   Vec3d fill_min_m{};
   Vec3d fill_max_m{};
   double gravity_m_s2 = 9.81;
+  std::optional<CentralForce> central_force;  ///< beside gravity
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
   double v_ref_m_s = 0;

@@ -1,5 +1,9 @@
 #include "libsim/solver/account_keeper.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -10,7 +14,9 @@ struct Gather {
   const float* density;
   const std::uint8_t* level;
   const std::uint8_t* active;  ///< nullptr when everyone was solved
+  const int* id;
   int n, stride;
+  int half;  ///< the frame's end, see TroubleKey
   Extremes* out;
   SIM_FN void operator()(int first) const {
     float fastest = 0;
@@ -18,8 +24,11 @@ struct Gather {
     int mass = 0;
     for (int i = first; i < n; i += stride) {
       const Vec3 v = xyz(velocity[i]);
-      fastest = fmaxf(fastest, dot(v, v));
+      const float speed2 = dot(v, v);
+      fastest = fmaxf(fastest, speed2);
+      if (!(speed2 <= std::numeric_limits<float>::max())) tell(Trouble::NotFinite, i);
       if (active && !active[i]) continue;
+      if (!(density[i] <= Divergence::most_density)) tell(Trouble::TooDense, i);
       const int units = 1 << level[i];
       mass += units;
       excess += static_cast<float>(units) * fminf(fmaxf(density[i] - 1, 0.0f), 1.0f);
@@ -27,6 +36,10 @@ struct Gather {
     atomic_max(&out->fastest_bits, bits_of(sqrtf(fastest)));
     atomic_add(&out->excess, static_cast<std::uint64_t>(excess / Extremes::excess_unit));
     atomic_add(&out->mass, static_cast<std::uint64_t>(mass));
+  }
+  SIM_FN void tell(Trouble cause, int i) const {
+    atomic_add(&out->troubled, std::uint64_t{1});
+    atomic_max(&out->first, TroubleKey::of(half, cause, id[i]));
   }
   SIM_FN static int bits_of(float value) {
 #ifdef __CUDA_ARCH__
@@ -76,6 +89,18 @@ struct Tally {
   }
 };
 
+/// Costs a read-back: for the one frame of a run that has trouble first.
+std::optional<Vec3d> place_of(const Particles& particles, int id) {
+  const std::vector<int> ids = particles.all().id.to_host();
+  const auto found = std::find(ids.begin(), ids.end(), id);
+  if (found == ids.end()) return {};
+  Vec4 at;
+  copy_to_host(&at, particles.all().position.data() + (found - ids.begin()), sizeof at);
+  const Vec3d out{static_cast<double>(at.x), static_cast<double>(at.y), static_cast<double>(at.z)};
+  if (!std::isfinite(out[0] + out[1] + out[2])) return {};
+  return out;
+}
+
 GuardCounts difference(const GuardCounts& now, const GuardCounts& before) {
   return {now.speed_limited - before.speed_limited,
           now.coincident_pairs - before.coincident_pairs,
@@ -99,12 +124,13 @@ void AccountKeeper::begin(const std::vector<ParticleState>& start, int finest_le
   finest_level_ = finest_level;
   coarsest_level_ = coarsest_level;
   account_ = {};
+  divergence_.reset();
   account_.particles_by_level.assign(static_cast<std::size_t>(coarsest_level - finest_level + 1), 0);
   for (const ParticleState& particle : start)
     ++account_.particles_by_level[static_cast<std::size_t>(particle.level - finest_level)];
 }
 
-FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalReport> went_by) {
+FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalReport> went_by, int frame) {
   const auto& a = state.activation;
   const bool left_out = a.columns_set && !a.all_marked;
   tally_.resize(1);
@@ -118,8 +144,10 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
                   .density = p.density.data(),
                   .level = p.level.data(),
                   .active = left_out ? p.active.data() : nullptr,
+                  .id = p.id.data(),
                   .n = n,
                   .stride = lookers,
+                  .half = 2 * state.parameters.substeps,
                   .out = extremes_.data()});
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
@@ -136,7 +164,21 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   const GuardCounts met = guard_counts(tally.guards, state);
   account_.guards = difference(met, met_);
   met_ = met;
+  look_for_trouble(state, tally, frame);
   return tally;
+}
+
+void AccountKeeper::look_for_trouble(const FluidState& state, const FrameTally& tally, int frame) {
+  const std::uint64_t first = std::max(tally.guards.first, tally.extremes.first);
+  if (first == 0) return;
+  if (!divergence_) {
+    divergence_ = Divergence{
+        .frame = frame, .particle = TroubleKey::id(first), .cause = TroubleKey::cause(first), .where_m = {}};
+    divergence_->where_m = place_of(state.particles, divergence_->particle);
+  }
+  const GuardCounts& met = *account_.guards;
+  divergence_->count += met.not_finite + met.speed_limited + met.neighbours_dropped + met.coincident_pairs +
+                        tally.extremes.troubled;
 }
 
 }  // namespace sim::SIM_BACKEND

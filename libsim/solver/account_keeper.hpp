@@ -11,10 +11,12 @@ namespace sim::SIM_BACKEND {
 
 /// What is gathered over the particles.
 struct Extremes {
-  int fastest_bits;      ///< of the largest speed as a float, m/s: the order of floats >= 0
-  std::uint64_t excess;  ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
-                         ///< projection met it; in excess_unit
-  std::uint64_t mass;  ///< of these, in m_*
+  int fastest_bits;        ///< of the largest speed as a float, m/s: the order of floats >= 0
+  std::uint64_t excess;    ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
+                           ///< projection met it; in excess_unit
+  std::uint64_t mass;      ///< of these, in m_*
+  std::uint64_t troubled;  ///< particles that are not finite or too dense
+  std::uint64_t first;     ///< of them, as a TroubleKey; 0 = none
 
   static constexpr float excess_unit = 1.0f / (1 << 20);
   /// Mean over the water.
@@ -42,14 +44,21 @@ class AccountKeeper {
   /// Who is there before the first frame; levels that particles can have: finest .. coarsest.
   void begin(const std::vector<ParticleState>& start, int finest_level, int coarsest_level);
   /// After run_frame, which leaves the particles in the grid's order: level by level. `went_by`: temporal
-  /// acceleration, whose number of active particles is filled in; none where the method has none.
-  FrameTally take(const FluidState& state, std::optional<TemporalReport> went_by);
+  /// acceleration, whose number of active particles is filled in; none where the method has none. `frame`:
+  /// Simulation::frame() after it.
+  FrameTally take(const FluidState& state, std::optional<TemporalReport> went_by, int frame);
   const FrameAccount& account() const { return account_; }
+  /// What take() has found since begin().
+  const std::optional<Divergence>& divergence() const { return divergence_; }
 
  private:
   int finest_level_ = 0, coarsest_level_ = 0;
   FrameAccount account_;
+  /// Adds what a frame met, and says who was the first of the run.
+  void look_for_trouble(const FluidState& state, const FrameTally& tally, int frame);
+
   GuardCounts met_;  ///< up to the last frame
+  std::optional<Divergence> divergence_;
   Array<FrameTally> tally_;
   Array<Extremes> extremes_;
 };

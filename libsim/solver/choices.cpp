@@ -14,6 +14,33 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
   return options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
 }
 
+namespace {
+
+CentralPull pull_of(const CentralForce& force) {
+  const auto vector = [](const std::array<double, 3>& v) {
+    return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  };
+  return {static_cast<float>(force.omega_per_s * force.omega_per_s), vector(force.centre_m),
+          vector(force.axis)};
+}
+
+/// The farthest that nozzles and particles are from the axis of the central force, m; 0 without one.
+double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
+  if (!scene.central_force) return 0;
+  double out = 0;
+  const auto look = [&](const std::array<double, 3>& at) {
+    out = std::max(out, distance_from_axis(*scene.central_force, at));
+  };
+  for (const Nozzle& nozzle : scene.nozzles) look(nozzle.position_m);
+  for (const ParticleState& p : start) {
+    if (!std::isfinite(p.x_m) || !std::isfinite(p.y_m) || !std::isfinite(p.z_m)) continue;
+    look({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
+  }
+  return out;
+}
+
+}  // namespace
+
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
   SolverParameters out;
   const double frame_dt = frame_dt_of(scene, options);
@@ -21,6 +48,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
   out.dt = static_cast<float>(frame_dt / out.substeps);
   out.gravity = static_cast<float>(scene.gravity_m_s2);
+  if (scene.central_force) out.pull = pull_of(*scene.central_force);
   const auto choose = [](float& number, double wish) {
     if (wish >= 0) number = static_cast<float>(wish);
   };
@@ -53,16 +81,22 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
     if (std::isfinite(y)) height = std::max(height, y);
   }
   const double speed = start_speed(scene, start);
-  return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height);
+  const double swing = scene.central_force ? scene.central_force->omega_per_s * reach_of(scene, start) : 0;
+  return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
+}
+
+double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {
+  const double omega = scene.central_force ? scene.central_force->omega_per_s : 0;
+  return scene.gravity_m_s2 + omega * omega * reach_of(scene, start);
 }
 
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
-                         double fastest) {
+                         double fastest, double acceleration) {
   constexpr int usual_most = 32;
   SubstepLimits out;
   out.frame_dt_s = frame_dt_of(scene, options);
   out.courant = options.courant > 0 ? options.courant : scene.courant;
-  out.gravity_m_s2 = scene.gravity_m_s2;
+  out.acceleration_m_s2 = acceleration;
   const MethodTraits& method = traits_of(options.method);
   out.support_m = 2 * (method.adaptive() ? resolution.finest_spacing_m : resolution.spacing_m);
   out.least = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);

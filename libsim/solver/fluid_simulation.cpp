@@ -84,7 +84,7 @@ class FluidSimulation final : public Simulation {
     set_substeps(substeps_taken_.taken);
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
-    const FrameTally tally = keeper_.take(state_, went_by());
+    const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
     // Longer lists lie elsewhere: what they held is gone.
@@ -94,6 +94,12 @@ class FluidSimulation final : public Simulation {
 
   const FrameAccount& account() const override { return keeper_.account(); }
   SubstepCount substeps() const override { return substeps_taken_; }
+  std::optional<Divergence> divergence() const override { return keeper_.divergence(); }
+
+  void put(const std::vector<ParticleState>& particles) override {
+    put_again(state_, particles);
+    state_.lists_hold = false;
+  }
 
   void force_targets(const TargetRegion& region) override {
     if (!options_.forced_targets) {
@@ -283,7 +289,8 @@ class FluidSimulation final : public Simulation {
                       static_cast<float>(scene_.tank_size_m[2])}};
     keeper_.begin(start, finest_level_, coarsest_level_);
     state_.parameters.most_speed = static_cast<float>(speed_bound(start));
-    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start));
+    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
+                             start_acceleration(scene_, start));
     put_in(state_, start);
     if (adaptive()) state_.levels.begin(NewLevelsView(p));
     state_.walls = walls_of(scene_, false);

@@ -18,12 +18,15 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
-/// sqrt(v0^2 + 2 g H), m/s: what water that starts so, pours in or falls all the way to the floor gets to at
-/// most without being pushed. v0 is the fastest of the start and the nozzles, H their largest height.
+/// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: what water that starts so, pours in or falls all the way to the
+/// floor and to the axis of the central force gets to at most without being pushed. v0 is the fastest of the
+/// start and the nozzles, H their largest height, R their largest distance from the axis.
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
+/// g + Omega^2 R, m/s2: the largest acceleration that the forces give the start.
+double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
 /// Number of substeps from now on; `fastest` m/s are what the start and the nozzles bring.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
-                         double fastest);
+                         double fastest, double acceleration);
 /// Speed of the fastest of the start and the nozzles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// What the method calls for while it runs.
@@ -54,6 +57,8 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
 std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
 /// Particles of a start, in columns that have room for them, and the mass units that they make.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
+/// Places and velocities of particles that are there, by id. base::Error for an id that nobody has.
+void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// The scene's jets as they stand before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);

@@ -105,6 +105,23 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start) {
   }
 }
 
+void put_again(FluidState& state, const std::vector<ParticleState>& particles) {
+  auto& p = state.particles.all();
+  const std::vector<int> ids = p.id.to_host();
+  std::vector<Vec4> position = p.position.to_host();
+  std::vector<Vec4> velocity = p.velocity.to_host();
+  for (const auto& particle : particles) {
+    const auto found = std::find(ids.begin(), ids.end(), particle.id);
+    if (found == ids.end())
+      throw base::Error("particle " + std::to_string(particle.id), "is not there", "use ids of read_ids");
+    const auto i = static_cast<std::size_t>(found - ids.begin());
+    position[i] = {particle.x_m, particle.y_m, particle.z_m, position[i].w};
+    velocity[i] = {particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0};
+  }
+  p.position.from_host(position);
+  p.velocity.from_host(velocity);
+}
+
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame) {
   const auto f = [](double value) { return static_cast<float>(value); };

@@ -26,15 +26,15 @@ class TwoFramesAgo {
 /// What the number follows from. SI units.
 struct SubstepLimits {
   double frame_dt_s = 0;
-  double support_m = 0;  ///< h of the finest particles that the method can hold
-  double courant = 0.5;  ///< way of the fastest particle in a substep at most, as a share of h
-  double gravity_m_s2 = 0;
+  double support_m = 0;          ///< h of the finest particles that the method can hold
+  double courant = 0.5;          ///< way of the fastest particle in a substep at most, as a share of h
+  double acceleration_m_s2 = 0;  ///< by gravity and the central force
   int least = 1;
   int most = 1;  ///< >= least
 };
 
-/// Follows the fastest particle: v dt <= courant h, by its speed two frames ago and what gravity may have
-/// added since.
+/// Follows the fastest particle: v dt <= courant h, by its speed two frames ago and what the forces may
+/// have added since.
 class SubstepRule {
  public:
   SubstepRule() = default;
@@ -45,7 +45,7 @@ class SubstepRule {
   void frame_ended(double fastest_m_s) { fastest_.frame_ended(fastest_m_s); }
   /// Substeps that the next frame asks for; past `most` it is larger than what next() allows.
   int wished() const {
-    const double speed = fastest_.value() + 2 * limits_.gravity_m_s2 * limits_.frame_dt_s;
+    const double speed = fastest_.value() + 2 * limits_.acceleration_m_s2 * limits_.frame_dt_s;
     const double steps = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
     // Also where the speed is not finite, which the guards mend.
     const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;

@@ -129,6 +129,7 @@ const Rooms rooms{
     {"libsim/solver", 5},
     {"libsim/render", 5},
     {"libsim/bake", 5},
+    {"libsim/cases", 6},
 
     {"libstudy/base", 0},
     {"libstudy/display", 1},

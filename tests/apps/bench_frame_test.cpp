@@ -71,6 +71,21 @@ TEST_F(BenchFrameE2e, TimesEveryLaunch) {
   EXPECT_TRUE(figures()["launches"].empty());
 }
 
+TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {
+  ASSERT_EQ(bench("--no-render"), 0) << text;
+  EXPECT_TRUE(figures()["divergence"].is_null());
+  EXPECT_EQ(text.find("divergence"), std::string::npos) << text;
+  // One projection in a frame of a fifth of a second leaves the water crushed.
+  ASSERT_EQ(bench("--no-render --substeps 1 --iterations 1 --coarse-cycles 0 --dt 0.2 --frames 20"), 0)
+      << text;
+  const auto found = figures()["divergence"];
+  EXPECT_GE(found["frame"].get<int>(), 1);
+  EXPECT_GT(found["count"].get<int>(), 0);
+  EXPECT_EQ(found["where_m"].size(), 3u);
+  EXPECT_NE(found["cause"].get<std::string>().find("denser"), std::string::npos) << found;
+  EXPECT_NE(text.find("divergence   frame "), std::string::npos) << text;
+}
+
 TEST_F(BenchFrameE2e, RefusesBadPictures) {
   EXPECT_EQ(bench("--size 3x3"), 1);
   EXPECT_NE(text.find("--size 3x3"), std::string::npos) << text;

@@ -16,6 +16,7 @@ struct Displace {
   Walls walls;
   Vec4* next;
   Guards* guards;
+  int half;  ///< of a substep, see TroubleKey
   float rest_density, tensile, wall_gap, momentum;
 
   template <class Team>
@@ -61,7 +62,10 @@ struct Displace {
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
     Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
-    if (zero) x += parted(slot, self, own);
+    if (zero) {
+      x += parted(slot, self, own);
+      Witness{guards, id, half}.note(Trouble::Coincident, i);
+    }
     // `next` still holds the positions before the last projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
     if (walls.project(x, xyz(self), wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
@@ -111,6 +115,7 @@ void launch(FluidState& state, DisplacementView p, Selection select) {
                                                        .walls = state.walls,
                                                        .next = p.predicted_next(),
                                                        .guards = state.guard(),
+                                                       .half = 2 * state.substep,
                                                        .rest_density = k.rest_density,
                                                        .tensile = k.tensile,
                                                        .wall_gap = k.wall_gap,

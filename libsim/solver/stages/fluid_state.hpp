@@ -14,10 +14,18 @@
 
 namespace sim::SIM_BACKEND {
 
+/// Acceleration -strength r towards an axis (sim::CentralForce).
+struct CentralPull {
+  float strength = 0;  ///< Omega^2, 1/s2; 0 leaves it out of the kernel
+  Vec3 centre{};
+  Vec3 axis{0, 0, 1};
+};
+
 /// Numbers of the solver. Defaults are measured ones; docs/solver_notes.md says how.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
   float gravity = 9.81f;      ///< along -y, m/s2
+  CentralPull pull;           ///< beside gravity
   float dt = 1.0f / 180;      ///< substep, s
   int substeps = 3;           ///< a frame
   int iterations = 4;         ///< constraint projections a substep
@@ -86,13 +94,16 @@ struct FluidState {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
   Guards* guard() { return guards.data(); }
+  /// For a pass in the first (0) or second (1) half of the present substep.
+  Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
 };
 
-/// v, or as much of it as `limit` m/s allow; counted when that is less.
-SIM_FN Vec3 limited(Vec3 v, float limit, Guards* guards) {
+/// v of particle i, or as much of it as `limit` m/s allow; counted when that is less.
+SIM_FN Vec3 limited(Vec3 v, float limit, Witness witness, int i) {
   const float speed = length(v);
   if (!(speed > limit)) return v;
-  atomic_add(&guards->speed_limited, std::uint64_t{1});
+  atomic_add(&witness.guards->speed_limited, std::uint64_t{1});
+  witness.note(Trouble::TooFast, i);
   return (limit / speed) * v;
 }
 

@@ -19,18 +19,18 @@ using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, co
 
 /// Only those whom the frame solves need lists.
 void list_active(FluidState& state, SubstepView p) {
-  auto* dropped = &state.guard()->neighbours_dropped;
+  const Witness witness = state.witness(p.id(), 0);
   sort(state);
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
   if (state.one_level) {
-    state.neighbours.build(p, state.grid, state.active(), dropped);
+    state.neighbours.build(p, state.grid, state.active(), witness);
   } else if (state.substep + 1 < state.parameters.substeps) {
-    state.neighbours.build_mixed(p, state.grid, state.active(), dropped);
+    state.neighbours.build_mixed(p, state.grid, state.active(), witness);
   } else {
     // The next frame's levels compare everyone.
-    state.neighbours.build_mixed(p, state.grid, EverySlot{state.activation.slots.data()}, dropped);
+    state.neighbours.build_mixed(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
     state.lists_hold = true;
   }
 }
@@ -51,12 +51,12 @@ void run_frame_start(FluidState& state, FrameView p) {
 }  // namespace
 
 void find_neighbours(FluidState& state, NeighboursView p) {
-  auto* dropped = &state.guard()->neighbours_dropped;
+  const Witness witness = state.witness(p.id(), 0);
   sort(state);
   state.lists_by_slot = false;
   state.lists_hold = true;
-  state.one_level ? state.neighbours.build(p, state.grid, dropped)
-                  : state.neighbours.build_mixed(p, state.grid, dropped);
+  state.one_level ? state.neighbours.build(p, state.grid, witness)
+                  : state.neighbours.build_mixed(p, state.grid, witness);
 }
 
 Stage neighbours_stage() {

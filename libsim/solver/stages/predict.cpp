@@ -4,65 +4,91 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A particle that is not solved flies at the velocity it was given: gravity and pressure are both in it.
-template <class Selection>
+struct Gravity {
+  float gravity;
+  /// What it does to v in a time of dt.
+  SIM_FN void act(Vec3, Vec3& v, float dt) const { v.y -= gravity * dt; }
+};
+
+struct GravityAndPull {
+  Gravity down;
+  CentralPull pull;
+  SIM_FN void act(Vec3 x, Vec3& v, float dt) const {
+    down.act(x, v, dt);
+    const Vec3 from = x - pull.centre;
+    v += -(pull.strength * dt) * (from - dot(from, pull.axis) * pull.axis);
+  }
+};
+
+/// A particle that is not solved flies at the velocity it was given: forces and pressure are both in it.
+template <class Selection, class Forces>
 struct Predict {
   Selection select;
+  Forces forces;
   Vec4* position;
   Vec4* velocity;
   Vec4* predicted;
   Walls walls;
   Vec3 refuge;
-  Guards* guards;
-  float gravity, dt, most_speed, wall_gap;
+  Witness witness;
+  float dt, most_speed, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
     Vec3 v = xyz(velocity[i]);
-    quarantine(x, v);
+    quarantine(x, v, i);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
-      v.y -= gravity * dt;
+      forces.act(x, v, dt);
     } else {
-      v.y -= select.falls(i) * gravity * dt;
+      forces.act(x, v, select.falls(i) * dt);
     }
-    v = limited(v, most_speed, guards);
+    v = limited(v, most_speed, witness, i);
     velocity[i] = with_w(v, 0);
     if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&guards->wall_projected, std::uint64_t{1});
+      atomic_add(&witness.guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
   /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
   /// either.
-  SIM_FN void quarantine(Vec3& x, Vec3& v) const {
+  SIM_FN void quarantine(Vec3& x, Vec3& v, int i) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
-    atomic_add(&guards->not_finite, std::uint64_t{1});
+    atomic_add(&witness.guards->not_finite, std::uint64_t{1});
+    witness.note(Trouble::NotFinite, i);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity),
+using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                            columns(Column::Predicted, Column::Position, Column::Velocity)>;
+
+template <class Selection, class Forces>
+void launch(FluidState& state, Columns p, Selection select, Forces forces) {
+  const auto& k = state.parameters;
+  for_each("predict", p.size(),
+           Predict<Selection, Forces>{.select = select,
+                                      .forces = forces,
+                                      .position = p.position(),
+                                      .velocity = p.velocity(),
+                                      .predicted = p.predicted(),
+                                      .walls = state.walls,
+                                      .refuge = state.refuge,
+                                      .witness = state.witness(p.id(), 0),
+                                      .dt = k.dt,
+                                      .most_speed = k.most_speed,
+                                      .wall_gap = k.wall_gap});
+}
 
 template <class Selection>
 void launch(FluidState& state, Columns p, Selection select) {
   const auto& k = state.parameters;
-  for_each("predict", p.size(),
-           Predict<Selection>{.select = select,
-                              .position = p.position(),
-                              .velocity = p.velocity(),
-                              .predicted = p.predicted(),
-                              .walls = state.walls,
-                              .refuge = state.refuge,
-                              .guards = state.guard(),
-                              .gravity = k.gravity,
-                              .dt = k.dt,
-                              .most_speed = k.most_speed,
-                              .wall_gap = k.wall_gap});
+  const Gravity down{k.gravity};
+  k.pull.strength > 0 ? launch(state, p, select, GravityAndPull{down, k.pull})
+                      : launch(state, p, select, down);
 }
 
 void run(FluidState& state, Columns p) {

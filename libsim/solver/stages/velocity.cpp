@@ -10,20 +10,23 @@ struct Advance {
   const Vec4* predicted;
   Vec4* velocity;
   Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
-  Guards* guards;
+  Witness witness;
   float dt, most_speed;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
-    velocity[i] = with_w(limited(after, most_speed, guards), 0);
+    const Vec3 kept = limited(after, most_speed, witness, i);
+    velocity[i] = with_w(kept, 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
-    position[i] = predicted[i];
+    // Nobody is carried farther than the limit allows: a crowd in one place would reach others at once.
+    position[i] =
+        length(after) > most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w) : predicted[i];
   }
 };
 
 using Columns =
-    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity),
+    ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
 void run(FluidState& state, Columns p) {
@@ -35,7 +38,7 @@ void run(FluidState& state, Columns p) {
                    .predicted = p.predicted(),
                    .velocity = p.velocity(),
                    .kick = kick,
-                   .guards = state.guard(),
+                   .witness = state.witness(p.id(), 1),
                    .dt = k.dt,
                    .most_speed = k.most_speed});
 }

@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "libsim/cases/hard_case.hpp"
+
+namespace sim::cases {
+
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+}
+
+bool Finding::passes() const {
+  switch (gate) {
+    case Gate::AtMost:
+      return value <= limit;
+    case Gate::AtLeast:
+      return value >= limit;
+    case Gate::Reported:
+      return true;
+  }
+  return false;
+}
+
+double Finding::margin() const {
+  if (gate == Gate::Reported) return infinite;
+  if (!std::isfinite(value)) return -infinite;
+  const double left = gate == Gate::AtMost ? limit - value : value - limit;
+  if (limit == 0) return left >= 0 ? infinite : -infinite;
+  return left / std::abs(limit);
+}
+
+bool Outcome::passes() const {
+  return !stopped &&
+         std::all_of(findings.begin(), findings.end(), [](const Finding& one) { return one.passes(); });
+}
+
+double Outcome::margin() const {
+  double least = stopped ? -1 : infinite;
+  for (const Finding& one : findings) least = std::min(least, one.margin());
+  return least;
+}
+
+std::string Outcome::text() const {
+  std::string out;
+  for (const Finding& one : findings) {
+    out += fmt::format("{}{} {:.4g}{}{}", out.empty() ? "" : ", ", one.name, one.value,
+                       one.unit.empty() ? "" : " ", one.unit);
+    if (one.gate == Finding::Gate::Reported) continue;
+    out += fmt::format(" ({} {:.4g}", one.gate == Finding::Gate::AtMost ? "at most" : "at least", one.limit);
+    if (one.asked && *one.asked != one.limit) out += fmt::format(", asked {:.4g}", *one.asked);
+    out += one.passes() ? ")" : ", FAILS)";
+  }
+  if (stopped) out += fmt::format("; stopped at frame {}: {}", stopped->frame, stopped->cause);
+  return out;
+}
+
+}  // namespace sim::cases

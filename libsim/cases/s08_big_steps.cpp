@@ -1,0 +1,92 @@
+/// S8: large steps in a tank, and a dam whose steps are as large as the solver's lists allow.
+
+#include <cmath>
+
+#include "libsim/cases/cases.hpp"
+#include "libsim/cases/watch.hpp"
+#include "stats/base/file.hpp"
+
+namespace sim::cases {
+
+namespace {
+
+Outcome collapse(const Setting& setting) {
+  const double height = even_layers(8 * setting.scale);
+  Outcome out;
+  // 0.25 s is a hitch.
+  for (const double step : {1.0 / 30, 1.0 / 15, 0.25}) {
+    Setting one = setting;
+    if (setting.frame_dt_s == 0) one.frame_dt_s = step;
+    const Scene scene = tank({2, 2, 2}, {8 * d, height, 8 * d});
+    SimulationOptions options = options_of(one);
+    options.n_star = std::lround(8 * 8 * height / d / 8);
+    const double bound = 1.5 * std::sqrt(2 * gravity * height);
+    Watch watch(scene, options, {.density = 1.5, .speed_m_s = bound, .outside_m = 0.1 * d});
+    for (int frame = 0; frame < 30 && watch.step(); ++frame) {
+    }
+    const auto found =
+        watch.outcome({watch.speed_finding(), watch.density_finding(), watch.outside_finding(),
+                       at_most("not finite", static_cast<double>(watch.report().guards.not_finite), 0)});
+    for (Finding finding : found.findings) {
+      char text[32];
+      std::snprintf(text, sizeof text, " at %.3f s", one.frame_dt_s);
+      finding.name += text;
+      out.findings.push_back(finding);
+    }
+    if (found.stopped && !out.stopped) out.stopped = found.stopped;
+    if (setting.frame_dt_s > 0) break;
+  }
+  return out;
+}
+
+Outcome dam(const Setting& setting) {
+  Scene scene = read_scene(base::resource("data/scenes/peers_dam.toml"));
+  scene.fill_max_m[1] *= setting.scale;
+  SimulationOptions options = options_of(setting);
+  options.n_star = setting.size == Size::Small ? 1024 : 128 * 1024;
+  const double seconds = setting.size == Size::Small ? 100.0 / 120 : 2;
+  // A dam that splits and merges meets 1.19 with 8,192 particles.
+  Watch watch(scene, options,
+              {.density = traits_of(setting.method).adaptive() ? 1.35 : 1.2, .outside_m = 0.1 * d});
+  double error = 0;
+  const int frames = frames_of(setting, seconds, scene.frame_dt_s);
+  for (int frame = 0; frame < frames && watch.step(); ++frame) error += watch.report().density_error_mean;
+  const GuardCounts& met = watch.report().guards;
+  const auto nobody = [](const char* name, std::uint64_t count) {
+    return at_most(name, static_cast<double>(count), 0);
+  };
+  return watch.outcome({watch.density_finding(), watch.outside_finding(), nobody("braked", met.speed_limited),
+                        nobody("neighbours dropped", met.neighbours_dropped),
+                        nobody("coincident pairs", met.coincident_pairs),
+                        nobody("frames short of substeps", static_cast<std::uint64_t>(watch.short_frames())),
+                        reported("mean density error", error / std::max(1, watch.frame())),
+                        reported("fastest", watch.fastest_m_s(), "m/s")});
+}
+
+}  // namespace
+
+HardCase big_steps() {
+  return {.id = "S8",
+          .suite = "S08BigSteps",
+          .title = "frames of 1/30, 1/15 and 1/4 s",
+          .asked = "v <= 1.5 sqrt(2 g H), everything finite and inside",
+          .methods = every_method(),
+          .scaled = "8 layers",
+          .frame_dt_s = 1.0 / 30,
+          .iterations = 4,
+          .run = collapse};
+}
+
+HardCase peers_dam() {
+  return {.id = "S8b",
+          .suite = "S08PeersDam",
+          .title = "PeersDam, a million particles when full",
+          .asked = "rho < 1.2, nobody braked, dropped or coincident",
+          .methods = every_method(),
+          .scaled = "1 m of the dam's height",
+          .frame_dt_s = 1.0 / 120,
+          .iterations = 4,
+          .run = dam};
+}
+
+}  // namespace sim::cases

@@ -1,0 +1,89 @@
+#include "libsim/cases/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace sim::cases {
+
+Watch::Watch(const Scene& scene, const SimulationOptions& options, const Bounds& bounds)
+    : scene_(scene), bounds_(bounds), fluid_(make_simulation(scene, options)), state_(fluid_->read_state()) {}
+
+void Watch::end(const std::string& cause) {
+  if (!stopped_) stopped_ = Stop{frame_, cause};
+}
+
+bool Watch::step() {
+  if (stopped_) return false;
+  fluid_->step_frame();
+  ++frame_;
+  state_ = fluid_->read_state();
+  report_ = fluid_->report();
+  densest_ = std::max(densest_, report_.density_max);
+  fastest_ = std::max(fastest_, report_.speed_max_m_s);
+  short_frames_ += report_.substeps.taken < report_.substeps.wished;
+  const int out =
+      outside(state_, scene_.tank_size_m, std::isfinite(bounds_.outside_m) ? bounds_.outside_m : 1e9);
+  out_ = std::max(out_, out);
+  if (report_.guards.not_finite > 0) {
+    end(fmt::format("{} particles are not finite", report_.guards.not_finite));
+  }
+  if (out > 0) end(fmt::format("{} particles are outside", out));
+  if (!(densest_ <= bounds_.density)) {
+    end(fmt::format("density {:.3f} where {:.3f} is the bound", densest_, bounds_.density));
+  }
+  if (!(fastest_ <= bounds_.speed_m_s)) {
+    end(fmt::format("{:.2f} m/s where {:.2f} is the bound", fastest_, bounds_.speed_m_s));
+  }
+  return !stopped_;
+}
+
+Finding Watch::density_finding() const { return at_most("largest rho / rho_0", densest_, bounds_.density); }
+Finding Watch::speed_finding() const { return at_most("fastest", fastest_, bounds_.speed_m_s, "m/s"); }
+Finding Watch::outside_finding() const { return at_most("particles outside", out_, 0); }
+Outcome Watch::outcome(std::vector<Finding> findings) const { return {std::move(findings), stopped_}; }
+
+SimulationOptions options_of(const Setting& setting) {
+  SimulationOptions out;
+  out.method = setting.method;
+  out.backend = setting.backend;
+  out.frame_dt_s = setting.frame_dt_s;
+  out.substeps = setting.substeps;
+  out.iterations = setting.iterations;
+  if (traits_of(setting.method).temporal) out.temporal.fixed_tau = -10;
+  return out;
+}
+
+SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start) {
+  // 512 finest particles in the box that the spacing follows from.
+  scene.fill_min_m = {0, 0, 0};
+  scene.fill_max_m = {8 * d, 8 * d, 8 * d};
+  SimulationOptions out = options_of(setting);
+  out.n_star = 64;
+  out.start = start;
+  if (traits_of(setting.method).adaptive()) {
+    out.particle_capacity = std::max<std::int64_t>(64, static_cast<std::int64_t>(start.size()));
+  }
+  return out;
+}
+
+double frame_dt_of(const Setting& setting, double usual) {
+  return setting.frame_dt_s > 0 ? setting.frame_dt_s : usual;
+}
+
+int frames_of(const Setting& setting, double seconds, double usual_dt_s) {
+  return std::max(1, static_cast<int>(std::lround(seconds / frame_dt_of(setting, usual_dt_s))));
+}
+
+Finding at_most(std::string name, double value, double limit, std::string unit) {
+  return {std::move(name), value, Finding::Gate::AtMost, limit, {}, std::move(unit)};
+}
+Finding at_least(std::string name, double value, double limit, std::string unit) {
+  return {std::move(name), value, Finding::Gate::AtLeast, limit, {}, std::move(unit)};
+}
+Finding reported(std::string name, double value, std::string unit) {
+  return {std::move(name), value, Finding::Gate::Reported, 0, {}, std::move(unit)};
+}
+
+}  // namespace sim::cases

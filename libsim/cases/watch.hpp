@@ -1,0 +1,69 @@
+#pragma once
+/// A run of a hard case that is looked at after each frame.
+
+#include <string>
+
+#include "libsim/cases/hard_case.hpp"
+#include "libsim/cases/water.hpp"
+
+namespace sim::cases {
+
+/// Beyond these a run has failed and goes no further.
+struct Bounds {
+  double density = std::numeric_limits<double>::infinity();  ///< rho / rho_0
+  double speed_m_s = std::numeric_limits<double>::infinity();
+  double outside_m = std::numeric_limits<double>::infinity();  ///< beyond floor and walls
+};
+
+class Watch {
+ public:
+  Watch(const Scene& scene, const SimulationOptions& options, const Bounds& bounds);
+
+  /// Computes a frame and measures it. False once the run has ended: something was not finite or beyond the
+  /// bounds.
+  bool step();
+
+  Simulation& fluid() { return *fluid_; }
+  const State& state() const { return state_; }  ///< after the last frame
+  const FrameReport& report() const { return report_; }
+  int frame() const { return frame_; }
+  double densest() const { return densest_; }  ///< of all frames
+  double fastest_m_s() const { return fastest_; }
+  int out() const { return out_; }                    ///< particles outside, in the worst frame
+  int short_frames() const { return short_frames_; }  ///< that asked for more substeps than they got
+
+  /// The findings that most cases share. Each has its gate from the bounds.
+  Finding density_finding() const;
+  Finding speed_finding() const;
+  Finding outside_finding() const;
+  /// Ends the case: the findings, and what stopped the run.
+  Outcome outcome(std::vector<Finding> findings) const;
+
+ private:
+  void end(const std::string& cause);
+
+  Scene scene_;
+  Bounds bounds_;
+  std::unique_ptr<Simulation> fluid_;
+  State state_;
+  FrameReport report_;
+  int frame_ = 0;
+  double densest_ = 0, fastest_ = 0;
+  int out_ = 0, short_frames_ = 0;
+  std::optional<Stop> stopped_;
+};
+
+/// Method, back end and numbers of the setting. Ours-TSp runs at tau = -10: beta = 0.67.
+SimulationOptions options_of(const Setting& setting);
+/// The same for a run that begins with these particles, whose finest lie d apart.
+SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start);
+/// Content time of a frame, s: the setting's or `usual`.
+double frame_dt_of(const Setting& setting, double usual = 1.0 / 60);
+/// At least one.
+int frames_of(const Setting& setting, double seconds, double usual_dt_s = 1.0 / 60);
+
+Finding at_most(std::string name, double value, double limit, std::string unit = "");
+Finding at_least(std::string name, double value, double limit, std::string unit = "");
+Finding reported(std::string name, double value, std::string unit = "");
+
+}  // namespace sim::cases

@@ -1,0 +1,57 @@
+/// S9: the number of substeps that follows the fastest particle.
+
+#include <cmath>
+#include <limits>
+
+#include "libsim/solver/substeps.hpp"
+#include "tests/stability/stability_helpers.hpp"
+
+namespace {
+
+using namespace stability_test;
+
+constexpr double dt = 1.0 / 60;
+
+TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
+  sim::SubstepRule rule({.frame_dt_s = dt, .support_m = 0.3, .courant = 0.5, .least = 2, .most = 8}, 0);
+  const auto after = [&](double fastest) {
+    rule.frame_ended(fastest);
+    return rule.next();
+  };
+  EXPECT_EQ(rule.next(), 2);
+  EXPECT_EQ(after(30), 2);  // frame 1 goes by the start
+  EXPECT_EQ(after(0), 4);   // frame 2 by frame 0: 30 / 60 / 0.15 = 3.33
+  EXPECT_EQ(after(0), 2);
+  EXPECT_EQ(after(90), 2);
+  EXPECT_EQ(after(45), 8);
+  EXPECT_EQ(rule.wished(), 10);
+  EXPECT_EQ(after(9), 5) << "exactly 5 x 0.5 h";
+  EXPECT_EQ(after(std::numeric_limits<double>::quiet_NaN()), 2);
+  EXPECT_EQ(after(1), 8) << "a speed that is none is looked at closely";
+}
+
+TEST(S09Jet, FallingCountsBeforeItIsMeasured) {
+  // A frame of 0.25 s: two of them add 4.9 m/s.
+  const sim::SubstepRule rule({.frame_dt_s = 0.25,
+                               .support_m = 0.3,
+                               .courant = 0.5,
+                               .acceleration_m_s2 = gravity,
+                               .least = 1,
+                               .most = 32},
+                              0);
+  EXPECT_EQ(rule.next(), 9);
+}
+
+TEST(S09Jet, TheMostIsReportedWhenItBinds) {
+  const auto scene = fluid_test::tank({12, 8, 8}, {1, 1, 1});
+  sim::SimulationOptions options;
+  options.most_substeps = 3;
+  const auto fluid = start_from(Backend::Cpu, scene, block(4, 4, 4, {2, 3, 3}, 60), options);
+  EXPECT_EQ(fluid->substeps().taken, 0);
+  fluid->step_frame();
+  EXPECT_EQ(fluid->substeps().taken, 3);
+  EXPECT_EQ(fluid->substeps().wished, 7);
+  EXPECT_EQ(fluid->report().substeps.wished, 7);
+}
+
+}  // namespace
