@@ -21,6 +21,11 @@ struct Opening {
   }
 };
 
+/// Who does not listen to what walls do to a particle.
+struct NobodyHears {
+  SIM_FN void operator()(int, float) const {}
+};
+
 /// Walls of a tank as signed distances. Before an opening its plane is not there. Water comes to the far side
 /// of a plane through its openings only: what is there is through and meets that plane no more.
 struct Walls {
@@ -54,6 +59,10 @@ struct Walls {
     }
     return false;
   }
+  /// Does the plane not touch a particle at x? Only asked near and beyond the plane.
+  SIM_FN bool absent(int plane, Vec3 x) const {
+    return opening_count > 0 && (through(plane, x) || opens(plane, x));
+  }
   /// Is the plane not there for what moves from `from` to `to`? Only asked near and beyond the plane.
   SIM_FN bool lets(int plane, Vec3 from, Vec3 to) const {
     if (opening_count == 0) return false;
@@ -74,7 +83,7 @@ struct Walls {
     for (int k = 0; k < count; ++k) {
       const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
       if (q >= 1) continue;
-      if (opening_count > 0 && (through(k, x) || opens(k, x))) continue;
+      if (absent(k, x)) continue;
       const float inside = fmaxf(q, 0.0f);
       const float kept = 1 - behind(inside);
       // Product rule; the wall's share falls along its normal.
@@ -94,6 +103,20 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
+  /// The part of `gradient` above that wall k has, along its normal: <= 0.
+  SIM_FN float missing_slope(int k, Vec3 x, float h) const {
+    float out = -slope_at(k, x, h) / h;
+    for (int other = 0; other < count; ++other) {
+      if (other != k) out *= 1 - behind(distance_in_h(other, x, h));
+    }
+    return out;
+  }
+  SIM_FN float distance_in_h(int k, Vec3 x, float h) const {
+    if (absent(k, x)) return 1;
+    return fminf(fmaxf((dot(planes[k].normal, x) - planes[k].offset) / h, 0.0f), 1.0f);
+  }
+  SIM_FN float slope_at(int k, Vec3 x, float h) const { return slope(distance_in_h(k, x, h)); }
+
   /// Signed distance to the nearest wall's plane, m.
   SIM_FN float nearest(Vec3 x) const {
     float least = 3e38f;
@@ -111,8 +134,9 @@ struct Walls {
 
   /// Takes x, which lies inside the walls, on its way `to`, but over at most a share of its distance from a
   /// wall (`gap` before it): what moves at one speed keeps its order, where a clamp would lay layers on one
-  /// plane. True when it had to hold back.
-  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap) const {
+  /// plane. True when it had to hold back; heard(wall, way in m) is told by which wall and how much.
+  template <class Heard = NobodyHears>
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
     bool held = false;
     for (int k = 0; k < count; ++k) {
       const float border = planes[k].offset + gap;
@@ -120,6 +144,7 @@ struct Walls {
       const float beyond = least - (dot(planes[k].normal, to) - border);
       if (beyond <= 0 || lets(k, x, to)) continue;
       to += beyond * planes[k].normal;
+      heard(k, beyond);
       held = true;
     }
     x = to;
@@ -127,13 +152,16 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x, which comes from `from`, to at least `gap` inside every wall; true when it had to.
-  SIM_FN bool project(Vec3& x, Vec3 from, float gap) const {
+  /// Moves x, which comes from `from`, to at least `gap` inside every wall; true when it had to. heard: as
+  /// above.
+  template <class Heard = NobodyHears>
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
     bool moved = false;
     for (int k = 0; k < count; ++k) {
       const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
       if (depth <= 0 || lets(k, from, x)) continue;
       x += depth * planes[k].normal;
+      heard(k, depth);
       moved = true;
     }
     return moved;

@@ -9,6 +9,7 @@ namespace sim {
 
 namespace {
 
+/// In the order of Wall.
 const std::vector<std::string>& wall_names() {
   static const std::vector<std::string> names{"x_low", "x_high", "z_low", "z_high", "y_low"};
   return names;
@@ -18,7 +19,7 @@ Outlet read_outlet(const base::TomlTable& table, const std::array<double, 3>& ta
   Outlet out;
   const auto& names = wall_names();
   const auto name = std::find(names.begin(), names.end(), table.choice("wall", names));
-  out.wall = static_cast<TankWall>(name - names.begin());
+  out.wall = static_cast<Wall>(name - names.begin());
   const auto min = table.numbers("min_m", 2, base::non_negative);
   const auto max = table.numbers("max_m", 2, base::non_negative);
   const auto axes = axes_of(out.wall);
@@ -34,12 +35,6 @@ Outlet read_outlet(const base::TomlTable& table, const std::array<double, 3>& ta
 }
 
 }  // namespace
-
-std::array<std::size_t, 2> axes_of(TankWall wall) {
-  if (wall == TankWall::YLow) return {0, 2};
-  if (wall == TankWall::ZLow || wall == TankWall::ZHigh) return {0, 1};
-  return {1, 2};
-}
 
 std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m) {
   std::vector<Outlet> out;

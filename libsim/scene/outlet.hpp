@@ -5,22 +5,18 @@
 #include <cstddef>
 #include <vector>
 
+#include "libsim/scene/wall.hpp"
+
 namespace base {
 class TomlTable;
 }
 
 namespace sim {
 
-/// A wall of the tank, which is open above.
-enum class TankWall { XLow, XHigh, ZLow, ZHigh, YLow };
-
-/// The two axes that a wall lies along, ascending: 0 = x, 1 = y, 2 = z.
-std::array<std::size_t, 2> axes_of(TankWall wall);
-
 /// A rectangle in which a wall is not there. Water that passes the wall's plane in it leaves the simulation
 /// at the end of that frame. While the water settles it is shut.
 struct Outlet {
-  TankWall wall = TankWall::YLow;
+  Wall wall = Wall::Floor;
   std::array<double, 2> min_m{}, max_m{};  ///< corners along axes_of(wall); each side at least 1 mm
 };
 

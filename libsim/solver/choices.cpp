@@ -117,6 +117,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
   out.saliency_parts = options.saliency_parts;
   out.activation = method.temporal || options.temporal.always;
+  out.wall_impulse = options.wall_impulse || !options.gauges.empty();
   return out;
 }
 
@@ -153,7 +154,7 @@ Walls walls_of(const Scene& scene, bool settling) {
     high = scene.fill_max_m;
   }
   const auto f = [](double value) { return static_cast<float>(value); };
-  // In the order of TankWall.
+  // In the order of Wall.
   Walls out{};
   out.planes[out.count++] = {{1, 0, 0}, f(low[0])};
   out.planes[out.count++] = {{-1, 0, 0}, f(-high[0])};

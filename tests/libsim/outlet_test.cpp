@@ -34,13 +34,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(OutletScene, IsReadAlongTheWallsAxes) {
   const auto scene = sim::parse_scene(dam_with(good + replaced(good, "x_low", "y_low")), "scene.toml");
   ASSERT_EQ(scene.outlets.size(), 2u);
-  EXPECT_EQ(scene.outlets[0].wall, sim::TankWall::XLow);
+  EXPECT_EQ(scene.outlets[0].wall, sim::Wall::LowX);
   EXPECT_EQ(scene.outlets[0].min_m, (std::array{0.5, 1.0}));
   EXPECT_EQ(scene.outlets[0].max_m, (std::array{2.0, 3.0}));
-  EXPECT_EQ(scene.outlets[1].wall, sim::TankWall::YLow);
-  EXPECT_EQ(sim::axes_of(sim::TankWall::XHigh), (std::array<std::size_t, 2>{1, 2}));
-  EXPECT_EQ(sim::axes_of(sim::TankWall::YLow), (std::array<std::size_t, 2>{0, 2}));
-  EXPECT_EQ(sim::axes_of(sim::TankWall::ZLow), (std::array<std::size_t, 2>{0, 1}));
+  EXPECT_EQ(scene.outlets[1].wall, sim::Wall::Floor);
+  EXPECT_EQ(sim::axes_of(sim::Wall::HighX), (std::array<std::size_t, 2>{1, 2}));
+  EXPECT_EQ(sim::axes_of(sim::Wall::Floor), (std::array<std::size_t, 2>{0, 2}));
+  EXPECT_EQ(sim::axes_of(sim::Wall::LowZ), (std::array<std::size_t, 2>{0, 1}));
 }
 
 TEST(OutletScene, ErrorsNameThePlaceAndTheMend) {
@@ -60,7 +60,7 @@ TEST(OutletScene, ErrorsNameThePlaceAndTheMend) {
 
 void is_shut_while_the_water_settles(Backend backend) {
   auto scene = fluid_test::tank({1.2, 2.4, 1.2}, {1.2, 1.2, 1.2}, 10);
-  scene.outlets.push_back({sim::TankWall::YLow, {0, 0}, {1.2, 1.2}});
+  scene.outlets.push_back({sim::Wall::Floor, {0, 0}, {1.2, 1.2}});
   sim::SimulationOptions options;
   options.n_star = 64;
   options.backend = backend;
@@ -85,7 +85,7 @@ TEST(Outlet, IsAbsentWhereTheSceneHasNone) {
   options.n_star = 64;
   EXPECT_THAT(sim::make_simulation(scene, options)->explain(),
               testing::HasSubstr("-  outflow             not called for"));
-  scene.outlets.push_back({sim::TankWall::YLow, {0, 0}, {1.2, 1.2}});
+  scene.outlets.push_back({sim::Wall::Floor, {0, 0}, {1.2, 1.2}});
   EXPECT_THAT(sim::make_simulation(scene, options)->explain(), testing::HasSubstr("the scene has an outlet"));
 }
 

@@ -189,6 +189,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);
+  if (state.impulse.listens()) p.copy<Column::PredictedNext, Column::Predicted>();
   for_each("shift", p.size(),
            Shift<Selection>{.select = select,
                             .predicted = p.predicted(),
@@ -197,7 +198,8 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                             .grid = grid,
                             .walls = state.walls,
                             .guards = state.guard(),
-                            .wall_gap = state.parameters.wall_gap});
+                            .wall_gap = gap_of_kernels(state)});
+  clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }
 
 void run(FluidState& state, CoarsePressureView p) { press(state, p); }

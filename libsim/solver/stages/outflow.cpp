@@ -22,7 +22,8 @@ Stage outflow_stage() {
                         .phase = Phase::FrameEnd,
                         .called_for = [](const Demand& demand) -> std::string {
                           return demand.outlets && !demand.settling ? "the scene has an outlet" : "";
-                        }});
+                        },
+                        .changes = Change::Flow});
 }
 
 }  // namespace sim::SIM_BACKEND
