@@ -2,6 +2,7 @@
 /// The bridge between particles and the coarse pressure's cells.
 
 #include "libsim/particles/momentum.hpp"
+#include "libsim/particles/walls.hpp"
 #include "libsim/pressure/multigrid.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -43,8 +44,8 @@ struct PushBalance {
   }
 };
 
-/// Gives hear(wall, inward normal, area in m2) each face of a cell that lies on a wall, in the order of
-/// Walls.
+/// Gives hear(wall, inward normal, area in m2) what is shut of each face of a cell that lies on a wall, in
+/// the order of Walls.
 template <class Hear>
 SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, int cell, Hear hear) {
   const CellBlock& block = grid.block;
@@ -53,11 +54,16 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, int
   const int z = cell / (block.nx * block.ny);
   const float across_x = frame.edge.y * frame.edge.z;
   const float across_z = frame.edge.x * frame.edge.y;
-  if (grid.kind_at(x - 1, y, z) == CellKind::Solid) hear(0, Vec3{1, 0, 0}, across_x);
-  if (grid.kind_at(x + 1, y, z) == CellKind::Solid) hear(1, Vec3{-1, 0, 0}, across_x);
-  if (grid.kind_at(x, y, z - 1) == CellKind::Solid) hear(2, Vec3{0, 0, 1}, across_z);
-  if (grid.kind_at(x, y, z + 1) == CellKind::Solid) hear(3, Vec3{0, 0, -1}, across_z);
-  if (grid.kind_at(x, y - 1, z) == CellKind::Solid) hear(4, Vec3{0, 1, 0}, frame.floor_area());
+  const auto face = [&](int wall, int nx, int ny, int nz, Vec3 normal, float area) {
+    if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
+    const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
+    hear(wall, normal, shut * area);
+  };
+  face(0, x - 1, y, z, {1, 0, 0}, across_x);
+  face(1, x + 1, y, z, {-1, 0, 0}, across_x);
+  face(2, x, y, z - 1, {0, 0, 1}, across_z);
+  face(3, x, y, z + 1, {0, 0, -1}, across_z);
+  face(4, x, y - 1, z, {0, 1, 0}, frame.floor_area());
 }
 
 struct CoarseGrid {
@@ -69,7 +75,13 @@ struct CoarseGrid {
   /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
   /// wider or narrower as makes whole ones fit between the walls.
   void fit(const Domain& domain, float edge);
+  /// The walls' openings as open faces; after fit. Walls are those of the domain.
+  void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;
+
+ private:
+  int opened_ = 0;      ///< openings that the multigrid has
+  Vec3 opened_edge_{};  ///< with cells of this edge
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -52,15 +52,18 @@ struct Balance {
   Walls walls;
   Guards* guards;
   float wall_gap;
+  bool listens;
   SIM_FN void operator()(int i) const {
     const Vec4 from = predicted[i];
     const Vec4 to = next[i];
     Vec3 x = xyz(to);
     if (x.x != from.x || x.y != from.y || x.z != from.z) x += balance->correction();
-    if (walls.project(x, wall_gap * to.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    if (walls.project(x, xyz(from), wall_gap * to.w / 2))
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, to.w);
-    // No projection may come after it: both buffers hold its place.
-    next[i] = predicted[i];
+    // A particle that no projection moves has its place in both buffers. Who listens asks whence it came
+    // first.
+    next[i] = listens ? from : predicted[i];
   }
 };
 
@@ -90,8 +93,9 @@ void balance_push(FluidState& state, ClampView p) {
                    .balance = coarse.balance.data(),
                    .walls = state.walls,
                    .guards = state.guard(),
-                   .wall_gap = gap_of_kernels(state)});
-  clamp_and_listen(state, p, 1, true);
+                   .wall_gap = gap_of_kernels(state),
+                   .listens = state.impulse.listens()});
+  clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -119,7 +119,8 @@ void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
 
 struct Clamp {
   Vec4* predicted;
-  Vec4* next;  ///< nullptr where it holds other places
+  const Vec4* from;
+  Vec4* next;  ///< nullptr where it goes on holding other places
   Walls walls;
   WallListener to;
   Guards* guards;
@@ -127,9 +128,10 @@ struct Clamp {
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (!walls.project(x, wall_gap * at.w / 2, HeardClamp{to, at})) return;
-    atomic_add(&guards->wall_projected, std::uint64_t{1});
-    predicted[i] = with_w(x, at.w);
+    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, HeardClamp{to, at})) {
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
+      predicted[i] = with_w(x, at.w);
+    }
     if (next) next[i] = predicted[i];
   }
 };
@@ -146,10 +148,11 @@ float gap_of_kernels(const FluidState& state) {
   return state.impulse.listens() ? none : state.parameters.wall_gap;
 }
 
-void clamp_and_listen(FluidState& state, ClampView p, float times, bool in_both) {
+void clamp_and_listen(FluidState& state, ClampView p, const Vec4* from, float times, bool in_both) {
   if (!state.impulse.listens()) return;
   for_each("clamp and hear", p.size(),
            Clamp{.predicted = p.predicted(),
+                 .from = from,
                  .next = in_both ? p.predicted_next() : nullptr,
                  .walls = state.walls,
                  .to = state.impulse.listener(times),
