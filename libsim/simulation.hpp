@@ -13,6 +13,7 @@
 
 #include "libsim/exec/backend.hpp"
 #include "libsim/exec/launch_time.hpp"
+#include "libsim/impulse/momentum_account.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/particles/divergence.hpp"
@@ -68,7 +69,9 @@ struct SimulationOptions {
   int start_projections = 0;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
-  bool time_parts = false;  ///< see Simulation::part_times(); waits for the device between parts
+  bool wall_impulse = false;  ///< keep Simulation::momentum(); costs passes of its own
+  std::vector<Gauge> gauges;  ///< on the walls; not empty = wall_impulse
+  bool time_parts = false;    ///< see Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
   // Numbers of the solver; a negative value keeps the measured default
@@ -207,6 +210,9 @@ class Simulation {
   virtual void frame_time(double) {}
   /// Of the frame that step_frame computed last; before the first, who is there.
   virtual const FrameAccount& account() const = 0;
+  /// What changed the water's momentum in the frame that step_frame computed last, and what walls and gauges
+  /// felt. All zero unless SimulationOptions::wall_impulse or gauges.
+  virtual MomentumAccount momentum() const { return {}; }
   /// Of the frame that step_frame computed last.
   virtual SubstepCount substeps() const { return {}; }
   /// The first trouble since the simulation was made; none in a sound run. Costs a frame nothing to speak of.

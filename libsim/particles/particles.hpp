@@ -9,6 +9,7 @@
 
 #include "libsim/particles/columns.hpp"
 #include "libsim/particles/divergence.hpp"
+#include "libsim/particles/momentum.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -20,6 +21,7 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
+  Momentum braked;      ///< that the limit of speed and the quarantine took
   std::uint64_t first;  ///< what Witness met first, as a TroubleKey; 0 = nothing
 };
 

@@ -11,6 +11,11 @@ struct Plane {
   float offset;
 };
 
+/// Who does not listen to what walls do to a particle.
+struct NobodyHears {
+  SIM_FN void operator()(int, float) const {}
+};
+
 /// Walls of a tank as signed distances.
 struct Walls {
   static constexpr int most = 8;
@@ -46,6 +51,19 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
+  /// The part of `gradient` above that wall k has, along its normal: <= 0.
+  SIM_FN float missing_slope(int k, Vec3 x, float h) const {
+    float out = -slope_at(k, x, h) / h;
+    for (int other = 0; other < count; ++other) {
+      if (other != k) out *= 1 - behind(distance_in_h(other, x, h));
+    }
+    return out;
+  }
+  SIM_FN float distance_in_h(int k, Vec3 x, float h) const {
+    return fminf(fmaxf((dot(planes[k].normal, x) - planes[k].offset) / h, 0.0f), 1.0f);
+  }
+  SIM_FN float slope_at(int k, Vec3 x, float h) const { return slope(distance_in_h(k, x, h)); }
+
   /// Signed distance to the nearest wall's plane, m.
   SIM_FN float nearest(Vec3 x) const {
     float least = 3e38f;
@@ -63,8 +81,9 @@ struct Walls {
 
   /// Takes x, which lies inside the walls, on its way `to`, but over at most a share of its distance from a
   /// wall (`gap` before it): what moves at one speed keeps its order, where a clamp would lay layers on one
-  /// plane. True when it had to hold back.
-  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap) const {
+  /// plane. True when it had to hold back; heard(wall, way in m) is told by which wall and how much.
+  template <class Heard = NobodyHears>
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
     bool held = false;
     for (int k = 0; k < count; ++k) {
       const float border = planes[k].offset + gap;
@@ -72,6 +91,7 @@ struct Walls {
       const float beyond = least - (dot(planes[k].normal, to) - border);
       if (beyond <= 0) continue;
       to += beyond * planes[k].normal;
+      heard(k, beyond);
       held = true;
     }
     x = to;
@@ -79,13 +99,15 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x to at least `gap` inside every wall; true when it had to.
-  SIM_FN bool project(Vec3& x, float gap) const {
+  /// Moves x to at least `gap` inside every wall; true when it had to. heard: as above.
+  template <class Heard = NobodyHears>
+  SIM_FN bool project(Vec3& x, float gap, Heard heard = {}) const {
     bool moved = false;
     for (int k = 0; k < count; ++k) {
       const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
       if (depth <= 0) continue;
       x += depth * planes[k].normal;
+      heard(k, depth);
       moved = true;
     }
     return moved;

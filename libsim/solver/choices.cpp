@@ -115,6 +115,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
   out.saliency_parts = options.saliency_parts;
   out.activation = method.temporal || options.temporal.always;
+  out.wall_impulse = options.wall_impulse || !options.gauges.empty();
   return out;
 }
 

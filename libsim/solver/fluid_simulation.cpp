@@ -58,6 +58,8 @@ class FluidSimulation final : public Simulation {
       settle(state_, scene_, options_);
       state_.one_level = !adaptive();
     }
+    if (options.wall_impulse || !options.gauges.empty())
+      state_.impulse.begin(options.gauges, scene.tank_size_m, state_.finest_support);
   }
 
   bool look(const Looks& looks) override {
@@ -84,6 +86,7 @@ class FluidSimulation final : public Simulation {
     set_substeps(substeps_taken_.taken);
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
+    momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
     const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
@@ -93,6 +96,7 @@ class FluidSimulation final : public Simulation {
   }
 
   const FrameAccount& account() const override { return keeper_.account(); }
+  MomentumAccount momentum() const override { return momentum_; }
   SubstepCount substeps() const override { return substeps_taken_; }
   std::optional<Divergence> divergence() const override { return keeper_.divergence(); }
 
@@ -326,6 +330,7 @@ class FluidSimulation final : public Simulation {
   Schedule schedule_;
   SubstepRule substeps_;
   SubstepCount substeps_taken_;
+  MomentumAccount momentum_;
   ToleranceSwitch tolerance_;
   GlSharing gl_{GlSharing::Access::Overwrite};
   int frame_;

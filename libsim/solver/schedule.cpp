@@ -60,6 +60,7 @@ void run_all(const std::vector<Stage>& passes, FluidState& state) {
   for (const auto& pass : passes) {
     state.clock.enter(pass.part);
     pass.run(state);
+    state.impulse.mark(pass.changes, state.particles, state.guard());
   }
 }
 
@@ -94,6 +95,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 
 void run_frame(const Schedule& schedule, FluidState& state) {
   state.clock.start_frame();
+  state.impulse.begin_frame(state.particles, state.guard());
   state.substep = 0;
   run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {

@@ -121,6 +121,7 @@ const Rooms rooms{
     {"libsim/neighbors", 2},
     {"libsim/pressure", 2},
     {"libsim/flow", 2},
+    {"libsim/impulse", 2},
     {"libsim/activation", 2},
     {"libsim/levels", 3},
     {"libsim/saliency", 3},

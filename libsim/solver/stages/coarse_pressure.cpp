@@ -176,7 +176,8 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                             .grid = grid,
                             .walls = state.walls,
                             .guards = state.guard(),
-                            .wall_gap = state.parameters.wall_gap});
+                            .wall_gap = gap_of_kernels(state)});
+  clamp_and_listen(state, p, 1, true);
 }
 
 void run(FluidState& state, CoarsePressureView p) { press(state, p); }

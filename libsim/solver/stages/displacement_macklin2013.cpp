@@ -118,9 +118,10 @@ void launch(FluidState& state, DisplacementView p, Selection select) {
                                                        .half = 2 * state.substep,
                                                        .rest_density = k.rest_density,
                                                        .tensile = k.tensile,
-                                                       .wall_gap = k.wall_gap,
+                                                       .wall_gap = gap_of_kernels(state),
                                                        .momentum = state.iteration > 0 ? k.momentum : 0.0f});
   p.swap<Column::Predicted, Column::PredictedNext>();
+  clamp_and_listen(state, p, times_taken(k, state.iteration), false);
 }
 
 template <bool OneLevel, class Selection>

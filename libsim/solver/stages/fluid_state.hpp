@@ -3,6 +3,7 @@
 
 #include "libsim/activation/activation.hpp"
 #include "libsim/flow/jets.hpp"
+#include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/particles/kernels.hpp"
@@ -46,6 +47,28 @@ struct SolverParameters {
   float wall_gap = 0.1f;
 };
 
+/// Takes from a particle's velocity what guards do not allow, and counts it.
+struct Brake {
+  Witness witness;
+  float most_speed, finest_support;
+
+  /// v, or as much of it as is allowed, of particle i with support h.
+  SIM_FN Vec3 limited(Vec3 v, float h, int i) const {
+    const float speed = length(v);
+    if (!(speed > most_speed)) return v;
+    atomic_add(&witness.guards->speed_limited, std::uint64_t{1});
+    witness.note(Trouble::TooFast, i);
+    const Vec3 left = (most_speed / speed) * v;
+    take(v - left, h);
+    return left;
+  }
+  SIM_FN void take(Vec3 v, float h) const {
+    Momentum taken{};
+    taken.add(mass_units_of(h, finest_support), v);
+    witness.guards->braked.add_at_once(taken);
+  }
+};
+
 /// The fluid between two passes. Arrays of particles are in the grid's order of the last substep.
 struct FluidState {
   SolverParameters parameters;
@@ -78,6 +101,7 @@ struct FluidState {
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
+  ImpulseRecorder impulse;
   PartClock clock;
 
   /// Who was solved in the last frame; nullptr when everyone was.
@@ -93,15 +117,7 @@ struct FluidState {
   Guards* guard() { return guards.data(); }
   /// For a pass in the first (0) or second (1) half of the present substep.
   Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
+  Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };
-
-/// v of particle i, or as much of it as `limit` m/s allow; counted when that is less.
-SIM_FN Vec3 limited(Vec3 v, float limit, Witness witness, int i) {
-  const float speed = length(v);
-  if (!(speed > limit)) return v;
-  atomic_add(&witness.guards->speed_limited, std::uint64_t{1});
-  witness.note(Trouble::TooFast, i);
-  return (limit / speed) * v;
-}
 
 }  // namespace sim::SIM_BACKEND

@@ -150,7 +150,8 @@ Stage nozzle_stage() {
                         .phase = Phase::FrameStart,
                         .called_for = [](const Demand& demand) -> std::string {
                           return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
-                        }});
+                        },
+                        .changes = Change::Flow});
 }
 
 }  // namespace sim::SIM_BACKEND

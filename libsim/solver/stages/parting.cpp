@@ -28,13 +28,15 @@ using Places = ColumnView<columns(Column::Predicted), columns(Column::Predicted,
                                                               Column::Position, Column::VelocityNext)>;
 
 /// Puts the solver back to the substep's beginning; VelocityNext keeps where it leads.
-void go_back(Places p) {
+void go_back(FluidState& state, Places p) {
+  state.impulse.listen(false);
   p.copy<Column::VelocityNext, Column::Predicted>();
   p.copy<Column::Predicted, Column::Position>();
   p.copy<Column::PredictedNext, Column::Position>();
 }
 
 void go_on(FluidState& state, Places p) {
+  state.impulse.listen(true);
   for_each("follow mending", p.size(),
            Follow{.mended = p.predicted(),
                   .led_to = p.velocity_next(),
@@ -42,7 +44,8 @@ void go_on(FluidState& state, Places p) {
                   .predicted = p.predicted(),
                   .predicted_next = p.predicted_next(),
                   .walls = state.walls,
-                  .wall_gap = state.parameters.wall_gap});
+                  .wall_gap = gap_of_kernels(state)});
+  clamp_and_listen(state, p, 1, true);
 }
 
 using Columns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neighbours, Column::Id),
@@ -54,7 +57,7 @@ using Columns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neig
 template <class Selection>
 void launch(FluidState& state, Columns p, Selection select) {
   const auto& rules = state.levels.rules;
-  go_back(p);
+  go_back(state, p);
   p.zero<Column::Lambda>();
   const BesideFresh<Selection> fresh{select, p.ease(), rules.ease[0]};
   for (int k = 0; k < rules.partings; ++k) {
@@ -81,7 +84,7 @@ using EveryonesColumns = ColumnView<columns(Column::Predicted, Column::Neighbour
 void stabilise(FluidState& state, EveryonesColumns p) {
   const int rounds = state.compressed ? 3 : state.jets.pouring ? 1 : 0;
   if (rounds == 0 || state.substep > 0) return;
-  go_back(p);
+  go_back(state, p);
   for (int round = 0; round < rounds; ++round) {
     press(state, p);
     constrain_density(state, p);

@@ -30,34 +30,35 @@ struct Predict {
   Vec4* predicted;
   Walls walls;
   Vec3 refuge;
-  Witness witness;
-  float dt, most_speed, wall_gap;
+  Brake brake;
+  float dt, wall_gap;
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
     Vec3 v = xyz(velocity[i]);
-    quarantine(x, v, i);
+    quarantine(x, v, h, i);
     position[i] = with_w(x, h);
     if constexpr (Selection::everyone) {
       forces.act(x, v, dt);
     } else {
       forces.act(x, v, select.falls(i) * dt);
     }
-    v = limited(v, most_speed, witness, i);
+    v = brake.limited(v, h, i);
     velocity[i] = with_w(v, 0);
     if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&witness.guards->wall_projected, std::uint64_t{1});
+      atomic_add(&brake.witness.guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, h);
   }
 
   /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
   /// either.
-  SIM_FN void quarantine(Vec3& x, Vec3& v, int i) const {
+  SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool place_lost = !all_finite(x);
     if (!place_lost && all_finite(v)) return;
-    atomic_add(&witness.guards->not_finite, std::uint64_t{1});
-    witness.note(Trouble::NotFinite, i);
+    atomic_add(&brake.witness.guards->not_finite, std::uint64_t{1});
+    brake.witness.note(Trouble::NotFinite, i);
+    brake.take(v, h);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
   }
@@ -77,9 +78,8 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces) {
                                       .predicted = p.predicted(),
                                       .walls = state.walls,
                                       .refuge = state.refuge,
-                                      .witness = state.witness(p.id(), 0),
+                                      .brake = state.brake(p.id(), 0),
                                       .dt = k.dt,
-                                      .most_speed = k.most_speed,
                                       .wall_gap = k.wall_gap});
 }
 
@@ -101,7 +101,8 @@ Stage predict_stage() {
   return stage_of<run>({.name = "predict",
                         .source = "Macklin and Mueller 2013, Alg. 1 lines 1-4",
                         .phase = Phase::Substep,
-                        .called_for = always_moves});
+                        .called_for = always_moves,
+                        .changes = Change::Forces});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -24,7 +24,8 @@ Stage split_and_merge_stage() {
                         .source = "Algorithms 1 and 2",
                         .phase = Phase::FrameStart,
                         .called_for = if_levels,
-                        .part = Part::Levels});
+                        .part = Part::Levels,
+                        .changes = Change::Levels});
 }
 
 }  // namespace sim::SIM_BACKEND

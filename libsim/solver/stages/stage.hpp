@@ -18,6 +18,7 @@ struct Demand {
   bool saliency = false;        ///< their targets follow saliency
   bool saliency_parts = false;  ///< an output asks for what saliency is made of
   bool activation = false;      ///< temporal acceleration chooses who is solved
+  bool wall_impulse = false;    ///< an output asks what the walls give the water
 };
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
@@ -29,6 +30,8 @@ struct Stage {
   /// Empty when nothing calls for the stage; otherwise the reason.
   std::string (*called_for)(const Demand&);
   Part part = Part::Solve;
+  /// What its change of the water's momentum is counted as; each stage that writes velocities has one.
+  Change changes = Change::None;
   // From the function's view, by stage_of:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;
@@ -55,6 +58,9 @@ inline std::string always_moves(const Demand&) { return "every method moves its 
 inline std::string keeps_density(const Demand&) { return "every method keeps the density"; }
 inline std::string if_levels(const Demand& demand) {
   return demand.levels ? "particles split and merge" : "";
+}
+inline std::string if_wall_impulse(const Demand& demand) {
+  return demand.wall_impulse ? "the walls' impulse is asked for" : "";
 }
 inline std::string if_activation(const Demand& demand) {
   return demand.activation && !demand.settling ? "the method accelerates in time" : "";

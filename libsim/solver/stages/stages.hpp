@@ -41,6 +41,10 @@ Stage density_stage();
 Stage eased_constraint_stage();
 /// Position correction, momentum-exact, and wall projection.
 Stage displacement_stage();
+/// Accounts of what the walls give: holding back, missing density, pressure of cells.
+Stage held_at_walls_stage();
+Stage missing_density_stage();
+Stage wall_cells_stage();
 /// Velocity from the positions.
 Stage velocity_stage();
 /// XSPH viscosity.
@@ -84,6 +88,19 @@ using CoarsePressureView =
                columns(Column::Ease)>;
 /// Shifts the predicted positions by the pressure on cells.
 void press(FluidState& state, CoarsePressureView particles);
+
+// For the account of what the walls give. While it listens, kernels leave the clamp at the walls to a pass of
+// its own, which tells the account.
+
+/// Nearest distance to a wall that kernels keep, as a share of d; none while the account listens.
+float gap_of_kernels(const FluidState& state);
+using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
+/// The clamp that kernels left out; nothing while nobody listens. `times`: as in WallListener. `in_both`:
+/// PredictedNext holds the same places.
+void clamp_and_listen(FluidState& state, ClampView particles, float times, bool in_both);
+/// How often a push of this projection counts in all: the projections after it take a share of each step
+/// again.
+float times_taken(const SolverParameters& parameters, int iteration);
 
 /// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
 /// place in both buffers.

@@ -10,18 +10,18 @@ struct Advance {
   const Vec4* predicted;
   Vec4* velocity;
   Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
-  Witness witness;
-  float dt, most_speed;
+  Brake brake;
+  float dt;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
-    const Vec3 kept = limited(after, most_speed, witness, i);
+    const Vec3 kept = brake.limited(after, predicted[i].w, i);
     velocity[i] = with_w(kept, 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     // Nobody is carried farther than the limit allows: a crowd in one place would reach others at once.
-    position[i] =
-        length(after) > most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w) : predicted[i];
+    position[i] = length(after) > brake.most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w)
+                                                   : predicted[i];
   }
 };
 
@@ -30,7 +30,6 @@ using Columns =
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
 void run(FluidState& state, Columns p) {
-  const auto& k = state.parameters;
   // The old places that PredictedNext holds are done with.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -38,9 +37,8 @@ void run(FluidState& state, Columns p) {
                    .predicted = p.predicted(),
                    .velocity = p.velocity(),
                    .kick = kick,
-                   .witness = state.witness(p.id(), 1),
-                   .dt = k.dt,
-                   .most_speed = k.most_speed});
+                   .brake = state.brake(p.id(), 1),
+                   .dt = state.parameters.dt});
 }
 
 }  // namespace
@@ -49,7 +47,8 @@ Stage velocity_stage() {
   return stage_of<run>({.name = "velocity",
                         .source = "Macklin and Mueller 2013, Alg. 1 lines 20-23",
                         .phase = Phase::SubstepEnd,
-                        .called_for = always_moves});
+                        .called_for = always_moves,
+                        .changes = Change::Projections});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -151,7 +151,8 @@ Stage velocity_grid_stage() {
                         .source = "ViP-Fluid, Algorithm 3 lines 4-5 and 13-17",
                         .phase = Phase::FrameEnd,
                         .called_for = if_activation,
-                        .part = Part::Activation});
+                        .part = Part::Activation,
+                        .changes = Change::Inherited});
 }
 
 }  // namespace sim::SIM_BACKEND

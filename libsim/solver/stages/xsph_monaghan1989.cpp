@@ -136,14 +136,16 @@ Stage xsph_stage() {
                         .phase = Phase::SubstepEnd,
                         .called_for = [](const Demand& demand) -> std::string {
                           return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity > 0" : "";
-                        }});
+                        },
+                        .changes = Change::Viscosity});
 }
 
 Stage xsph_of_levels_stage() {
   return stage_of<run_levels>({.name = "xsph of levels",
                                .source = "Monaghan 1989, with a filter of kicks round fresh particles",
                                .phase = Phase::SubstepEnd,
-                               .called_for = if_levels});
+                               .called_for = if_levels,
+                               .changes = Change::Viscosity});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,0 +1,44 @@
+#include "libsim/impulse/momentum_account.hpp"
+
+#include <algorithm>
+
+namespace sim {
+
+Vec3d inward_normal(Wall wall) {
+  switch (wall) {
+    case Wall::LowX:
+      return {1, 0, 0};
+    case Wall::HighX:
+      return {-1, 0, 0};
+    case Wall::LowZ:
+      return {0, 0, 1};
+    case Wall::HighZ:
+      return {0, 0, -1};
+    case Wall::Floor:
+      break;
+  }
+  return {0, 1, 0};
+}
+
+double area_m2(const Gauge& gauge, const Vec3d& tank_size_m) {
+  const Vec3d normal = inward_normal(gauge.wall);
+  double out = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (normal[k] != 0) continue;
+    const double low = std::max(gauge.min_m[k], 0.0);
+    const double high = k == 1 ? gauge.max_m[k] : std::min(gauge.max_m[k], tank_size_m[k]);
+    out *= std::max(high - low, 0.0);
+  }
+  return out;
+}
+
+Vec3d MomentumAccount::walls_sum() const {
+  Vec3d out{};
+  for (std::size_t wall = 0; wall < wall_count; ++wall) {
+    const Vec3d normal = inward_normal(static_cast<Wall>(wall));
+    for (std::size_t k = 0; k < 3; ++k) out[k] += normal[k] * walls[wall].sum();
+  }
+  return out;
+}
+
+}  // namespace sim
