@@ -1,0 +1,70 @@
+/// Free fall, and a column at rest.
+
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+
+/// One particle from the file's first height. A run's error is that of symplectic Euler, g dt t / 2.
+void particle_falls(Run run, const TruthFile& file) {
+  const auto& times = file.column("t");
+  const auto& heights = file.column("z");
+  auto scene = fluid_test::tank({10, 10, 10}, {});
+  sim::SimulationOptions options;
+  options.substeps = 1;
+  const State start{{0, 0, 5, static_cast<float>(heights.front()), 5, 0, 0, 0}};
+  const auto fluid = start_from(run, scene, 0.15, start, options);
+  const double dt = scene.frame_dt_s;
+  double off_euler = 0, off_truth = 0;
+  while (fluid->frame() * dt < times.back() - 1e-9) {
+    fluid->step_frame();
+    const auto state = fluid->read_state();
+    const int n = fluid->frame();
+    const double z = place(state[0])[1];
+    off_euler = std::max(off_euler, std::abs(heights.front() - gravity * dt * dt * n * (n + 1) / 2 - z));
+    for (std::size_t i = 0; i < times.size(); ++i)
+      if (std::abs(times[i] - n * dt) < 1e-9) off_truth = std::max(off_truth, heights[i] - z);
+    EXPECT_EQ(state[0].x_m, 5);
+    EXPECT_NEAR(velocity(state[0])[1], -gravity * dt * n, 1e-4);
+  }
+  std::printf("%s, %s: %.1e m off symplectic Euler, %.4f m below the parabola, where g dt t / 2 is %.4f m\n",
+              file.name().c_str(), run.name().c_str(), off_euler, off_truth, gravity * dt * times.back() / 2);
+  expect_within(off_euler, file.gate("gate", run.ours()), file.name() + ", " + run.name());
+  EXPECT_NEAR(off_truth, gravity * dt * times.back() / 2, 1e-4);
+}
+void particles_fall(Backend backend) {
+  const auto files = truth_of("free_fall");
+  if (files.empty()) GTEST_SKIP() << "no file of free fall";
+  for (const auto& file : files)
+    for (const auto method : methods) particle_falls({backend, method}, file);
+}
+TEST(TruthFall, EqualsSymplecticEuler) { particles_fall(Backend::Cpu); }
+TEST(TruthFallGpu, EqualsSymplecticEuler) { particles_fall(Backend::Cuda); }
+
+void columns_rest(Backend backend, int layers) {
+  const auto files = truth_of("column_at_rest");
+  if (files.empty()) GTEST_SKIP() << "no file of a column at rest";
+  const double height = 1.2, d = height / layers;
+  const State rest = settled(backend, {10 * d, height, 10 * d}, d, 60);
+  for (const auto& file : files) {
+    for (const auto method : methods) {
+      const Run run{backend, method};
+      const auto fluid = start_from(run, fluid_test::tank({10 * d, 2 * height, 10 * d}, {}), d, rest);
+      for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
+      double centre = 0;  // mean of 30 frames
+      for (int frame = 0; frame < 30; ++frame) {
+        fluid->step_frame();
+        centre += mean(fluid->read_state(), [](const auto& p) { return place(p)[1]; }) / 30;
+      }
+      const double lost = 1 - centre / (height / 2);
+      std::printf("%s, %s, %d layers: centre of mass lower by %.4f of H / 2; %s\n", file.name().c_str(),
+                  run.name().c_str(), layers, lost, share(*fluid, rest).c_str());
+      expect_within(std::abs(lost), file.gate("gate", run.ours()), file.name() + ", " + run.name());
+    }
+  }
+}
+TEST(TruthColumn, KeepsItsHeight) { columns_rest(Backend::Cpu, 24); }
+TEST(TruthColumnGpu, KeepsItsHeight) { columns_rest(Backend::Cuda, 80); }
+
+}  // namespace

@@ -1,0 +1,193 @@
+#pragma once
+/// Files of data/truth, or of the folder that VIP_TRUTH_DIR names: an experiment or a closed form as columns
+/// of numbers under a header that says what they are. docs/truth.md has the format.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace truth_test {
+
+inline constexpr double gravity = 9.81;  ///< m/s2, of every experiment
+
+/// A column, and what turns a run's dimensionless value into it.
+struct Axis {
+  std::string column;
+  double factor = 1;
+};
+
+struct TruthFile {
+  std::filesystem::path path;
+  std::string quantity;
+  std::map<std::string, std::pair<std::string, int>> keys;  ///< value and line
+  std::map<std::string, std::vector<double>> columns;
+  int header_line = 0;  ///< of the columns' names
+
+  std::string name() const { return path.filename().string(); }
+  [[noreturn]] void fail(int line, const std::string& problem, const std::string& mend) const {
+    throw base::Error(path.string() + ":" + std::to_string(line), problem, mend);
+  }
+  bool has(const std::string& key) const { return keys.count(key) > 0; }
+  const std::string& text(const std::string& key) const {
+    if (!has(key))
+      fail(1, "the header lacks '" + key + "'", "add a line '# " + key + ": ...' (docs/truth.md)");
+    return keys.at(key).first;
+  }
+  double number(const std::string& key) const {
+    const std::string& value = text(key);
+    char* end = nullptr;
+    const double out = std::strtod(value.c_str(), &end);
+    if (end == value.c_str() || *end != 0 || !(out > 0) || !std::isfinite(out))
+      fail(keys.at(key).second, key + " is '" + value + "', not a number above 0", "write a number");
+    return out;
+  }
+  /// The method's gate, "gate" unless the method has one of its own ("gate_ours"); none = report only.
+  std::optional<double> gate(const std::string& key = "gate", bool ours = false) const {
+    const std::string mine = ours && has(key + "_ours") ? key + "_ours" : key;
+    if (text(mine) == "none") return std::nullopt;
+    return number(mine);
+  }
+  const std::vector<double>& column(const std::string& wanted) const {
+    const auto found = columns.find(wanted);
+    if (found == columns.end())
+      fail(header_line, "there is no column '" + wanted + "'", "name one of the columns so");
+    return found->second;
+  }
+  /// "T = t sqrt(2 g / length)": the column's value is factor * t sqrt(g / length). "T = t": seconds.
+  Axis time() const {
+    static const std::regex form(R"((\w+) = t( sqrt\((?:([0-9.]+) )?g / length\))?)");
+    const auto [name, number, scaled] = match("x", form, "T = t sqrt(2 g / length)");
+    return {name, scaled ? std::sqrt(number) : std::sqrt(this->number("length_m") / gravity)};
+  }
+  /// "H = h / (2 length)": the column's value is factor * h / length. "H = h": metres.
+  Axis length() const {
+    static const std::regex form(R"((\w+) = \w+( / (?:length|\(([0-9.]+) length\)))?)");
+    const auto [name, number, scaled] = match("y", form, "Z = x / length");
+    return {name, scaled ? 1 / number : this->number("length_m")};
+  }
+
+ private:
+  struct Match {
+    std::string name;
+    double number;
+    bool scaled;
+  };
+  Match match(const std::string& key, const std::regex& form, const std::string& example) const {
+    std::smatch found;
+    const std::string& value = text(key);
+    if (!std::regex_match(value, found, form))
+      fail(keys.at(key).second, key + " is '" + value + "'", "write it like '" + example + "'");
+    column(found[1]);
+    return {found[1], found[3].matched ? std::stod(found[3]) : 1, found[2].matched};
+  }
+};
+
+/// The quantities that tests measure; each is named by one test file.
+inline const std::vector<std::string>& quantities() {
+  static const std::vector<std::string> all{"column_at_rest",  "dam_front", "dam_height",
+                                            "elliptical_drop", "free_fall", "standing_wave",
+                                            "taylor_green"};
+  return all;
+}
+
+/// base::Error at file:line: no quantity or one that is not known, a key that is not known or comes twice, a
+/// row that has other columns than the header or a cell that is no number.
+inline TruthFile parse_truth(const std::filesystem::path& path, const std::string& bytes) {
+  static const std::vector<std::string> known{"quantity", "scene", "x",         "y",     "length_m", "source",
+                                              "licence",  "gate",  "gate_ours", "shift", "viscosity"};
+  static const std::regex key_line(R"(# ([a-z_]+): +(.*\S)\s*)");
+  TruthFile out;
+  out.path = path;
+  std::vector<std::string> names;
+  std::istringstream in(bytes);
+  int line = 0;
+  for (std::string row; std::getline(in, row);) {
+    ++line;
+    if (!row.empty() && row.back() == '\r') row.pop_back();
+    std::smatch found;
+    if (std::regex_match(row, found, key_line)) {
+      const std::string key = found[1];
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        out.fail(line, "'" + key + "' is no key of a header",
+                 "see docs/truth.md, or begin a remark with a capital");
+      if (!out.keys.try_emplace(key, found[2], line).second)
+        out.fail(line, "'" + key + "' comes twice", "keep one");
+    }
+    if (row.empty() || row[0] == '#') continue;
+    std::vector<std::string> cells;
+    std::istringstream split(row);
+    for (std::string cell; std::getline(split, cell, ',');) cells.push_back(cell);
+    if (names.empty()) {
+      names = cells;
+      out.header_line = line;
+      continue;
+    }
+    if (cells.size() != names.size())
+      out.fail(line,
+               std::to_string(cells.size()) + " cells where the header has " + std::to_string(names.size()),
+               "give each row every column");
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      char* end = nullptr;
+      const double value = std::strtod(cells[c].c_str(), &end);
+      if (end == cells[c].c_str() || *end != 0 || !std::isfinite(value))
+        out.fail(line, "'" + cells[c] + "' in column " + names[c] + " is not a number", "write a number");
+      out.columns[names[c]].push_back(value);
+    }
+  }
+  if (out.columns.empty()) out.fail(line, "there are no rows", "add a line of names and rows of numbers");
+  out.quantity = out.text("quantity");
+  if (std::find(quantities().begin(), quantities().end(), out.quantity) == quantities().end())
+    out.fail(out.keys.at("quantity").second, "no test measures '" + out.quantity + "'",
+             "docs/truth.md lists the quantities");
+  out.gate();
+  out.text("source");
+  return out;
+}
+
+/// data/truth, or what VIP_TRUTH_DIR names.
+inline std::filesystem::path truth_folder() {
+  const char* named = std::getenv("VIP_TRUTH_DIR");
+  return named && *named ? std::filesystem::path(named) : base::resource("data/truth");
+}
+
+/// Its files *.csv by name. base::Error when there is no such folder.
+inline std::vector<std::filesystem::path> truth_paths() {
+  std::vector<std::filesystem::path> out;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(truth_folder(), none))
+    if (entry.path().extension() == ".csv") out.push_back(entry.path());
+  if (out.empty())
+    throw base::Error(truth_folder().string(), "holds no file *.csv",
+                      "set VIP_TRUTH_DIR to a folder that does");
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+inline TruthFile read_truth(const std::filesystem::path& path) {
+  return parse_truth(path, base::read_file(path, 1 << 20));
+}
+
+/// The files of a quantity. Malformed ones are left to the test that reads them all.
+inline std::vector<TruthFile> truth_of(const std::string& quantity) {
+  std::vector<TruthFile> out;
+  for (const auto& path : truth_paths()) {
+    try {
+      TruthFile file = read_truth(path);
+      if (file.quantity == quantity) out.push_back(std::move(file));
+    } catch (const base::Error&) {
+    }
+  }
+  return out;
+}
+
+}  // namespace truth_test

@@ -1,0 +1,77 @@
+/// Upright vortices in a tank: what viscosity the method has of its own. A pool of g depth >= 2 U^2, since a
+/// unilateral constraint holds no negative pressure.
+
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+
+constexpr double speed = 1;  ///< m/s, the largest at the start
+
+/// What the method adds to a viscosity nu, over d U; measured: 0.2 to 0.23 at 16 spacings and two substeps.
+constexpr double own_most = 0.35;
+
+void report_viscosity(const Run& run, const TruthFile& file, double nu, double measured, double d,
+                      double error, const std::string& rest) {
+  std::printf("%s, %s: viscosity %.5f m2/s where %.5f is asked, %.3f d U of its own; speed off by %.3f; %s\n",
+              file.name().c_str(), run.name().c_str(), measured, nu, (measured - nu) / (d * speed), error,
+              rest.c_str());
+  EXPECT_LE((measured - nu) / (d * speed), own_most) << file.name() << ", " << run.name();
+  EXPECT_GE(measured, nu) << file.name() << ", " << run.name();
+}
+
+/// Strength of `flow` in the water, 1 at the start.
+double strength(const State& state, const std::function<Vec3d(const Vec3d&)>& flow) {
+  double along = 0, norm = 0;
+  for (const auto& p : state) {
+    const Vec3d v = velocity(p), e = flow(place(p));
+    along += mass(p) * (v[0] * e[0] + v[2] * e[2]);
+    norm += mass(p) * (e[0] * e[0] + e[2] * e[2]);
+  }
+  return along / norm;
+}
+
+/// One cell of Taylor and Green's vortices between four walls: u = U sin kx cos kz, w = -U cos kx sin kz.
+void cell_decays(Run run, const TruthFile& file, int spacings, const State& rest, double length) {
+  const double d = length / spacings, k = pi / length;
+  const auto flow = [k](const Vec3d& x) {
+    return Vec3d{speed * std::sin(k * x[0]) * std::cos(k * x[2]), 0,
+                 -speed * std::cos(k * x[0]) * std::sin(k * x[2])};
+  };
+  const State start = moving(rest, flow);
+  const double unit =
+      2 * length / speed;  // the file's wavelength and speed are 1; two cells are a wavelength
+  const auto scene = fluid_test::tank({length, 2 * length, length}, {});
+  for (const double asked : {0.0, file.number("viscosity")}) {
+    sim::SimulationOptions options;
+    options.viscosity_m2_s = asked * speed * 2 * length;
+    const auto fluid = start_from(run, scene, d, start, options);
+    std::vector<double> time, logs;
+    double error = 0;
+    while (fluid->frame() < 90) {
+      fluid->step_frame();
+      time.push_back(fluid->frame() * scene.frame_dt_s);
+      const double now = strength(fluid->read_state(), flow);
+      logs.push_back(std::log(now));
+      error = std::max(error, std::abs(now - interpolate(file.column("t"), file.column("Umax_over_U0"),
+                                                         time.back() / unit)));
+    }
+    report_viscosity(run, file, options.viscosity_m2_s, -fit(time, logs).slope / (2 * k * k), d, error,
+                     std::to_string(spacings) + " spacings a cell, " + share(*fluid, start));
+    if (asked > 0) expect_within(error, file.gate("gate", run.ours()), file.name() + ", " + run.name());
+  }
+}
+
+void cells_decay(Backend backend, int spacings) {
+  constexpr double length = 0.8;
+  const auto files = truth_of("taylor_green");
+  if (files.empty()) GTEST_SKIP() << "no file of Taylor and Green's vortices";
+  const State rest = settled(backend, {length, length, length}, length / spacings, 40);
+  for (const auto& file : files)
+    for (const auto method : methods) cell_decays({backend, method}, file, spacings, rest, length);
+}
+TEST(TruthVortex, TaylorGreenCellDecays) { cells_decay(Backend::Cpu, 16); }
+TEST(TruthVortexGpu, TaylorGreenCellDecays) { cells_decay(Backend::Cuda, 48); }
+
+}  // namespace

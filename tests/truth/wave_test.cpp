@@ -1,0 +1,78 @@
+/// A standing wave in a tank: its period by linear theory, omega^2 = g k tanh k h.
+
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+
+/// Period and damping of a swing about 0, sampled every dt.
+struct Swing {
+  double period = 0, damping = 0;  ///< damping: share of the amplitude that is lost in a period
+  std::size_t crossings = 0;
+};
+Swing swing_of(const std::vector<double>& s, double dt) {
+  std::vector<double> index, crossing, order, peak;
+  double high = 0;
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    high = std::max(high, std::abs(s[i]));
+    if ((s[i - 1] < 0) == (s[i] < 0)) continue;
+    if (!crossing.empty()) {
+      order.push_back(static_cast<double>(order.size()));
+      peak.push_back(std::log(high));
+    }
+    index.push_back(static_cast<double>(index.size()));
+    crossing.push_back((static_cast<double>(i) - s[i] / (s[i] - s[i - 1])) * dt);
+    high = 0;
+  }
+  if (crossing.size() < 3) return {};
+  return {2 * fit(index, crossing).slope, 1 - std::exp(2 * fit(order, peak).slope), crossing.size()};
+}
+
+/// Potential flow under half a wave between two walls, at the moment its surface is flat.
+Vec3d flow(const Vec3d& x, double k, double depth, double steepness) {
+  const double omega = std::sqrt(gravity * k * std::tanh(k * depth));
+  const double u = steepness / k * omega / std::sinh(k * depth);
+  return {-u * std::cosh(k * x[1]) * std::sin(k * x[0]), u * std::sinh(k * x[1]) * std::cos(k * x[0]), 0};
+}
+
+void wave_swings(Run run, const TruthFile& file, std::size_t row, double d, double length,
+                 const State& rest) {
+  const double k = pi / length, depth = d * std::round(file.column("kh")[row] / k / d);
+  auto scene = fluid_test::tank({length, 2 * depth, 6 * d}, {});
+  const auto start = moving(rest, [&](const Vec3d& x) { return flow(x, k, depth, 0.1); });
+  const auto fluid = start_from(run, scene, d, start, inviscid());
+  const double theory = file.column("T_sqrt_gk")[row] / std::sqrt(gravity * k);
+  std::vector<double> sway;
+  while (fluid->frame() * scene.frame_dt_s < 2.4 * theory) {
+    fluid->step_frame();
+    sway.push_back(mean(fluid->read_state(), [](const auto& p) { return place(p)[0]; }) - length / 2);
+  }
+  const Swing swing = swing_of(sway, scene.frame_dt_s);
+  std::printf(
+      "%s, %s, kh %.1f, %.0f spacings long: period off by %+.4f, amplitude lost in a period %.3f; %s\n",
+      file.name().c_str(), run.name().c_str(), file.column("kh")[row], length / d, swing.period / theory - 1,
+      swing.damping, share(*fluid, start).c_str());
+  expect_within(std::abs(swing.period / theory - 1), file.gate("gate", run.ours()),
+                file.name() + ", " + run.name());
+}
+
+/// The first `rows` of each file, in tanks so many spacings long.
+void waves_swing(Run run, int spacings, std::size_t rows) {
+  constexpr double length = 2;
+  const double d = length / spacings;
+  const auto files = truth_of("standing_wave");
+  if (files.empty()) GTEST_SKIP() << "no file of a standing wave";
+  for (const auto& file : files) {
+    for (std::size_t row = 0; row < std::min(rows, file.column("kh").size()); ++row) {
+      const double depth = d * std::round(file.column("kh")[row] * length / pi / d);
+      wave_swings(run, file, row, d, length, settled(run.backend, {length, depth, 6 * d}, d, 40));
+    }
+  }
+}
+TEST(TruthWave, HiResSwingsWithItsPeriod) { waves_swing({Backend::Cpu, MethodKind::HiRes}, 32, 1); }
+TEST(TruthWave, OursSwingsWithItsPeriod) { waves_swing({Backend::Cpu, MethodKind::Ours}, 32, 1); }
+TEST(TruthWaveGpu, HiResSwingsWithItsPeriod) { waves_swing({Backend::Cuda, MethodKind::HiRes}, 128, 3); }
+TEST(TruthWaveGpu, OursSwingsWithItsPeriod) { waves_swing({Backend::Cuda, MethodKind::Ours}, 128, 3); }
+
+}  // namespace
