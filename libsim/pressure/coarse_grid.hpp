@@ -1,6 +1,7 @@
 #pragma once
 /// The bridge between particles and the coarse pressure's cells.
 
+#include "libsim/particles/walls.hpp"
 #include "libsim/pressure/multigrid.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -38,7 +39,13 @@ struct CoarseGrid {
   /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
   /// wider or narrower as makes whole ones fit between the walls.
   void fit(const Domain& domain, float edge);
+  /// The walls' openings as open faces; after fit. Walls are those of the domain.
+  void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;
+
+ private:
+  int opened_ = 0;      ///< openings that the multigrid has
+  Vec3 opened_edge_{};  ///< with cells of this edge
 };
 
 }  // namespace sim::SIM_BACKEND

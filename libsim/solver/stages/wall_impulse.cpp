@@ -79,7 +79,9 @@ struct WallCells {
         {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<float>(z) + 0.5f});
     const auto push = [&](Wall wall, int nx, int ny, int nz, float area) {
       if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
-      to.add(static_cast<int>(wall), WallPart::CoarsePressure, centre, half, grid.q[i] * area / unit_volume);
+      const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
+      to.add(static_cast<int>(wall), WallPart::CoarsePressure, centre, half,
+             shut * grid.q[i] * area / unit_volume);
     };
     const float across_x = frame.edge.y * frame.edge.z;
     const float across_z = frame.edge.x * frame.edge.y;
@@ -102,6 +104,7 @@ void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
 
 struct Clamp {
   Vec4* predicted;
+  const Vec4* from;
   Vec4* next;  ///< nullptr where it holds other places
   Walls walls;
   WallListener to;
@@ -110,7 +113,7 @@ struct Clamp {
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (!walls.project(x, wall_gap * at.w / 2, HeardClamp{to, at})) return;
+    if (!walls.project(x, xyz(from[i]), wall_gap * at.w / 2, HeardClamp{to, at})) return;
     atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, at.w);
     if (next) next[i] = predicted[i];
@@ -129,10 +132,11 @@ float gap_of_kernels(const FluidState& state) {
   return state.impulse.listens() ? none : state.parameters.wall_gap;
 }
 
-void clamp_and_listen(FluidState& state, ClampView p, float times, bool in_both) {
+void clamp_and_listen(FluidState& state, ClampView p, const Vec4* from, float times, bool in_both) {
   if (!state.impulse.listens()) return;
   for_each("clamp and hear", p.size(),
            Clamp{.predicted = p.predicted(),
+                 .from = from,
                  .next = in_both ? p.predicted_next() : nullptr,
                  .walls = state.walls,
                  .to = state.impulse.listener(times),
