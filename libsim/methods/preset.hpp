@@ -53,7 +53,7 @@ struct Readings {
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
   /// Speed below which water counts as at rest, as a share of sqrt(g d_*); 0 = none does.
-  double calm_speed = 0.5;
+  double calm_speed = 0.65;
   /// Eq. 6: in water at rest only what exceeds this counts. Splits and merges stir it, and what they stir
   /// would make the next ones. Levels follow this; masks and figures do not.
   double calm_floor = 0.3;

@@ -17,18 +17,19 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
           speed_epsilon,  p.dimensionless};
 }
 
-/// In water at rest only what exceeds `floor` counts. What is not known yet starts with the frame's value, so
+/// In water at rest only what exceeds `floor` counts; where it moves faster the floor fades out, so that no
+/// level hangs on one speed. What is not known yet starts with the frame's value, so
 /// that a NaN does not stay.
 struct FollowUnrest {
   const float* now;
   float* unrest;
   const Vec4* velocity;
-  Calm calm;
+  Calm fading;  ///< over a half up to the speed below which water rests
   float share, floor;
   SIM_FN void operator()(int i) const {
     const float before = unrest[i];
     const Vec4 v = velocity[i];
-    const float rest = floor * calm(v.x, v.y, v.z);
+    const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
     // A NaN passes, so that it is seen.
     const float wish = now[i] < rest ? 0 : now[i] - rest;
     unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
@@ -50,8 +51,8 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
              FollowUnrest{.now = state.temporal.data(),
                           .unrest = fluid.unrest,
                           .velocity = fluid.velocity,
-                          .calm = calm_below(p.calm_speed, static_cast<double>(fluid.gravity),
-                                             static_cast<double>(fluid.finest_support) / 2),
+                          .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
+                                               static_cast<double>(fluid.finest_support) / 2),
                           .share = static_cast<float>(p.temporal_follow),
                           .floor = static_cast<float>(p.calm_floor)});
   }

@@ -1,5 +1,5 @@
 /// Levels that follow the eye, over water at rest: jumps of the gaze, a gaze that is lost, pairs of unlike
-/// levels, stirring (S21), on the CPU and on CUDA.
+/// levels (S21), on the CPU and on CUDA.
 
 #include <cstdio>
 
@@ -124,42 +124,5 @@ void lost_gaze_returns(Backend backend) {
 }
 TEST(S21Gaze, ALostGazeReturns) { lost_gaze_returns(Backend::Cpu); }
 TEST(S21GazeGpu, ALostGazeReturns) { lost_gaze_returns(Backend::Cuda); }
-
-double rms_speed(const std::vector<ParticleState>& state) {
-  double sum = 0;
-  for (const auto& p : state)
-    sum +=
-        (1 << p.level) * static_cast<double>(p.vx_m_s * p.vx_m_s + p.vy_m_s * p.vy_m_s + p.vz_m_s * p.vz_m_s);
-  return std::sqrt(sum / static_cast<double>(mass_units(state)));
-}
-
-void still_water_stays_calm(Backend backend) {
-  // Water at rest under a gaze at rest: what splits and merges set free must not feed on itself.
-  struct Case {
-    MethodKind method;
-    double calm;  ///< share of sqrt(g d_*)
-  };
-  for (const Case& c : {Case{MethodKind::FovFluid, 0.25}, Case{MethodKind::Ours, 0.35}}) {
-    const auto fluid = follow(backend, c.method, settled_pool(backend));
-    double jumps = 0;
-    double rms = 0;
-    for (int frame = 1; frame <= 150; ++frame) {
-      look_at(*fluid, left);
-      fluid->step_frame();
-      if (frame <= 90 || frame % 10) continue;
-      jumps = std::max(jumps, fluid->report().jump_share);
-      rms = std::max(rms, rms_speed(fluid->read_state()));
-    }
-    const auto events = fluid->report().levels;
-    std::printf(
-        "%s over still water: v_rms %.3f m/s, largest share of jumps %.4f, %llu splits, %llu merges\n",
-        sim::method_name(c.method).c_str(), rms, jumps, static_cast<unsigned long long>(events.splits),
-        static_cast<unsigned long long>(events.merges));
-    EXPECT_LT(rms, c.calm * std::sqrt(gravity * d));
-    EXPECT_LT(jumps, 0.01);
-  }
-}
-TEST(S21Gaze, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cpu); }
-TEST(S21GazeGpu, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cuda); }
 
 }  // namespace
