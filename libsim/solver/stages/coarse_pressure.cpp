@@ -80,31 +80,24 @@ struct Classify {
 template <class Selection>
 struct Shift {
   Selection select;
-  Vec4* predicted;
-  Vec4* next;
+  const Vec4* predicted;
+  Vec4* next;  ///< holds the places of those who are neither solved nor pressed
   PressureFrame frame;
   GridView grid;
   Walls walls;
-  Guards* guards;
-  float wall_gap;
 
   SIM_FN void operator()(int slot) const {
     int i = select(slot);
-    bool rests = false;
     if constexpr (!Selection::everyone) {
-      rests = i < 0;
-      if (rests && !select.others_pressed) return;
-      if (rests) i = ~i;
+      if (i < 0 && !select.others_pressed) return;
+      if (i < 0) i = ~i;
     }
     const Vec4 p = predicted[i];
     const Vec3 at = frame.in_cells(xyz(p));
     Vec3 x = xyz(p);
     x += Vec3{along<1, 0, 0>(at, xyz(p)) / frame.edge.x, along<0, 1, 0>(at, xyz(p)) / frame.edge.y,
               along<0, 0, 1>(at, xyz(p)) / frame.edge.z};
-    if (walls.project(x, xyz(p), wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
-    predicted[i] = with_w(x, p.w);
-    // No projection moves it: both buffers hold its place.
-    if (rests) next[i] = predicted[i];
+    next[i] = with_w(x, p.w);
   }
 
   /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
@@ -189,17 +182,14 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
   for_each("classify cells", grid.block.size(),
            Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
   coarse.multigrid.solve(state.parameters.coarse_cycles);
-  if (state.impulse.listens()) p.copy<Column::PredictedNext, Column::Predicted>();
   for_each("shift", p.size(),
            Shift<Selection>{.select = select,
                             .predicted = p.predicted(),
                             .next = p.predicted_next(),
                             .frame = coarse.frame,
                             .grid = grid,
-                            .walls = state.walls,
-                            .guards = state.guard(),
-                            .wall_gap = gap_of_kernels(state)});
-  clamp_and_listen(state, p, p.predicted_next(), 1, true);
+                            .walls = state.walls});
+  balance_push(state, p);
 }
 
 void run(FluidState& state, CoarsePressureView p) { press(state, p); }

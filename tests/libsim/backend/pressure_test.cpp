@@ -261,6 +261,30 @@ SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
   EXPECT_NEAR(measure_column(state, side, layers, 0.1f).height_m, before.height_m, 0.01 * before.height_m);
 }
 
+SIM_TEST(CoarsePressure, CellsHoldTheVolumeOfTheirParticles) {
+  auto state = column_of(8, 8, 0.1f, 1);
+  auto points = state.particles.all().predicted.to_host();
+  std::vector<std::uint8_t> levels;
+  double volume = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int level = static_cast<int>(i % 4);
+    points[i].w *= std::exp2(static_cast<float>(level) / 3);
+    levels.push_back(static_cast<std::uint8_t>(level));
+    volume += 1 << level;
+  }
+  state.one_level = false;
+  state.supports = level_supports(0.2);
+  state.particles.all().level.from_host(levels);
+  state.particles.all().predicted.from_host(points);
+  state.particles.all().ease.from_host(std::vector<float>(points.size(), 1));
+  neighbours_stage().run(state);
+  coarse_pressure_stage().run(state);
+  double held = 0;
+  for (const CellSum& cell : state.coarse.sums.to_host())
+    held += static_cast<double>(cell.volume) / (1 << 20);
+  EXPECT_NEAR(held, volume, 1e-3 * volume);
+}
+
 SIM_TEST(CoarsePressure, TakesNoParticlesAndParticlesOutsideTheDomain) {
   FluidState none;
   none.guards.resize(1);
