@@ -168,9 +168,11 @@ struct FrameReport {
   double speed_max_m_s = 0;
   std::int64_t poured = 0;        ///< by nozzles since the simulation was made, in units of m_*
   std::int64_t particles_in = 0;  ///< particles that nozzles made
-  std::int64_t particles_out =
-      0;                       ///< particles that they took; a nozzle of one level moves as many as it makes
-  std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured; mass_units + reservoir is constant
+  /// Particles that nozzles took and outlets let out. A nozzle of one level moves as many as it makes.
+  std::int64_t particles_out = 0;
+  std::int64_t drained = 0;    ///< left through outlets, in units of m_*
+  std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured, in units of m_*; mass_units +
+                               ///< reservoir + drained is constant
   GuardCounts guards;
   TemporalReport temporal;
   SeenReport seen;  ///< the picture that saliency was given last
@@ -260,7 +262,7 @@ class Simulation {
   virtual std::vector<LaunchTime> launch_times() const { return {}; }
   /// Waits for all launched work.
   virtual void synchronize() = 0;
-  /// Bytes of memory that particles and their choice for the nozzles hold.
+  /// Bytes of memory that particles and their choice for nozzles and outlets hold.
   virtual std::size_t particle_bytes() const = 0;
   /// The schedule in words: each pass with why it is there, each known stage with why it is not.
   virtual std::string explain() const = 0;

@@ -114,6 +114,8 @@ std::string number(double value, int digits) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
+std::string shortest(double value) { return fmt::format("{:.4g}", value); }
+
 std::string to_csv(const TextTable& table) {
   std::string out;
   const auto line = [&](const std::vector<std::string>& cells) {

@@ -51,6 +51,9 @@ inline constexpr const char* ptpe_help =
 /// For a cell of a table; "-" for NaN, "inf" for either infinity.
 std::string number(double value, int digits);
 
+/// With as many digits as tell it from others, at most four: "0.01667", "4".
+std::string shortest(double value);
+
 /// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
 struct TextTable {
   std::vector<std::string> head;

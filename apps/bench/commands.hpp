@@ -12,6 +12,9 @@ void add_frame_command(CLI::App& app);
 /// vip-bench headset: milliseconds by stage of frames of live fluid in a headset.
 void add_headset_command(CLI::App& app);
 
+/// vip-bench stability: how far the hard cases are from failing.
+void add_stability_command(CLI::App& app);
+
 /// vip-bench table1: pictures of the five methods against HiRes.
 void add_table1_command(CLI::App& app);
 

@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   CLI::App app{"What accuracy costs in time", "vip-bench"};
   apps::add_frame_command(app);
   apps::add_headset_command(app);
+  apps::add_stability_command(app);
   apps::add_table1_command(app);
   apps::add_table2_command(app);
   return apps::run_program(app, argc, argv);

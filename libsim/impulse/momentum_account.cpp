@@ -4,22 +4,6 @@
 
 namespace sim {
 
-Vec3d inward_normal(Wall wall) {
-  switch (wall) {
-    case Wall::LowX:
-      return {1, 0, 0};
-    case Wall::HighX:
-      return {-1, 0, 0};
-    case Wall::LowZ:
-      return {0, 0, 1};
-    case Wall::HighZ:
-      return {0, 0, -1};
-    case Wall::Floor:
-      break;
-  }
-  return {0, 1, 0};
-}
-
 double area_m2(const Gauge& gauge, const Vec3d& tank_size_m) {
   const Vec3d normal = inward_normal(gauge.wall);
   double out = 1;

@@ -10,11 +10,6 @@
 
 namespace sim {
 
-/// The walls of a tank, each with its inward normal: +x, -x, +z, -z, +y.
-enum class Wall { LowX, HighX, LowZ, HighZ, Floor };
-inline constexpr std::size_t wall_count = 5;
-Vec3d inward_normal(Wall wall);
-
 /// A rectangle on a wall that feels what this part of the wall gives. It ends at the wall's edges; what a box
 /// names across the wall is ignored. It should be several spacings wide: a particle counts with the share of
 /// its square d x d that lies inside.
@@ -42,7 +37,7 @@ struct MomentumAccount {
   std::vector<WallPush> gauges;            ///< in the order of SimulationOptions::gauges
   Vec3d before{}, after{};
   Vec3d forces{};     ///< gravity and the central force
-  Vec3d flow{};       ///< poured less taken by nozzles
+  Vec3d flow{};       ///< poured less taken by nozzles, less what left through outlets
   Vec3d levels{};     ///< splits and merges
   Vec3d braked{};     ///< by the limit of speed and the quarantine
   Vec3d viscosity{};  ///< 0 but for rounding, and for neighbours of particles that are not solved

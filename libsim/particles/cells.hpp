@@ -16,7 +16,15 @@ struct Domain {
   Vec3 low{}, high{};
 };
 
-/// Cells of one grid, x fastest. Beside and below it are walls, above it is air.
+/// An open part of a block's side, in cells of the finest grid: `axis` 0, 1, 2 = x, y, z, at the low or the
+/// high end, from low to high along the other two axes, ascending.
+struct OpenFace {
+  int axis;
+  bool at_high;
+  float low[2], high[2];
+};
+
+/// Cells of one grid, x fastest. Beside and below it are walls but for open faces, above it is air.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Momentum in fixed point, so that a sum does not depend on the order of adding.
+/// Sums of mass times a vector in fixed point, so that they do not depend on the order of adding.
 
 #include <cstdint>
 
@@ -7,13 +7,14 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Over m_*, m/s.
-struct Momentum {
+/// Mass in m_* times a vector, in units of 2^-Bits.
+template <int Bits>
+struct MassSum {
   std::uint64_t x, y, z;
 
-  static constexpr float unit = 1.0f / (1 << 24);
+  static constexpr float unit = 1.0f / static_cast<float>(1ull << Bits);
 
-  /// Adds `mass` in m_* at this velocity; one that is not finite counts as rest.
+  /// Adds `mass` in m_* times v; a vector that is not finite counts as zero.
   SIM_FN void add(float mass, Vec3 v) {
     if (!all_finite(v)) return;
     x += fixed(mass * v.x);
@@ -21,25 +22,35 @@ struct Momentum {
     z += fixed(mass * v.z);
   }
   /// Adds a sum while others do.
-  SIM_FN void add_at_once(const Momentum& other) {
+  SIM_FN void add_at_once(const MassSum& other) {
     atomic_add(&x, other.x);
     atomic_add(&y, other.y);
     atomic_add(&z, other.z);
   }
-  friend SIM_FN Momentum operator+(const Momentum& a, const Momentum& b) {
+  friend SIM_FN MassSum operator+(const MassSum& a, const MassSum& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
   }
-  friend SIM_FN Momentum operator-(const Momentum& a, const Momentum& b) {
+  friend SIM_FN MassSum operator-(const MassSum& a, const MassSum& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
+  /// Back from fixed point.
+  SIM_FN Vec3 value() const { return {in_units(x), in_units(y), in_units(z)}; }
 
  private:
+  SIM_FN static float in_units(std::uint64_t sum) {
+    return unit * static_cast<float>(static_cast<std::int64_t>(sum));
+  }
   SIM_FN static std::uint64_t fixed(float value) {
-    constexpr float most = 1e10f;  // of one particle; a sum of many has room
+    constexpr auto most = static_cast<float>(1ull << (56 - Bits));  // of one particle; a sum of many has room
     return static_cast<std::uint64_t>(
         static_cast<std::int64_t>(rintf(fminf(fmaxf(value, -most), most) / unit)));
   }
 };
+
+/// Of velocities, m/s.
+using Momentum = MassSum<24>;
+/// Of ways within a substep, m.
+using MassWay = MassSum<36>;
 
 /// Mass of a particle of support h in m_*.
 SIM_FN float mass_units_of(float h, float finest_support) {

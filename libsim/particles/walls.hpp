@@ -11,16 +11,67 @@ struct Plane {
   float offset;
 };
 
+/// A hole in a plane: the box that holds it, without end across the plane.
+struct Opening {
+  int plane;
+  Vec3 low, high;
+
+  SIM_FN bool holds(Vec3 x) const {
+    return x.x >= low.x && x.y >= low.y && x.z >= low.z && x.x <= high.x && x.y <= high.y && x.z <= high.z;
+  }
+};
+
 /// Who does not listen to what walls do to a particle.
 struct NobodyHears {
   SIM_FN void operator()(int, float) const {}
 };
 
-/// Walls of a tank as signed distances.
+/// Walls of a tank as signed distances. Before an opening its plane is not there. Water comes to the far side
+/// of a plane through its openings only: what is there is through and meets that plane no more.
 struct Walls {
   static constexpr int most = 8;
+  static constexpr int most_openings = 4;
   Plane planes[most];
   int count;
+  Opening openings[most_openings];
+  int opening_count;
+
+  SIM_FN float distance(int plane, Vec3 x) const {
+    return dot(planes[plane].normal, x) - planes[plane].offset;
+  }
+  /// Does x lie before an opening in this plane?
+  SIM_FN bool opens(int plane, Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (openings[o].plane == plane && openings[o].holds(x)) return true;
+    }
+    return false;
+  }
+  /// Is x on the far side of a plane that has an opening?
+  SIM_FN bool through(int plane, Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (openings[o].plane == plane) return distance(plane, x) < 0;
+    }
+    return false;
+  }
+  SIM_FN bool through(Vec3 x) const {
+    for (int o = 0; o < opening_count; ++o) {
+      if (distance(openings[o].plane, x) < 0) return true;
+    }
+    return false;
+  }
+  /// Does the plane not touch a particle at x? Only asked near and beyond the plane.
+  SIM_FN bool absent(int plane, Vec3 x) const {
+    return opening_count > 0 && (through(plane, x) || opens(plane, x));
+  }
+  /// Is the plane not there for what moves from `from` to `to`? Only asked near and beyond the plane.
+  SIM_FN bool lets(int plane, Vec3 from, Vec3 to) const {
+    if (opening_count == 0) return false;
+    if (through(plane, from)) return true;
+    const float before = distance(plane, from);
+    const float after = distance(plane, to);
+    // The straight way meets the plane there.
+    return opens(plane, after < 0 ? from + (before / (before - after)) * (to - from) : to);
+  }
 
   /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
   /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
@@ -32,6 +83,7 @@ struct Walls {
     for (int k = 0; k < count; ++k) {
       const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
       if (q >= 1) continue;
+      if (absent(k, x)) continue;
       const float inside = fmaxf(q, 0.0f);
       const float kept = 1 - behind(inside);
       // Product rule; the wall's share falls along its normal.
@@ -60,6 +112,7 @@ struct Walls {
     return out;
   }
   SIM_FN float distance_in_h(int k, Vec3 x, float h) const {
+    if (absent(k, x)) return 1;
     return fminf(fmaxf((dot(planes[k].normal, x) - planes[k].offset) / h, 0.0f), 1.0f);
   }
   SIM_FN float slope_at(int k, Vec3 x, float h) const { return slope(distance_in_h(k, x, h)); }
@@ -74,7 +127,7 @@ struct Walls {
   /// True where x lies at least `gap` inside every wall.
   SIM_FN bool holds(Vec3 x, float gap = 0) const {
     for (int k = 0; k < count; ++k) {
-      if (dot(planes[k].normal, x) < planes[k].offset + gap) return false;
+      if (dot(planes[k].normal, x) < planes[k].offset + gap && !opens(k, x)) return false;
     }
     return true;
   }
@@ -89,7 +142,7 @@ struct Walls {
       const float border = planes[k].offset + gap;
       const float least = kept_distance * fmaxf(dot(planes[k].normal, x) - border, 0.0f);
       const float beyond = least - (dot(planes[k].normal, to) - border);
-      if (beyond <= 0) continue;
+      if (beyond <= 0 || lets(k, x, to)) continue;
       to += beyond * planes[k].normal;
       heard(k, beyond);
       held = true;
@@ -99,13 +152,14 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x to at least `gap` inside every wall; true when it had to. heard: as above.
+  /// Moves x, which comes from `from`, to at least `gap` inside every wall; true when it had to. heard: as
+  /// above.
   template <class Heard = NobodyHears>
-  SIM_FN bool project(Vec3& x, float gap, Heard heard = {}) const {
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
     bool moved = false;
     for (int k = 0; k < count; ++k) {
       const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
-      if (depth <= 0) continue;
+      if (depth <= 0 || lets(k, from, x)) continue;
       x += depth * planes[k].normal;
       heard(k, depth);
       moved = true;

@@ -1,6 +1,8 @@
 #pragma once
 /// The bridge between particles and the coarse pressure's cells.
 
+#include "libsim/particles/momentum.hpp"
+#include "libsim/particles/walls.hpp"
 #include "libsim/pressure/multigrid.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -30,15 +32,56 @@ struct PressureFrame {
   Vec3 conductance() const { return {edge.z / edge.x, floor_area() / (edge.y * edge.y), edge.x / edge.z}; }
 };
 
+/// What the coarse pressure did to the water as a whole, and what the walls gave of it: ways over m_*.
+struct PushBalance {
+  MassWay pushed, walls;
+  std::uint64_t mass;  ///< of the particles that were pushed, in m_*
+
+  /// Way of each pushed particle that makes the two equal.
+  SIM_FN Vec3 correction() const {
+    if (mass == 0) return {0, 0, 0};
+    return (1 / static_cast<float>(mass)) * (walls - pushed).value();
+  }
+};
+
+/// Gives hear(wall, inward normal, area in m2) what is shut of each face of a cell that lies on a wall, in
+/// the order of Walls.
+template <class Hear>
+SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, int cell, Hear hear) {
+  const CellBlock& block = grid.block;
+  const int x = cell % block.nx;
+  const int y = cell / block.nx % block.ny;
+  const int z = cell / (block.nx * block.ny);
+  const float across_x = frame.edge.y * frame.edge.z;
+  const float across_z = frame.edge.x * frame.edge.y;
+  const auto face = [&](int wall, int nx, int ny, int nz, Vec3 normal, float area) {
+    if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
+    const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
+    hear(wall, normal, shut * area);
+  };
+  face(0, x - 1, y, z, {1, 0, 0}, across_x);
+  face(1, x + 1, y, z, {-1, 0, 0}, across_x);
+  face(2, x, y, z - 1, {0, 0, 1}, across_z);
+  face(3, x, y, z + 1, {0, 0, -1}, across_z);
+  face(4, x, y - 1, z, {0, 1, 0}, frame.floor_area());
+}
+
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
+  Array<PushBalance> balance;
   Multigrid multigrid;
 
   /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
   /// wider or narrower as makes whole ones fit between the walls.
   void fit(const Domain& domain, float edge);
+  /// The walls' openings as open faces; after fit. Walls are those of the domain.
+  void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;
+
+ private:
+  int opened_ = 0;      ///< openings that the multigrid has
+  Vec3 opened_edge_{};  ///< with cells of this edge
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -36,7 +36,11 @@ struct Around {
   float sum = 0;
 
   SIM_FN void add(const GridView& grid, float weight, int x, int y, int z) {
-    if (grid.kind_at(x, y, z) != CellKind::Solid) weights += weight;
+    if (grid.kind_at(x, y, z) != CellKind::Solid) {
+      weights += weight;
+    } else if (grid.open_count > 0) {
+      weights += weight * grid.openness(x, y, z);
+    }
     sum += weight * grid.q_at(x, y, z);
   }
   SIM_FN Around(const GridView& grid, Place p) {
@@ -90,7 +94,8 @@ struct Restrict {
   }
 };
 
-/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls.
+/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and sloping to zero
+/// outside open faces.
 struct Prolong {
   GridView fine, coarse;
   bool push_only;
@@ -107,7 +112,8 @@ struct Prolong {
       const float weight =
           (corner & 1 ? 0.25f : 0.75f) * (corner & 2 ? 0.25f : 0.75f) * (corner & 4 ? 0.25f : 0.75f);
       const bool solid = coarse.kind_at(c.x, c.y, c.z) == CellKind::Solid;
-      sum += weight * (solid ? coarse.q_at(parent.x, parent.y, parent.z) : coarse.q_at(c.x, c.y, c.z));
+      const float shut = solid && coarse.open_count > 0 ? 1 - coarse.openness(c.x, c.y, c.z) : 1.0f;
+      sum += weight * (solid ? shut * coarse.q_at(parent.x, parent.y, parent.z) : coarse.q_at(c.x, c.y, c.z));
     }
     const float q = fine.q[i] + sum;
     fine.q[i] = push_only ? fmaxf(q, 0.0f) : q;
@@ -186,8 +192,9 @@ void Multigrid::fit(CellBlock finest, Vec3 conductance) {
 
 GridView Multigrid::view(std::size_t level) {
   auto& at = levels_[level];
-  return {at.block,       levels_.front().block, conductance_,    1 << level,
-          at.kind.data(), at.q.data(),           at.source.data()};
+  return {at.block,         levels_.front().block, conductance_,
+          1 << level,       at.kind.data(),        at.q.data(),
+          at.source.data(), open_.data(),          static_cast<int>(open_.size())};
 }
 
 void Multigrid::smooth(std::size_t level, int first_colour) {

@@ -1,6 +1,6 @@
 #pragma once
 /// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >=
-/// 0, q = 0 in the air, no flux through walls.
+/// 0, q = 0 in the air and outside open faces, no flux through walls.
 
 #include <vector>
 
@@ -19,6 +19,8 @@ struct GridView {
   CellKind* kind;
   float* q;
   float* source;
+  const OpenFace* open;
+  int open_count;
 
   SIM_FN CellKind kind_at(int x, int y, int z) const {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
@@ -28,6 +30,32 @@ struct GridView {
   SIM_FN float extent(int cell, int finest_cells) const {
     const int left = finest_cells - cell * scale;
     return static_cast<float>(left < scale ? left : scale);
+  }
+  /// Conductance of the face between the block and this place outside it, of one inside. The water outside
+  /// has q = 0 at one finest cell beyond the last one's centre, on every grid.
+  SIM_FN float openness(int x, int y, int z) const {
+    float share = 0;
+    for (int o = 0; o < open_count; ++o) share += share_of(open[o], x, y, z);
+    if (share <= 0) return 0;
+    const auto way = static_cast<float>(scale);
+    return way / (0.5f * (way - 1) + 1 / fminf(share, 1.0f));
+  }
+  /// Share of an open face in that face.
+  SIM_FN float share_of(const OpenFace& face, int x, int y, int z) const {
+    const int place[3] = {x, y, z};
+    const int cells[3] = {block.nx, block.ny, block.nz};
+    const int fine[3] = {finest.nx, finest.ny, finest.nz};
+    if (place[face.axis] != (face.at_high ? cells[face.axis] : -1)) return 0;
+    float share = 1;
+    for (int k = 0, along = 0; k < 3; ++k) {
+      if (k == face.axis) continue;
+      if (place[k] < 0 || place[k] >= cells[k]) return 0;
+      const auto low = static_cast<float>(place[k] * scale);
+      const float wide = extent(place[k], fine[k]);
+      share *= fmaxf(fminf(face.high[along], low + wide) - fmaxf(face.low[along], low), 0.0f) / wide;
+      ++along;
+    }
+    return share;
   }
   /// 0 in air, walls and outside.
   SIM_FN float q_at(int x, int y, int z) const {
@@ -42,6 +70,8 @@ class Multigrid {
   /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed. The
   /// conductance of a face is its area over the way across it.
   void fit(CellBlock finest, Vec3 conductance = {1, 1, 1});
+  /// Opens these faces of the finest grid, and shuts all others.
+  void open(const std::vector<OpenFace>& faces) { open_.from_host(faces); }
   /// The finest grid. Write kind and source (C times the volume of each fluid cell, in the unit of
   /// conductances), then solve.
   GridView finest() { return view(0); }
@@ -64,6 +94,7 @@ class Multigrid {
   void smooth(std::size_t level, int first_colour);
 
   std::vector<Level> levels_;
+  Array<OpenFace> open_;
   Vec3 conductance_{1, 1, 1};
 };
 

@@ -135,6 +135,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   if (time.has("courant")) scene.courant = time.number("courant", {0.05, 4});
 
   read_nozzles(root, scene);
+  scene.outlets = read_outlets(root, scene.tank_size_m);
   scene.view = camera(root.table("view"));
   scene.overview = root.has("overview") ? camera(root.table("overview")) : overview_of(scene.view);
   scene.visible = visible_boxes(root);

@@ -11,6 +11,7 @@
 
 #include "libsim/scene/central_force.hpp"
 #include "libsim/scene/nozzle.hpp"
+#include "libsim/scene/outlet.hpp"
 
 namespace sim {
 
@@ -63,6 +64,7 @@ struct Scene {
   std::vector<GazeKey> gaze;
   std::vector<VisibleBox> visible;
   std::vector<Nozzle> nozzles;
+  std::vector<Outlet> outlets;  ///< at most most_outlets
   /// Nozzles pour what lies lowest in the four corner columns of this edge; 0 without nozzles.
   double recirculation_corner_m = 0;
   Camera view;         ///< the participant's
@@ -70,8 +72,8 @@ struct Scene {
   std::string sha256;  ///< of the file's text
 };
 
-/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water or nozzle
-/// outside the tank.
+/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water, nozzle or
+/// outlet outside the tank.
 Scene parse_scene(std::string_view text, const std::string& name);
 Scene read_scene(const std::filesystem::path& path);
 

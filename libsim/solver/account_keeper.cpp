@@ -55,7 +55,8 @@ struct Gather {
 struct Tally {
   const Guards* guards;
   const NeighbourList::Need* lists;
-  const int* active_ranks;  ///< inclusive sums of who was solved; nullptr when everyone was
+  /// The last of the inclusive sums of who was solved, before some left; nullptr when everyone was.
+  const int* active;
   const std::uint8_t* level_of;
   int n;
   const Extremes* extremes;
@@ -68,7 +69,7 @@ struct Tally {
     out->guards = *guards;
     out->extremes = *extremes;
     out->lists = lists ? *lists : NeighbourList::Need{0, 0};
-    out->active = active_ranks && n > 0 ? active_ranks[n - 1] : n;
+    out->active = active ? *active : n;
   }
 
   /// The first particle of this level or a coarser one.
@@ -151,7 +152,7 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
                  .lists = state.neighbours.need(),
-                 .active_ranks = left_out ? a.ranks.data() : nullptr,
+                 .active = left_out && a.ranks.size() > 0 ? a.ranks.data() + (a.ranks.size() - 1) : nullptr,
                  .level_of = state.particles.all().level.data(),
                  .n = n,
                  .extremes = extremes_.data(),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
@@ -109,6 +110,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   Demand out;
   out.parameters = parameters;
   out.nozzles = !scene.nozzles.empty();
+  out.outlets = !scene.outlets.empty();
   out.levels = method.adaptive();
   out.forced_targets = options.forced_targets.has_value();
   out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;
@@ -130,20 +132,37 @@ TargetSphere sphere_of(const TargetRegion& region) {
           region.outside};
 }
 
-Walls walls_of(const Scene& scene, bool gate_closed) {
+namespace {
+Opening opening_of(const Outlet& outlet) {
+  constexpr float endless = std::numeric_limits<float>::max();
+  std::array<float, 3> low{-endless, -endless, -endless};
+  std::array<float, 3> high{endless, endless, endless};
+  const auto axes = axes_of(outlet.wall);
+  for (std::size_t a = 0; a < 2; ++a) {
+    low[axes[a]] = static_cast<float>(outlet.min_m[a]);
+    high[axes[a]] = static_cast<float>(outlet.max_m[a]);
+  }
+  return {static_cast<int>(outlet.wall), {low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+}  // namespace
+
+Walls walls_of(const Scene& scene, bool settling) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
-  if (gate_closed) {
+  if (settling && scene.gate) {
     low = scene.fill_min_m;
     high = scene.fill_max_m;
   }
   const auto f = [](double value) { return static_cast<float>(value); };
+  // In the order of Wall.
   Walls out{};
   out.planes[out.count++] = {{1, 0, 0}, f(low[0])};
   out.planes[out.count++] = {{-1, 0, 0}, f(-high[0])};
   out.planes[out.count++] = {{0, 0, 1}, f(low[2])};
   out.planes[out.count++] = {{0, 0, -1}, f(-high[2])};
   out.planes[out.count++] = {{0, 1, 0}, f(low[1])};
+  if (settling) return out;
+  for (const Outlet& outlet : scene.outlets) out.openings[out.opening_count++] = opening_of(outlet);
   return out;
 }
 

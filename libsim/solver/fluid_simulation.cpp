@@ -150,7 +150,8 @@ class FluidSimulation final : public Simulation {
     out.guards = guard_counts(state_.guards.to_host()[0], state_);
     out.poured = state_.jets.poured;
     out.particles_in = state_.jets.made;
-    out.particles_out = state_.jets.taken;
+    out.particles_out = state_.jets.taken + state_.drained.particles;
+    out.drained = state_.drained.mass;
     out.reservoir = state_.jets.reservoir;
     out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
     out.seen = state_.saliency.input.seen();
@@ -173,7 +174,7 @@ class FluidSimulation final : public Simulation {
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
     return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
-           state_.saliency.bytes() + state_.activation.bytes();
+           state_.outflow.bytes() + state_.saliency.bytes() + state_.activation.bytes();
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {

@@ -145,7 +145,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   demand.settling = true;
   state.one_level = true;
   const Schedule settling = compile_schedule(demand);
-  state.walls = walls_of(scene, scene.gate);
+  state.walls = walls_of(scene, true);
   for (int frame = 0; frame < scene.settle_frames; ++frame) {
     run_frame(settling, state);
     state.neighbours.grow();

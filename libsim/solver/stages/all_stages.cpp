@@ -28,7 +28,8 @@ std::vector<Stage> all_stages() {
           xsph_stage(),
           xsph_of_levels_stage(),
           velocity_grid_stage(),
-          settling_stage()};
+          settling_stage(),
+          outflow_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

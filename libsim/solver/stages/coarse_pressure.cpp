@@ -75,40 +75,34 @@ struct Classify {
   }
 };
 
-/// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be.
+/// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be. Before an
+/// opening the outside is air, however small a part of the cell's face is open.
 template <class Selection>
 struct Shift {
   Selection select;
-  Vec4* predicted;
-  Vec4* next;
+  const Vec4* predicted;
+  Vec4* next;  ///< holds the places of those who are neither solved nor pressed
   PressureFrame frame;
   GridView grid;
   Walls walls;
-  Guards* guards;
-  float wall_gap;
 
   SIM_FN void operator()(int slot) const {
     int i = select(slot);
-    bool rests = false;
     if constexpr (!Selection::everyone) {
-      rests = i < 0;
-      if (rests && !select.others_pressed) return;
-      if (rests) i = ~i;
+      if (i < 0 && !select.others_pressed) return;
+      if (i < 0) i = ~i;
     }
     const Vec4 p = predicted[i];
     const Vec3 at = frame.in_cells(xyz(p));
     Vec3 x = xyz(p);
-    x += Vec3{along<1, 0, 0>(at) / frame.edge.x, along<0, 1, 0>(at) / frame.edge.y,
-              along<0, 0, 1>(at) / frame.edge.z};
-    if (walls.project(x, wall_gap * p.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
-    predicted[i] = with_w(x, p.w);
-    // No projection moves it: both buffers hold its place.
-    if (rests) next[i] = predicted[i];
+    x += Vec3{along<1, 0, 0>(at, xyz(p)) / frame.edge.x, along<0, 1, 0>(at, xyz(p)) / frame.edge.y,
+              along<0, 0, 1>(at, xyz(p)) / frame.edge.z};
+    next[i] = with_w(x, p.w);
   }
 
   /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
   template <int X, int Y, int Z>
-  SIM_FN float along(Vec3 at) const {
+  SIM_FN float along(Vec3 at, Vec3 metres) const {
     // Face (x, y, z) lies between cell (x, y, z) - (X, Y, Z) and cell (x, y, z).
     const Vec3 local = at - Vec3{X ? 0 : 0.5f, Y ? 0 : 0.5f, Z ? 0 : 0.5f};
     const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
@@ -125,10 +119,29 @@ struct Shift {
       const CellKind before = grid.kind_at(x - X, y - Y, z - Z);
       if (here != CellKind::Fluid && before != CellKind::Fluid) continue;
       weights += weight;
-      if (here == CellKind::Solid || before == CellKind::Solid) continue;
+      if (here == CellKind::Solid || before == CellKind::Solid) {
+        const bool low = before == CellKind::Solid;
+        if (!walls.opening_count ||
+            !opens<X, Y, Z>(low ? Place{x - X, y - Y, z - Z} : Place{x, y, z}, low, metres))
+          continue;
+      }
       sum += weight * (grid.q_at(x - X, y - Y, z - Z) - grid.q_at(x, y, z));
     }
     return weights > 0 ? sum / weights : 0;
+  }
+
+  struct Place {
+    int x, y, z;
+  };
+  /// Is this solid place outside the block, beyond an opening that the particle lies before?
+  template <int X, int Y, int Z>
+  SIM_FN bool opens(Place solid, bool low, Vec3 metres) const {
+    if (grid.block.holds(solid.x, solid.y, solid.z)) return false;
+    const float side = low ? 1.0f : -1.0f;
+    for (int k = 0; k < walls.count; ++k) {
+      if (dot(walls.planes[k].normal, Vec3{X, Y, Z}) == side && walls.opens(k, metres)) return true;
+    }
+    return false;
   }
 };
 
@@ -154,6 +167,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
   const float* ease = state.one_level ? nullptr : p.ease();
   constrain_density(state, p);
   coarse.fit(state.domain, cell_edge(state));
+  coarse.open(state.walls);
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();
   for_each("gather cells", p.size(),
@@ -174,10 +188,8 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                             .next = p.predicted_next(),
                             .frame = coarse.frame,
                             .grid = grid,
-                            .walls = state.walls,
-                            .guards = state.guard(),
-                            .wall_gap = gap_of_kernels(state)});
-  clamp_and_listen(state, p, 1, true);
+                            .walls = state.walls});
+  balance_push(state, p);
 }
 
 void run(FluidState& state, CoarsePressureView p) { press(state, p); }

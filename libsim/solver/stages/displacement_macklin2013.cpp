@@ -68,7 +68,8 @@ struct Displace {
     }
     // `next` still holds the positions before the last projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
-    if (walls.project(x, wall_gap * self.w / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    if (walls.project(x, xyz(self), wall_gap * self.w / 2))
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
     next[i] = with_w(x, self.w);
   }
 
@@ -121,7 +122,7 @@ void launch(FluidState& state, DisplacementView p, Selection select) {
                                                        .wall_gap = gap_of_kernels(state),
                                                        .momentum = state.iteration > 0 ? k.momentum : 0.0f});
   p.swap<Column::Predicted, Column::PredictedNext>();
-  clamp_and_listen(state, p, times_taken(k, state.iteration), false);
+  clamp_and_listen(state, p, p.predicted_next(), times_taken(k, state.iteration), false);
 }
 
 template <bool OneLevel, class Selection>

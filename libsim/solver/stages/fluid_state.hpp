@@ -3,6 +3,7 @@
 
 #include "libsim/activation/activation.hpp"
 #include "libsim/flow/jets.hpp"
+#include "libsim/flow/outflow.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -76,8 +77,8 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  std::int64_t mass_units =
-      0;  ///< of all particles at the start, in m_*; what a nozzle holds back is a trace
+  /// Of all particles at the start less what has drained, in m_*; what a nozzle holds back is a trace.
+  std::int64_t mass_units = 0;
   LevelSupports supports{};
   Vec3 refuge{};           ///< where a particle goes whose place is lost
   bool one_level = true;   ///< all particles have one level, for good
@@ -94,6 +95,8 @@ struct FluidState {
   bool lists_by_slot = false;  ///< they belong to the slots of that substep
   CoarseGrid coarse;
   Jets jets;
+  Outflow outflow;
+  Drained drained;  ///< since the run began
   SaliencyState saliency;
   LevelState levels;
   /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong

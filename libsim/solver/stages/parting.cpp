@@ -17,7 +17,7 @@ struct Follow {
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     Vec3 to = xyz(led_to[i]) + (xyz(mended[i]) - xyz(at));
-    walls.project(to, wall_gap * at.w / 2);
+    walls.project(to, xyz(led_to[i]), wall_gap * at.w / 2);
     position[i] = with_w(xyz(mended[i]), at.w);
     predicted[i] = with_w(to, at.w);
     predicted_next[i] = predicted[i];
@@ -45,7 +45,7 @@ void go_on(FluidState& state, Places p) {
                   .predicted_next = p.predicted_next(),
                   .walls = state.walls,
                   .wall_gap = gap_of_kernels(state)});
-  clamp_and_listen(state, p, 1, true);
+  clamp_and_listen(state, p, p.velocity_next(), 1, true);
 }
 
 using Columns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neighbours, Column::Id),

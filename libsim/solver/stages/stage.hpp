@@ -11,6 +11,7 @@ namespace sim::SIM_BACKEND {
 struct Demand {
   SolverParameters parameters;
   bool nozzles = false;         ///< the scene has one
+  bool outlets = false;         ///< the scene has one
   bool settling = false;        ///< the gate is closed and the water comes to rest
   bool levels = false;          ///< particles split and merge
   bool forced_targets = false;  ///< a test gives their targets

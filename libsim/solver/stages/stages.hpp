@@ -54,6 +54,9 @@ Stage xsph_of_levels_stage();
 /// Velocity x 0.9 a frame while the water settles.
 Stage settling_stage();
 
+/// What is through an outlet leaves; last in a frame.
+Stage outflow_stage();
+
 /// Which particles the frame solves.
 Stage activation_stage();
 /// Velocity and energy grids; what was not solved inherits from them.
@@ -95,9 +98,12 @@ void press(FluidState& state, CoarsePressureView particles);
 /// Nearest distance to a wall that kernels keep, as a share of d; none while the account listens.
 float gap_of_kernels(const FluidState& state);
 using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
-/// The clamp that kernels left out; nothing while nobody listens. `times`: as in WallListener. `in_both`:
-/// PredictedNext holds the same places.
-void clamp_and_listen(FluidState& state, ClampView particles, float times, bool in_both);
+/// The clamp that kernels left out; nothing while nobody listens. `from`: where the particles come from.
+/// `times`: as in WallListener. `in_both`: PredictedNext holds the same places afterwards.
+void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
+/// Ends the coarse pressure's push from Predicted to PredictedNext: it gives the water what the walls gave,
+/// and stops at the walls. Both hold the places then.
+void balance_push(FluidState& state, ClampView particles);
 /// How often a push of this projection counts in all: the projections after it take a share of each step
 /// again.
 float times_taken(const SolverParameters& parameters, int iteration);

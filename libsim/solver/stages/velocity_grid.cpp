@@ -64,7 +64,8 @@ struct Inherit {
     gain += mean_share * (velocity_at(i, x, v + gain) - v - gain);
     velocity[i] = with_w(v + gain, 0);
     x += way_dt * gain;
-    if (walls.project(x, wall_gap * h / 2)) atomic_add(&guards->wall_projected, std::uint64_t{1});
+    if (walls.project(x, xyz(position[i]), wall_gap * h / 2))
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
     position[i] = with_w(x, h);
   }
   SIM_FN Vec3 change_at(int i, Vec3 x) const {

@@ -61,7 +61,8 @@ void hear_missing_density(FluidState& state, ConstraintView p) {
                           .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
-/// rho_0 q A of the cells at a wall: by Gauss' theorem the sum of -rho_0 grad q over the water.
+/// The pressure of the cells at a wall, as push_balance.cpp counts it. Gauges may be smaller than a cell:
+/// within a face the pressure follows its neighbours, on patches that sum up to the face.
 struct WallCells {
   PressureFrame frame;
   GridView grid;
@@ -74,21 +75,37 @@ struct WallCells {
     const int x = i % block.nx;
     const int y = i / block.nx % block.ny;
     const int z = i / (block.nx * block.ny);
-    const Vec3 half{frame.edge.x / 2, frame.edge.y / 2, frame.edge.z / 2};
-    const Vec3 centre = frame.in_metres(
-        {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<float>(z) + 0.5f});
-    const auto push = [&](Wall wall, int nx, int ny, int nz, float area) {
-      if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
-      to.add(static_cast<int>(wall), WallPart::CoarsePressure, centre, half, grid.q[i] * area / unit_volume);
-    };
-    const float across_x = frame.edge.y * frame.edge.z;
-    const float across_z = frame.edge.x * frame.edge.y;
-    push(Wall::LowX, x - 1, y, z, across_x);
-    push(Wall::HighX, x + 1, y, z, across_x);
-    push(Wall::LowZ, x, y, z - 1, across_z);
-    push(Wall::HighZ, x, y, z + 1, across_z);
-    push(Wall::Floor, x, y - 1, z, frame.floor_area());
+    const auto middle = [](int cell) { return static_cast<float>(cell) + 0.5f; };
+    const Vec3 centre{middle(x), middle(y), middle(z)};
+    const float q = grid.q[i];
+    const Vec3 slope{slope_of(q, x, y, z, 1, 0, 0), slope_of(q, x, y, z, 0, 1, 0),
+                     slope_of(q, x, y, z, 0, 0, 1)};
+    for_wall_faces(frame, grid, i, [&](int wall, Vec3 normal, float area) {
+      const float share = area / (unit_volume * patches * patches);
+      for (int a = 0; a < patches; ++a) {
+        for (int b = 0; b < patches; ++b) {
+          const float first = middle(a) / patches - 0.5f;
+          const float second = middle(b) / patches - 0.5f;
+          // Along the wall; across it a patch lies where its cell does.
+          const Vec3 from = normal.x != 0   ? Vec3{0, first, second}
+                            : normal.y != 0 ? Vec3{first, 0, second}
+                                            : Vec3{first, second, 0};
+          to.add(wall, WallPart::CoarsePressure, frame.in_metres(centre + from),
+                 (0.5f / patches) * frame.edge, (q + dot(slope, from)) * share);
+        }
+      }
+    });
   }
+  /// Change of q over the cell, which nowhere in it falls below 0.
+  SIM_FN float slope_of(float q, int x, int y, int z, int dx, int dy, int dz) const {
+    const float before = q_beside(q, x - dx, y - dy, z - dz);
+    const float after = q_beside(q, x + dx, y + dy, z + dz);
+    return fminf(fmaxf((after - before) / 2, -2 * q), 2 * q);
+  }
+  SIM_FN float q_beside(float q, int x, int y, int z) const {
+    return grid.kind_at(x, y, z) == CellKind::Solid ? q : grid.q_at(x, y, z);
+  }
+  static constexpr int patches = 4;
 };
 
 void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
@@ -102,7 +119,8 @@ void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
 
 struct Clamp {
   Vec4* predicted;
-  Vec4* next;  ///< nullptr where it holds other places
+  const Vec4* from;
+  Vec4* next;  ///< nullptr where it goes on holding other places
   Walls walls;
   WallListener to;
   Guards* guards;
@@ -110,9 +128,10 @@ struct Clamp {
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (!walls.project(x, wall_gap * at.w / 2, HeardClamp{to, at})) return;
-    atomic_add(&guards->wall_projected, std::uint64_t{1});
-    predicted[i] = with_w(x, at.w);
+    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, HeardClamp{to, at})) {
+      atomic_add(&guards->wall_projected, std::uint64_t{1});
+      predicted[i] = with_w(x, at.w);
+    }
     if (next) next[i] = predicted[i];
   }
 };
@@ -129,10 +148,11 @@ float gap_of_kernels(const FluidState& state) {
   return state.impulse.listens() ? none : state.parameters.wall_gap;
 }
 
-void clamp_and_listen(FluidState& state, ClampView p, float times, bool in_both) {
+void clamp_and_listen(FluidState& state, ClampView p, const Vec4* from, float times, bool in_both) {
   if (!state.impulse.listens()) return;
   for_each("clamp and hear", p.size(),
            Clamp{.predicted = p.predicted(),
+                 .from = from,
                  .next = in_both ? p.predicted_next() : nullptr,
                  .walls = state.walls,
                  .to = state.impulse.listener(times),

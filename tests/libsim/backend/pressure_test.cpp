@@ -52,9 +52,10 @@ struct Pool {
     return out;
   }
 
-  std::vector<float> solve(int cycles) const {
+  std::vector<float> solve(int cycles, const std::vector<OpenFace>& open = {}) const {
     Multigrid grid;
     grid.fit(block);
+    grid.open(open);
     const GridView finest = grid.finest();
     copy_from_host(finest.kind, kind.data(), kind.size() * sizeof kind[0]);
     copy_from_host(finest.source, source.data(), source.size() * sizeof source[0]);
@@ -75,6 +76,31 @@ SIM_TEST(Multigrid, ColumnOfWaterHasALinearPressure) {
     const auto q = pool.solve(20);
     for (int y = 0; y < height; ++y) {
       EXPECT_NEAR(static_cast<double>(q[pool.at(1, y, 1)]), height - y, 0.02 * height) << height << " " << y;
+    }
+  }
+}
+
+SIM_TEST(Multigrid, WaterLeavesThroughAnOpenFloorAsMuchAsItIsOpen) {
+  // A source at one height of a column. Its water leaves into the air above and through the floor, over faces
+  // in a row: one a cell, and 1 / share at a floor that is open in part.
+  for (const int height : {1, 3, 8, 13}) {
+    for (const float share : {0.0f, 0.5f, 1.0f}) {
+      const int at = height / 2;
+      Pool column({2, height + 2, 3}, {2, height, 3});
+      for (int z = 0; z < 3; ++z) {
+        for (int x = 0; x < 2; ++x) column.source[column.at(x, at, z)] = 1;
+      }
+      // Along x a part of each cell, along z everything.
+      std::vector<OpenFace> floor;
+      for (int x = 0; x < 2; ++x) {
+        const auto low = static_cast<float>(x);
+        floor.push_back({1, false, {low, 0}, {low + share, 3}});
+      }
+      const auto q = column.solve(10, floor);
+      const double above = height - at;
+      const double below = at + 1 / static_cast<double>(share);
+      const double expected = share > 0 ? below * above / (below + above) : above;
+      EXPECT_NEAR(static_cast<double>(q[column.at(1, at, 1)]), expected, 0.01 * height) << height << share;
     }
   }
 }
@@ -233,6 +259,30 @@ SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
   const Column before = measure_column(state, side, layers, 0.1f);
   for (int pass = 0; pass < 5; ++pass) coarse_pressure_stage().run(state);
   EXPECT_NEAR(measure_column(state, side, layers, 0.1f).height_m, before.height_m, 0.01 * before.height_m);
+}
+
+SIM_TEST(CoarsePressure, CellsHoldTheVolumeOfTheirParticles) {
+  auto state = column_of(8, 8, 0.1f, 1);
+  auto points = state.particles.all().predicted.to_host();
+  std::vector<std::uint8_t> levels;
+  double volume = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int level = static_cast<int>(i % 4);
+    points[i].w *= std::exp2(static_cast<float>(level) / 3);
+    levels.push_back(static_cast<std::uint8_t>(level));
+    volume += 1 << level;
+  }
+  state.one_level = false;
+  state.supports = level_supports(0.2);
+  state.particles.all().level.from_host(levels);
+  state.particles.all().predicted.from_host(points);
+  state.particles.all().ease.from_host(std::vector<float>(points.size(), 1));
+  neighbours_stage().run(state);
+  coarse_pressure_stage().run(state);
+  double held = 0;
+  for (const CellSum& cell : state.coarse.sums.to_host())
+    held += static_cast<double>(cell.volume) / (1 << 20);
+  EXPECT_NEAR(held, volume, 1e-3 * volume);
 }
 
 SIM_TEST(CoarsePressure, TakesNoParticlesAndParticlesOutsideTheDomain) {

@@ -188,6 +188,34 @@ SIM_TEST(Density, LatticeHasTheRestDensity) {
   EXPECT_NEAR(state.particles.all().density.to_host()[3 + 3 * 7 + 3 * 49], 1, 1e-5);
 }
 
+SIM_TEST(Density, AWallMakesUpForWhatIsNotThere) {
+  constexpr float d = 0.15f;
+  std::vector<Vec4> points;
+  for (int i = 0; i < 343; ++i) {
+    points.push_back({d * (static_cast<float>(i % 7) + 0.5f), d * static_cast<float>(i / 7 % 7),
+                      d * static_cast<float>(i / 49), 2 * d});
+  }
+  auto state = state_of(points, true);
+  state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
+  density_stage().run(state);
+  EXPECT_NEAR(state.particles.all().density.to_host()[0 + 3 * 7 + 3 * 49], 1, 0.03);
+}
+
+SIM_TEST(Density, ACrowdTwiceAsLargeMovesTwiceAsFar) {
+  std::vector<Vec4> moved[2];
+  for (const int scale : {1, 2}) {
+    const auto by = static_cast<float>(scale);
+    auto points = crowd(100, 9, false);
+    for (auto& p : points) p = {by * p.x, by * p.y, by * p.z, by * p.w};
+    auto state = state_of(points, true);
+    state.parameters.relaxation = 1;
+    density_stage().run(state);
+    displacement_stage().run(state);
+    moved[scale - 1] = state.particles.all().predicted.to_host();
+  }
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_NEAR(2 * moved[0][i].x, moved[1][i].x, 1e-5f);
+}
+
 SIM_TEST(Density, LonelyParticleIsLeftAlone) {
   auto state = state_of({{0, 0, 0, 0.3f}}, true);
   density_stage().run(state);

@@ -46,5 +46,51 @@ SIM_TEST(Walls, HoldBackTouchesNothingFarFromWalls) {
   EXPECT_NEAR(lost.x, 0.01f, 1e-6f);
 }
 
+/// The corner with a hole in its upright wall: y from 1 to 2.
+Walls corner_with_hole() {
+  Walls out = corner();
+  out.openings[out.opening_count++] = {0, {-9, 1, -9}, {9, 2, 9}};
+  return out;
+}
+
+SIM_TEST(Walls, LetThroughWhatMeetsThePlaneBeforeAnOpening) {
+  const Walls walls = corner_with_hole();
+  Vec3 level{0.5f, 1.5f, 0};
+  EXPECT_FALSE(walls.hold_back(level, {-3, 1.5f, 0}, 0.01f));
+  EXPECT_EQ(level.x, -3);
+  EXPECT_TRUE(walls.through(level));
+  // Its way leads through the hole and ends behind the wall, and the other way round.
+  Vec3 rising{0.5f, 1.5f, 0};
+  EXPECT_FALSE(walls.hold_back(rising, {-3, 4, 0}, 0.01f));
+  EXPECT_EQ(rising.y, 4);
+  Vec3 late{0.5f, 0.5f, 0};
+  EXPECT_TRUE(walls.hold_back(late, {-0.5f, 1.4f, 0}, 0.01f));
+  EXPECT_FALSE(walls.through(late));
+  // What is through meets the plane no more, but the other walls.
+  Vec3 after{-1, 0.5f, 0};
+  EXPECT_FALSE(walls.hold_back(after, {-2, 0.3f, 0}, 0.01f));
+  EXPECT_TRUE(walls.hold_back(after, {-2, -0.3f, 0}, 0.01f));
+  EXPECT_GT(after.y, 0);
+  EXPECT_LT(after.x, 0);
+}
+
+SIM_TEST(Walls, NeitherPushNorCountBeforeAnOpening) {
+  const Walls walls = corner_with_hole();
+  const float h = 0.3f;
+  Vec3 gradient;
+  EXPECT_EQ(walls.missing({0.01f, 1.5f, 0}, h, gradient), 0);
+  EXPECT_EQ(length(gradient), 0);
+  EXPECT_EQ(walls.missing({-0.1f, 0.8f, 0}, h, gradient), 0) << "through the plane";
+  EXPECT_GT(walls.missing({0.01f, 0.8f, 0}, h, gradient), 0.4f);
+  EXPECT_GT(gradient.x * -1, 0);
+  Vec3 x{0.001f, 1.5f, 0};
+  EXPECT_FALSE(walls.project(x, {0.05f, 1.5f, 0}, 0.01f));
+  EXPECT_TRUE(walls.holds({-0.1f, 1.5f, 0}, 0.01f));
+  EXPECT_FALSE(walls.holds({-0.1f, 0.5f, 0}, 0.01f));
+  Vec3 beside{-0.001f, 0.9f, 0};
+  EXPECT_TRUE(walls.project(beside, {0.05f, 0.9f, 0}, 0.01f));
+  EXPECT_NEAR(beside.x, 0.01f, 1e-6f);
+}
+
 }  // namespace
 }  // namespace sim::SIM_BACKEND

@@ -1,0 +1,240 @@
+/// vip-bench stability: how far the hard cases are from failing.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <sstream>
+
+#include "apps/bench/commands.hpp"
+#include "apps/bench/stability_map.hpp"
+#include "apps/common/options.hpp"
+#include "apps/common/program.hpp"
+#include "libsim/cases/hard_case.hpp"
+#include "libstudy/session/machine.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+using sim::cases::HardCase;
+using sim::cases::Outcome;
+using sim::cases::Setting;
+
+struct StabilityOptions {
+  std::string cases = "all", methods = "all", backend = "auto";
+  std::string csv, markdown, svg;
+  double most = 4, resolution = 1.2;
+  bool quick = false, full = false;
+};
+
+/// One case under one method: four bisections' worth of work.
+struct Job {
+  const HardCase* hard_case;
+  Setting setting;
+  std::vector<MapCell> cells = {};
+};
+constexpr std::size_t steps_of_a_job = 1 + std::size(all_knobs);
+
+std::vector<std::string> words_of(const std::string& words) {
+  std::vector<std::string> out;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, ',');) out.push_back(word);
+  return out;
+}
+
+std::vector<const HardCase*> cases_of(const std::string& words) {
+  std::vector<const HardCase*> out;
+  if (words == "all") {
+    for (const HardCase& one : sim::cases::hard_cases()) out.push_back(&one);
+    return out;
+  }
+  for (const auto& word : words_of(words)) out.push_back(&sim::cases::hard_case(word));
+  if (out.empty()) throw base::Error("--case", "names no case", "leave it out, or write for example S9");
+  return out;
+}
+
+std::vector<sim::MethodKind> methods_of(const std::string& words) {
+  std::vector<sim::MethodKind> out;
+  if (words == "all") {
+    for (const auto& traits : sim::all_methods()) out.push_back(traits.kind);
+    return out;
+  }
+  for (const auto& word : words_of(words)) out.push_back(sim::parse_method(word));
+  if (out.empty())
+    throw base::Error("--method", "names no method", "leave it out, or write for example Ours");
+  return out;
+}
+
+/// Processor and cores; the operating system has no say in the numbers.
+std::string processor() {
+  const std::string machine = study::describe_machine();
+  const auto end = machine.find("; ");
+  return end == std::string::npos ? machine : machine.substr(end + 2);
+}
+
+/// What failed of a case; empty when nothing did.
+std::string failure(const Outcome& outcome) {
+  if (outcome.passes()) return "";
+  Outcome failed{.findings = {}, .stopped = outcome.stopped};
+  std::copy_if(outcome.findings.begin(), outcome.findings.end(), std::back_inserter(failed.findings),
+               [](const auto& finding) { return !finding.passes(); });
+  const std::string text = failed.text();
+  return text.starts_with("; ") ? text.substr(2) : text;
+}
+
+/// A number that the program refuses has its limit there too.
+std::string failure(const HardCase& hard_case, const Setting& setting) {
+  try {
+    return failure(hard_case.run(setting));
+  } catch (const base::Error& error) {
+    return std::string("is refused: ") + error.what();
+  }
+}
+
+void turn(const Job& job, const StabilityOptions& options, MapCell& cell) {
+  const HardCase& one = *job.hard_case;
+  if (cell.knob == Knob::Iterations) {
+    const auto limit = fewest(
+        [&](int count) {
+          Setting setting = job.setting;
+          setting.iterations = count;
+          return failure(one, setting);
+        },
+        one.iterations);
+    cell.limit = limit.passed;
+    cell.reach = limit.reach;
+    cell.failed = limit.failed;
+    return;
+  }
+  const auto limit = largest_factor(
+      [&](double factor) {
+        Setting setting = job.setting;
+        (cell.knob == Knob::FrameStep ? setting.frame_dt_s : setting.scale) = factor * cell.usual;
+        return failure(one, setting);
+      },
+      options.most, options.resolution);
+  cell.limit = limit.passed * cell.usual;
+  cell.reach = limit.reach;
+  cell.failed = limit.failed;
+}
+
+/// `step` is called after each part of the work.
+void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
+  const HardCase& one = *job.hard_case;
+  // What is wrong with the back end shows here, and is an error.
+  const std::string at_its_own = failure(one.run(job.setting));
+  step();
+  for (const Knob knob : all_knobs) {
+    MapCell cell{.case_id = one.id,
+                 .title = one.title,
+                 .method = sim::method_name(job.setting.method),
+                 .knob = knob,
+                 .of = knob == Knob::FrameStep    ? "s"
+                       : knob == Knob::Iterations ? "projections a substep"
+                                                  : std::string("times ") + one.scaled,
+                 .failed = at_its_own};
+    cell.usual = knob == Knob::FrameStep ? one.frame_dt_s : knob == Knob::Iterations ? one.iterations : 1;
+    cell.limit = cell.usual;
+    cell.reach = Reach::UsualFails;
+    if (at_its_own.empty()) turn(job, options, cell);
+    job.cells.push_back(cell);
+    step();
+  }
+}
+
+/// On the CPU cases run beside each other, each on one thread: its bits are the same for any number.
+void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::Backend backend) {
+  Progress progress("cases", jobs.size() * steps_of_a_job);
+  std::size_t done = 0;
+  std::exception_ptr broken;
+  const auto count = static_cast<std::ptrdiff_t>(jobs.size());
+#pragma omp parallel for schedule(dynamic, 1) if (backend == sim::Backend::Cpu && count > 1)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    try {
+      measure(jobs[static_cast<std::size_t>(i)], options, [&] {
+#pragma omp critical(stability_progress)
+        progress.update(++done);
+      });
+    } catch (...) {
+#pragma omp critical(stability_progress)
+      if (!broken) broken = std::current_exception();
+    }
+  }
+  if (broken) std::rethrow_exception(broken);
+}
+
+StabilityMap map_of(const StabilityOptions& options) {
+  const auto backend = sim::choose_backend(options.backend);
+  StabilityMap out;
+  out.most = options.most;
+  out.resolution = options.resolution;
+  out.circumstances = processor() + "; back end " + sim::backend_name(backend) + "; " +
+                      (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration";
+  const auto methods = methods_of(options.methods);
+  for (const auto method : methods) out.methods.push_back(sim::method_name(method));
+  std::vector<Job> jobs;
+  for (const HardCase* one : cases_of(options.cases)) {
+    out.cases.emplace_back(one->id);
+    for (const auto method : methods) {
+      if (std::count(one->methods.begin(), one->methods.end(), method) == 0) continue;
+      jobs.push_back({one,
+                      {.method = method,
+                       .backend = backend,
+                       .size = options.full ? sim::cases::Size::Full : sim::cases::Size::Small}});
+    }
+  }
+  measure_all(jobs, options, backend);
+  for (const Job& job : jobs) out.cells.insert(out.cells.end(), job.cells.begin(), job.cells.end());
+  return out;
+}
+
+void run_stability(StabilityOptions options) {
+  if (options.quick) options.most = options.resolution = 2;
+  if (options.resolution > options.most) {
+    throw base::Error("--resolution " + shortest(options.resolution), "is coarser than all that is tried",
+                      "use at most --most, which is " + shortest(options.most));
+  }
+  check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
+  const StabilityMap map = map_of(options);
+  std::printf("%s", to_markdown(map).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(to_table(map)));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(map));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(map));
+}
+
+}  // namespace
+
+void add_stability_command(CLI::App& app) {
+  auto options = std::make_shared<StabilityOptions>();
+  auto* command = app.add_subcommand("stability",
+                                     "How far the hard cases are from failing: largest frame step, fewest "
+                                     "iterations, highest speed or size");
+  command->add_option("--case", options->cases, "all, or ids with commas, such as S9 (docs/stability.md)")
+      ->capture_default_str();
+  command->add_option("--method", options->methods, "all, or names with commas")->capture_default_str();
+  add_backend(*command, options->backend);
+  auto* most = command->add_option("--most", options->most, "Largest factor of a frame step or a scale")
+                   ->check(number_in(1.01, 64.0))
+                   ->capture_default_str();
+  auto* resolution = command
+                         ->add_option("--resolution", options->resolution,
+                                      "Factor between what passed and what failed, at most")
+                         ->check(number_in(1.01, 8.0))
+                         ->capture_default_str();
+  command->add_flag("--quick", options->quick, "Only tell what twice as much does: --most 2 --resolution 2")
+      ->excludes(most)
+      ->excludes(resolution);
+  command->add_flag("--full", options->full, "Cases at full size, for a GPU; without: seconds on one core");
+  command->add_option("--csv", options->csv, "File for a row for each case, method and number turned")
+      ->check(output_file());
+  command->add_option("--markdown", options->markdown, "File for a row for each case and method")
+      ->check(output_file());
+  command->add_option("--svg", options->svg, "File for the map as a picture")->check(output_file());
+  command->callback([options] { run_stability(*options); });
+}
+
+}  // namespace apps
