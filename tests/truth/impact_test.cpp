@@ -40,9 +40,6 @@ void dam_strikes(Run run, const TruthFile& file, std::int64_t n_star) {
     time.push_back(fluid->frame() * scene.frame_dt_s / unit * x.factor);
     pressure.push_back(fluid->momentum().gauges[0].sum() /
                        (scene.frame_dt_s * area * 1000 * scene.gravity_m_s2 * height));
-    if (std::getenv("VERBOSE"))
-      std::printf("  %.3f %.3f ref %.3f\n", time.back(), pressure.back(),
-                  interpolate(t_ref, p_ref, time.back()));
   }
   const double plateau_ref = plateau_of(t_ref, p_ref, from, to),
                plateau = plateau_of(time, pressure, from, to);

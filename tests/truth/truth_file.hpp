@@ -100,8 +100,8 @@ struct TruthFile {
 /// The quantities that tests measure; each is named by one test file.
 inline const std::vector<std::string>& quantities() {
   static const std::vector<std::string> all{
-      "column_at_rest", "dam_front",        "dam_height",    "dam_profile",  "elliptical_drop", "free_fall",
-      "lamb_oseen",     "oscillating_drop", "standing_wave", "taylor_green", "wall_pressure"};
+      "column_at_rest", "dam_front",  "dam_height",       "dam_profile",   "draining",     "elliptical_drop",
+      "free_fall",      "lamb_oseen", "oscillating_drop", "standing_wave", "taylor_green", "wall_pressure"};
   return all;
 }
 
