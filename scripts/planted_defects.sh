@@ -31,13 +31,13 @@ defect no-nan-guard "what is not finite is not quarantined" $stages/predict.cpp 
   'if (!place_lost && all_finite(v)) return;' 'return;'
 defect merged-mass "a merged particle is 1 % too heavy" libsim/levels/joining.hpp sim_test 'Account.CountsWhatIsThere' \
   'mean(velocity, kept, left), supports.h[coarser],' 'mean(velocity, kept, left), 1.00332f * supports.h[coarser],'
-defect split-speed "a child's offset becomes velocity" libsim/levels/compact.cpp sim_test 'Levels.OneEventIsExact' \
+defect split-speed "a child's offset becomes velocity" libsim/levels/compact.cpp stability_test 'S06Conservation.One*' \
   $'  Vec4* position;\n  int* id;' $'  Vec4* position;\n  Vec4* velocity;\n  int* id;' \
   $'parent.w / 4, c), supports.h[finer]);\n' \
   $'parent.w / 4, c), supports.h[finer]);\n    velocity[i] = with_w(xyz(velocity[i]) + 60 * (xyz(position[i]) - xyz(parent)), 0);\n' \
   $'.position = p.position(),\n                         .id' \
   $'.position = p.position(),\n                         .velocity = p.velocity(),\n                         .id'
-defect short-lists "no list has more than 40 neighbours" libsim/neighbors/neighbour_list.cpp sim_test 'NeighbourList.*' \
+defect short-lists "no list has more than 40 neighbours" libsim/neighbors/neighbour_list.cpp stability_test 'S14NeighbourList.*' \
   'count[slot] = found;' 'count[slot] = found < 40 ? found : 40;'
 defect substep-lag "substeps follow the frame before instead of the one before that" libsim/solver/substeps.hpp stability_test \
   'S09Jet.*' 'return older_;' 'return newer_;'

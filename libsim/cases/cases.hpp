@@ -8,9 +8,17 @@ namespace sim::cases {
 /// LoRes, HiRes, FovFluid, Ours, Ours-TSp.
 std::vector<MethodKind> every_method();
 
+HardCase rest_tank();
 HardCase tall_column();
+HardCase mass_interface();
+HardCase tension();
 HardCase big_steps();
 HardCase peers_dam();
 HardCase jet();
+HardCase thin_sheet();
+HardCase corners();
+HardCase coincident();
+HardCase energy_of_a_dam();
+HardCase soak();
 
 }  // namespace sim::cases

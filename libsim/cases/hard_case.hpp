@@ -68,7 +68,7 @@ struct HardCase {
   const char* title;
   const char* asked;  ///< in words
   std::vector<MethodKind> methods;
-  const char* scaled;  ///< what Setting::scale multiplies: "30 m/s of the jet"
+  const char* scaled;  ///< what Setting::scale multiplies: "30 m/s of the jet"; empty = nothing
   double frame_dt_s;   ///< the case's own, s
   int iterations;      ///< the case's own
   /// base::Error for a back end that is not there; what the water does is never an error.

@@ -10,7 +10,9 @@ std::vector<MethodKind> every_method() {
 }
 
 const std::vector<HardCase>& hard_cases() {
-  static const std::vector<HardCase> all{tall_column(), big_steps(), peers_dam(), jet()};
+  static const std::vector<HardCase> all{
+      rest_tank(), tall_column(), mass_interface(), tension(),    big_steps(),       peers_dam(),
+      jet(),       thin_sheet(),  corners(),        coincident(), energy_of_a_dam(), soak()};
   return all;
 }
 

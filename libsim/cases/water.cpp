@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <unordered_map>
 
 namespace sim::cases {
 
@@ -87,6 +89,61 @@ int outside(const State& state, const Vec3d& size, double tolerance_m) {
     count += !inside;
   }
   return count;
+}
+
+std::vector<double> nearest_distances(const State& state) {
+  constexpr double most = 2;
+  double widest = 0;
+  for (const auto& p : state) widest = std::max(widest, d * std::cbrt(mass(p)));
+  // Cells as wide as what is looked for; at most 2^20 of them a side.
+  const double edge = most * widest;
+  const auto cell = [&](float x) {
+    return static_cast<std::int64_t>(std::floor(static_cast<double>(x) / edge));
+  };
+  const auto key = [](std::int64_t x, std::int64_t y, std::int64_t z) { return (x << 42) + (y << 21) + z; };
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> cells;
+  std::vector<double> nearest(state.size(), most);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto& a = state[i];
+    for (int n = 0; n < 27; ++n) {
+      const auto found =
+          cells.find(key(cell(a.x_m) + n % 3 - 1, cell(a.y_m) + n / 3 % 3 - 1, cell(a.z_m) + n / 9 - 1));
+      if (found == cells.end()) continue;
+      for (const std::size_t j : found->second) {
+        const auto& b = state[j];
+        const double apart =
+            std::hypot(static_cast<double>(a.x_m - b.x_m), static_cast<double>(a.y_m - b.y_m),
+                       static_cast<double>(a.z_m - b.z_m));
+        const double ratio = apart / (d * 0.5 * (std::cbrt(mass(a)) + std::cbrt(mass(b))));
+        nearest[i] = std::min(nearest[i], ratio);
+        nearest[j] = std::min(nearest[j], ratio);
+      }
+    }
+    cells[key(cell(a.x_m), cell(a.y_m), cell(a.z_m))].push_back(i);
+  }
+  std::sort(nearest.begin(), nearest.end());
+  return nearest;
+}
+
+const Pool& settled_pool(Backend backend) {
+  static std::map<Backend, Pool> pools;
+  const auto found = pools.find(backend);
+  if (found != pools.end()) return found->second;
+  Pool out;
+  out.scene = tank({4.8, 4, 2.4}, {4.8, 1.2, 2.4}, 60);
+  out.scene.view.eye_m = {2.4, 1.6, 5.2};
+  out.scene.view.target_m = {2.4, 0.6, 1.2};
+  SimulationOptions options;
+  options.n_star = Pool::n_star;
+  options.backend = backend;
+  out.state = make_simulation(out.scene, options)->read_state();
+  return pools.emplace(backend, std::move(out)).first->second;
+}
+
+Looks look_at(const Scene& scene, const Vec3d& point, bool valid) {
+  const Vec3d& eye = scene.view.eye_m;
+  const Vec3d way{point[0] - eye[0], point[1] - eye[1], point[2] - eye[2]};
+  return {{{{eye, way, valid}, make_view(scene.view, 320, 240), nullptr}}};
 }
 
 }  // namespace sim::cases

@@ -2,6 +2,8 @@
 /// Scenes of the hard cases, and what is measured on their particles, on the host and independent of the
 /// solver's own measures.
 
+#include <optional>
+
 #include "libsim/scene/fill.hpp"
 #include "libsim/simulation.hpp"
 
@@ -37,5 +39,20 @@ double kinetic_energy(const State& state);  ///< over m_*, m2/s2
 double height_of_share(const State& state, double share);
 /// Particles outside [0, size] in x and z or below the floor by more than `tolerance_m`, or not finite.
 int outside(const State& state, const Vec3d& size, double tolerance_m);
+
+/// Distance of each particle's nearest over the mean of their spacings, in rising order; 2 at most.
+std::vector<double> nearest_distances(const State& state);
+
+/// A pool of 8 finest layers that has settled, 4,096 particles of HiRes, seen from in front of it.
+struct Pool {
+  static constexpr std::int64_t n_star = 512;
+  Scene scene;
+  State state;
+};
+/// Settles once for each back end.
+const Pool& settled_pool(Backend backend);
+
+/// One eye at the view's place that looks at `point`. `valid`: the tracker's word.
+Looks look_at(const Scene& scene, const Vec3d& point, bool valid = true);
 
 }  // namespace sim::cases

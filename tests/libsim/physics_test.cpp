@@ -8,51 +8,6 @@ namespace {
 
 using fluid_test::ParticleState;
 
-struct RestResult {
-  double drift = 0, density_mean = 0, density_max = 0, rms = 0, loss = 0;
-  int out = 0;
-};
-
-RestResult rest(const sim::Scene& scene, const sim::SimulationOptions& options, int frames) {
-  const auto fluid = sim::make_simulation(scene, options);
-  const double filled = fluid_test::centre_height(fluid->read_state());
-  RestResult result;
-  double half = 0;
-  for (int frame = 0; frame < frames; ++frame) {
-    fluid->step_frame();
-    if (frame == frames / 2) half = fluid_test::centre_height(fluid->read_state());
-    if (frame >= frames / 2 && frame % 20 == 0)
-      result.density_max = std::max(result.density_max, fluid->report().density_max);
-  }
-  const auto state = fluid->read_state();
-  result.density_mean = fluid->report().density_error_mean;
-  result.drift = std::abs(fluid_test::centre_height(state) - half) / half;
-  result.loss = 1 - fluid_test::centre_height(state) / filled;
-  result.rms = fluid_test::rms_speed(state);
-  result.out = fluid_test::outside(state, scene.tank_size_m, 0.1 * fluid->spacing_m());
-  std::printf(
-      "rest: density error mean %.5f, max %.4f, centre of mass loss %.4f, drift %.5f, v_rms %.4f m/s\n",
-      result.density_mean, result.density_max, result.loss, result.drift, result.rms);
-  return result;
-}
-
-void tank_stays_at_rest(sim::Backend backend) {
-  // S1: 20 layers for 10 s. n_* = 400 -> 3,200 particles, d = cbrt(V / 3200).
-  const double d = 0.15;
-  const auto scene = fluid_test::tank({16 * d, 40 * d, 10 * d}, {16 * d, 20 * d, 10 * d});
-  sim::SimulationOptions options;
-  options.n_star = 400;
-  options.backend = backend;
-  const auto result = rest(scene, options, 600);
-  EXPECT_LT(result.density_mean, 0.01);
-  EXPECT_LT(result.density_max, 1.08);
-  EXPECT_LT(result.drift, 0.005);
-  EXPECT_LT(result.rms, 0.02 * std::sqrt(9.81 * 20 * d));
-  EXPECT_EQ(result.out, 0);
-}
-TEST(RestTank, StaysAtRest) { tank_stays_at_rest(sim::Backend::Cpu); }
-TEST(RestTankGpu, StaysAtRest) { tank_stays_at_rest(sim::Backend::Cuda); }
-
 void settled_dam_keeps_its_height(sim::Backend backend) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   sim::SimulationOptions options;

@@ -35,4 +35,20 @@ inline std::unique_ptr<sim::Simulation> start_from(Backend backend, sim::Scene s
   return sim::make_simulation(scene, options);
 }
 
+/// The same in a cube of 2 m, three substeps a frame.
+inline std::unique_ptr<sim::Simulation> start_in_a_cube(Backend backend,
+                                                        const std::vector<ParticleState>& start) {
+  sim::SimulationOptions options;
+  options.substeps = 3;
+  return start_from(backend, fluid_test::tank({2, 2, 2}, {2, 2, 2}), start, options);
+}
+
+/// Bit for bit.
+inline bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
+           return p.id == q.id && p.level == q.level && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&
+                  p.vx_m_s == q.vx_m_s && p.vy_m_s == q.vy_m_s && p.vz_m_s == q.vz_m_s;
+         });
+}
+
 }  // namespace stability_test

@@ -176,18 +176,18 @@ void splits_are_calm(Backend backend) {
     EXPECT_LE(splits.most(&Unrest::split_share), throttle);
   }
 }
-TEST(Levels, SplitsAreCalm) { splits_are_calm(Backend::Cpu); }
-TEST(LevelsGpu, SplitsAreCalm) { splits_are_calm(Backend::Cuda); }
+TEST(S04Splits, AreCalm) { splits_are_calm(Backend::Cpu); }
+TEST(S04SplitsGpu, AreCalm) { splits_are_calm(Backend::Cuda); }
 
 // What the bounds above are there for breaks them: without the filter the quartile is 1.8 to 2.0 m/s.
-TEST(Levels, SplitsWithoutThrottleAreNotCalm) {
+TEST(S04Splits, WithoutThrottleAreNotCalm) {
   const Settled fine(Backend::Cpu);
   auto options = options_for(Backend::Cpu, Settled::n_star, everywhere(3));
   options.start = coarse_start(Backend::Cpu, fine, 0);
   options.readings.split_share = 1;
   EXPECT_GT(split_within({}, far_m, 2, fine, options).split_share, throttle);
 }
-TEST(Levels, SplitsWithoutFilterAreNotCalm) {
+TEST(S04Splits, WithoutFilterAreNotCalm) {
   auto readings = sim::readings_of(sim::Preset::Tuned);
   readings.kick_filter = 0;
   const Splits kicked = splits_of(Backend::Cpu, readings, {one}, {3})[0];

@@ -1,5 +1,5 @@
 /// Levels that follow the eye, over water at rest: jumps of the gaze, a gaze that is lost, pairs of unlike
-/// levels, stirring (S10, S21), on the CPU and on CUDA.
+/// levels, stirring (S21), on the CPU and on CUDA.
 
 #include <cstdio>
 
@@ -102,8 +102,8 @@ void gaze_jumps_are_followed(Backend backend) {
     EXPECT_LE(frames, 20);
   }
 }
-TEST(LevelsAndGaze, JumpsAreFollowed) { gaze_jumps_are_followed(Backend::Cpu); }
-TEST(LevelsAndGazeGpu, JumpsAreFollowed) { gaze_jumps_are_followed(Backend::Cuda); }
+TEST(S21Gaze, JumpsAreFollowed) { gaze_jumps_are_followed(Backend::Cpu); }
+TEST(S21GazeGpu, JumpsAreFollowed) { gaze_jumps_are_followed(Backend::Cuda); }
 
 void lost_gaze_returns(Backend backend) {
   // S21: the gaze is held for 0.5 s and then goes to the view's axis for 0.5 s; back within 10 frames.
@@ -122,8 +122,8 @@ void lost_gaze_returns(Backend backend) {
   std::printf("gaze back: fovea at its target after %d frames\n", frames);
   EXPECT_LE(frames, 10);
 }
-TEST(LevelsAndGaze, ALostGazeReturns) { lost_gaze_returns(Backend::Cpu); }
-TEST(LevelsAndGazeGpu, ALostGazeReturns) { lost_gaze_returns(Backend::Cuda); }
+TEST(S21Gaze, ALostGazeReturns) { lost_gaze_returns(Backend::Cpu); }
+TEST(S21GazeGpu, ALostGazeReturns) { lost_gaze_returns(Backend::Cuda); }
 
 double rms_speed(const std::vector<ParticleState>& state) {
   double sum = 0;
@@ -159,104 +159,7 @@ void still_water_stays_calm(Backend backend) {
     EXPECT_LT(jumps, 0.01);
   }
 }
-TEST(LevelsAndGaze, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cpu); }
-TEST(LevelsAndGazeGpu, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cuda); }
-
-/// A sheet of n x n sites and `layers` layers, its lowest corner at `low`.
-std::vector<ParticleState> sheet(int n, int layers, const Vec3d& low, int first_id) {
-  std::vector<ParticleState> out;
-  for (int i = 0; i < n * n * layers; ++i) {
-    const auto at = [&](std::size_t axis, int k) { return static_cast<float>(low[axis] + d * k); };
-    out.push_back({first_id + i, 0, at(0, i % n), at(1, i / n / n), at(2, i / n % n), 0, 0, 0});
-  }
-  return out;
-}
-
-void sheets_do_not_merge_from_afar(Backend backend) {
-  // S10: whoever vanishes in a merge lay within one radius of what it became.
-  auto scene = fluid_test::tank({8, 8, 8}, {12 * d, 16 * d, 12 * d});
-  scene.gravity_m_s2 = 0;
-  for (const int layers : {1, 2}) {
-    auto options = options_for(backend, 288, everywhere(3));
-    options.start = sheet(16, layers, {3, 4, 3}, 0);
-    const auto fluid = sim::make_simulation(scene, options);
-    auto before = *options.start;
-    int merges = 0;
-    for (int frame = 0; frame < 60; ++frame) {
-      fluid->step_frame();
-      const auto after = fluid->read_state();
-      std::map<int, ParticleState> now;
-      for (const auto& p : after) now[p.id] = p;
-      std::vector<ParticleState> merged;
-      for (const auto& p : before) {
-        if (now.count(p.id) && now[p.id].level > p.level) merged.push_back(now[p.id]);
-      }
-      for (const auto& p : before) {
-        if (now.count(p.id)) continue;
-        ++merges;
-        double nearest = far_m;
-        for (const auto& q : merged) {
-          if (q.level != p.level + 1) continue;
-          nearest =
-              std::min(nearest, static_cast<double>(std::hypot(q.x_m - p.x_m, q.y_m - p.y_m, q.z_m - p.z_m)));
-        }
-        const double radius = 0.5 * d * std::cbrt(2 << p.level);
-        ASSERT_LT(nearest, 1.1 * radius) << "layers " << layers << ", frame " << frame << ", id " << p.id;
-      }
-      before = after;
-    }
-    EXPECT_GT(merges, 50) << layers;
-  }
-}
-TEST(ThinSheet, DoesNotMergeFromAfar) { sheets_do_not_merge_from_afar(Backend::Cpu); }
-TEST(ThinSheetGpu, DoesNotMergeFromAfar) { sheets_do_not_merge_from_afar(Backend::Cuda); }
-
-/// Area, m2, that the sheet's particles cover as they are drawn, 1.5 radii wide, seen from above.
-double covered_m2(const std::vector<ParticleState>& state, double above_m) {
-  constexpr double cell = d / 4;
-  constexpr int side = 128;
-  std::vector<char> covered(side * side, 0);
-  for (const auto& p : state) {
-    if (static_cast<double>(p.y_m) < above_m) continue;
-    const double r = 1.5 * 0.5 * d * std::cbrt(1 << p.level);
-    for (int k = 0; k < side * side; ++k) {
-      const double x = (k % side + 0.5) * cell - static_cast<double>(p.x_m);
-      const double z = (k / side + 0.5) * cell - static_cast<double>(p.z_m);
-      if (x * x + z * z < r * r) covered[static_cast<std::size_t>(k)] = 1;
-    }
-  }
-  return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) * cell * cell;
-}
-
-void sheets_keep_their_area(Backend backend) {
-  // S10: a sheet that falls towards a pool for 0.3 s, away from the gaze, against HiRes.
-  const auto water = settled_pool(backend);
-  for (const int layers : {1, 2}) {
-    auto start = water;
-    const auto thrown = sheet(12, layers, {2.8, 2.6, 0.4}, static_cast<int>(start.size()));
-    start.insert(start.end(), thrown.begin(), thrown.end());
-    sim::SimulationOptions options;
-    options.n_star = n_star;
-    options.backend = backend;
-    options.start = start;
-    options.particle_capacity = static_cast<std::int64_t>(start.size());
-    const auto fine = sim::make_simulation(pool(), options);
-    options.method = MethodKind::Ours;
-    const auto ours = sim::make_simulation(pool(), options);
-    double least = 1;
-    for (int frame = 1; frame <= 18; ++frame) {
-      look_at(*ours, left);
-      ours->step_frame();
-      fine->step_frame();
-      if (frame % 6 == 0)
-        least = std::min(least, covered_m2(ours->read_state(), 1.7) / covered_m2(fine->read_state(), 1.7));
-    }
-    std::printf("sheet of %d layers: covers at least %.3f of HiRes' area\n", layers, least);
-    EXPECT_GT(covered_m2(fine->read_state(), 1.7), 2);
-    EXPECT_GT(least, 0.9);
-  }
-}
-TEST(ThinSheet, KeepsItsArea) { sheets_keep_their_area(Backend::Cpu); }
-TEST(ThinSheetGpu, KeepsItsArea) { sheets_keep_their_area(Backend::Cuda); }
+TEST(S21Gaze, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cpu); }
+TEST(S21GazeGpu, StillWaterStaysCalm) { still_water_stays_calm(Backend::Cuda); }
 
 }  // namespace

@@ -54,8 +54,8 @@ void beta_one_changes_no_bit(Backend backend) {
   }
   EXPECT_TRUE(same(off->read_state(), on->read_state()));
 }
-TEST(Temporal, BetaOneChangesNoBit) { beta_one_changes_no_bit(Backend::Cpu); }
-TEST(TemporalGpu, BetaOneChangesNoBit) { beta_one_changes_no_bit(Backend::Cuda); }
+TEST(S22Temporal, BetaOneChangesNoBit) { beta_one_changes_no_bit(Backend::Cpu); }
+TEST(S22TemporalGpu, BetaOneChangesNoBit) { beta_one_changes_no_bit(Backend::Cuda); }
 
 void order_and_reports_change_no_bit(Backend backend) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
@@ -75,10 +75,10 @@ void order_and_reports_change_no_bit(Backend backend) {
       << "some particles must be left out for the test to mean anything";
   EXPECT_TRUE(same(a->read_state(), b->read_state()));
 }
-TEST(Temporal, OrderAndReportsChangeNoBit) { order_and_reports_change_no_bit(Backend::Cpu); }
-TEST(TemporalGpu, OrderAndReportsChangeNoBit) { order_and_reports_change_no_bit(Backend::Cuda); }
+TEST(S22Temporal, OrderAndReportsChangeNoBit) { order_and_reports_change_no_bit(Backend::Cpu); }
+TEST(S22TemporalGpu, OrderAndReportsChangeNoBit) { order_and_reports_change_no_bit(Backend::Cuda); }
 
-TEST(Temporal, SwitchesByTheFramesTimes) {
+TEST(S22Temporal, SwitchesByTheFramesTimes) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = dam_options(Backend::Cpu, 256);
   options.start = settled_dam(scene, options);
@@ -189,11 +189,11 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
 }
 // S22: 10 s, or 2 s where a test must be short.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.02, 0.8, 1.05}, {0.3, 0.02, 0.8, 1.05}};
-TEST(Temporal, DamBreaksAsWithTheFullSolve) {
+TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {
   dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);
 }
-TEST(TemporalSlow, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cpu, 4096, 600, s22, 3); }
-TEST(TemporalGpu, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cuda, 4096, 600, s22, 3); }
+TEST(S22TemporalSlow, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cpu, 4096, 600, s22, 3); }
+TEST(S22TemporalGpu, DamBreaksAsWithTheFullSolve) { dam_with_rest(Backend::Cuda, 4096, 600, s22, 3); }
 
 /// The whole method: saliency, levels and temporal acceleration together.
 void ours_tsp(Backend backend) {
@@ -220,10 +220,10 @@ void ours_tsp(Backend backend) {
   EXPECT_TRUE(same(idle->read_state(), without->read_state())) << "a good tau is Ours to the last bit";
   EXPECT_EQ(fluid_test::outside(with->read_state(), scene.tank_size_m, 0.1 * with->spacing_m()), 0);
 }
-TEST(Temporal, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cpu); }
-TEST(TemporalGpu, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cuda); }
+TEST(S22Temporal, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cpu); }
+TEST(S22TemporalGpu, OursTspKeepsItsMassAndIsOursWhileTauIsGood) { ours_tsp(Backend::Cuda); }
 
-TEST(Temporal, PapersOwnReadingStaysFinite) {
+TEST(S22Temporal, PapersOwnReadingStaysFinite) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = dam_options(Backend::Cpu, 256);
   options.readings = sim::readings_of(sim::Preset::Paper);

@@ -116,7 +116,7 @@ std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
   return out;
 }
 
-SIM_TEST(NeighbourList, EqualsBruteForceOnRandomPoints) {
+SIM_TEST(S14NeighbourList, EqualsBruteForceOnRandomPoints) {
   for (const float size : {0.2f, 1.0f, 3.0f})
     expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
 }
@@ -128,7 +128,7 @@ std::vector<Vec4> mixed_points(std::vector<Vec4> points, const std::vector<int>&
   return points;
 }
 
-SIM_TEST(MixedNeighbourList, EqualsBruteForceOnRandomPoints) {
+SIM_TEST(S14MixedNeighbourList, EqualsBruteForceOnRandomPoints) {
   for (const auto& levels : std::vector<std::vector<int>>{
            {0, 1, 2, 3}, {0, 3}, {1, 2}, {3, 3, 3, 0}, {0}, {3}, {2, 0, 0, 0, 0, 0, 0}}) {
     for (const float size : {0.3f, 1.2f, 4.0f}) {
@@ -137,7 +137,7 @@ SIM_TEST(MixedNeighbourList, EqualsBruteForceOnRandomPoints) {
   }
 }
 
-SIM_TEST(MixedNeighbourList, EqualsBruteForceOnCellPlanes) {
+SIM_TEST(S14MixedNeighbourList, EqualsBruteForceOnCellPlanes) {
   // Lattice points on the planes of the finest cells and of those twice as wide.
   const float edge = NeighbourList::margin * finest;
   std::vector<Vec4> points;
@@ -148,7 +148,7 @@ SIM_TEST(MixedNeighbourList, EqualsBruteForceOnCellPlanes) {
   expect_brute_force(mixed_points(points, {0, 3, 0, 1, 2}), true);
 }
 
-SIM_TEST(MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
+SIM_TEST(S14MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(mixed_points(random_points(300, 0.05f, finest, 3), {0, 1, 2, 3}), true);
   std::vector<Vec4> points;
   for (const float far : {-1e9f, -6.9e5f, -6e5f, -3.4e5f, 0.0f, 3.4e5f, 6e5f, 6.9e5f, 1e9f}) {
@@ -161,7 +161,7 @@ SIM_TEST(MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
                      true);
 }
 
-SIM_TEST(MixedNeighbourList, TakesNoneOneAndThin) {
+SIM_TEST(S14MixedNeighbourList, TakesNoneOneAndThin) {
   expect_brute_force({}, true);
   expect_brute_force(mixed_points({{1, 2, 3, 0}}, {2}), true);
   // A coarse particle over a line of fine ones that crosses many cells.
@@ -172,7 +172,7 @@ SIM_TEST(MixedNeighbourList, TakesNoneOneAndThin) {
   expect_brute_force(mixed, true);
 }
 
-SIM_TEST(NeighbourList, EqualsBruteForceOnCellPlanes) {
+SIM_TEST(S14NeighbourList, EqualsBruteForceOnCellPlanes) {
   // Lattice points that lie exactly on the planes of the cells.
   std::vector<Vec4> points;
   const float h = 0.25f;
@@ -183,7 +183,7 @@ SIM_TEST(NeighbourList, EqualsBruteForceOnCellPlanes) {
   expect_brute_force(points);
 }
 
-SIM_TEST(NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
+SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(random_points(300, 0.05f, 0.3f, 3));
   // Cells at the far ends of the key's range, and beyond it.
   std::vector<Vec4> points;
@@ -207,7 +207,7 @@ struct FirstBuild {
   }
 };
 
-SIM_TEST(NeighbourList, PutsListsWithoutRoomInTheStore) {
+SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
   // The first build of a list has room for 80 neighbours; nothing grows in between.
   std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
   const std::vector<Vec4> few = random_points(60, 0.05f, 0.3f, 4);
@@ -224,7 +224,7 @@ SIM_TEST(NeighbourList, PutsListsWithoutRoomInTheStore) {
   }
 }
 
-SIM_TEST(NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
+SIM_TEST(S14NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
   // 1,500 coincident points ask for 2.2 million entries; the store begins with 1 million.
   const std::vector<Vec4> points(1500, Vec4{1, 1, 1, 0.3f});
   FirstBuild first(points);
@@ -239,13 +239,13 @@ SIM_TEST(NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
   EXPECT_EQ(grown.entries, 1500u * 1499u);
 }
 
-SIM_TEST(NeighbourList, TakesNoneAndOne) {
+SIM_TEST(S14NeighbourList, TakesNoneAndOne) {
   expect_brute_force({});
   expect_brute_force({{1, 2, 3, 0.1f}});
   expect_brute_force({{0, 0, 0, 0.1f}, {0.101f, 0, 0, 0.1f}});
 }
 
-SIM_TEST(CellKey, KeepsItsFields) {
+SIM_TEST(S14CellKey, KeepsItsFields) {
   for (const int x : {-cell_limit_xz, -1, 0, 5, cell_limit_xz - 1}) {
     for (const int y : {-cell_limit_y, -1, 0, cell_limit_y - 1}) {
       const auto c = cell_of_key(cell_key({3, x, y, -x - 1}));

@@ -1,4 +1,4 @@
-/// Splitting and merging in water at rest (S3, S5 and coarsening), on the CPU and on CUDA.
+/// Merges in water at rest (S5 and coarsening), on the CPU and on CUDA.
 
 #include "tests/libsim/levels_helpers.hpp"
 
@@ -39,8 +39,8 @@ void tank_coarsens(Backend backend) {
   expect_sound(*fluid, 8 * Settled::n_star, 8 * Settled::n_star);
   EXPECT_EQ(fluid_test::outside(fluid->read_state(), tank.scene.tank_size_m, 0.1 * d), 0);
 }
-TEST(Levels, UniformTankCoarsens) { tank_coarsens(Backend::Cpu); }
-TEST(LevelsGpu, UniformTankCoarsens) { tank_coarsens(Backend::Cuda); }
+TEST(S05Merges, UniformTankCoarsens) { tank_coarsens(Backend::Cpu); }
+TEST(S05MergesGpu, UniformTankCoarsens) { tank_coarsens(Backend::Cuda); }
 
 void square_wave_does_not_oscillate(Backend backend) {
   // S5: targets that change every 1, 2 and 3 frames never give a merge.
@@ -74,51 +74,7 @@ void square_wave_does_not_oscillate(Backend backend) {
   EXPECT_GT(fluid->report().levels.splits, 0u);
   EXPECT_EQ(fluid->particle_count(), settled);
 }
-TEST(Levels, SquareWaveDoesNotOscillate) { square_wave_does_not_oscillate(Backend::Cpu); }
-TEST(LevelsGpu, SquareWaveDoesNotOscillate) { square_wave_does_not_oscillate(Backend::Cuda); }
-
-void interface_rests(Backend backend) {
-  // S3: level 3 below, level 0 above, adaptivity off, 5 s.
-  const auto scene = fluid_test::tank({12 * d, 30 * d, 12 * d}, {12 * d, 16 * d, 12 * d});
-  std::vector<ParticleState> start;
-  const auto at = [](double k) { return static_cast<float>(d * k); };
-  for (int i = 0; i < 6 * 6 * 4; ++i) {
-    start.push_back({static_cast<int>(start.size()), 3, at(2 * (i % 6) + 1), at(2 * (i / 36) + 1),
-                     at(2 * (i / 6 % 6) + 1), 0, 0, 0});
-  }
-  for (int i = 0; i < 12 * 12 * 8; ++i) {
-    start.push_back({static_cast<int>(start.size()), 0, at(i % 12 + 0.5), at(8 + i / 144 + 0.5),
-                     at(i / 12 % 12 + 0.5), 0, 0, 0});
-  }
-  sim::SimulationOptions options;
-  options.n_star = Settled::n_star;
-  options.backend = backend;
-  options.start = start;
-  const auto fluid = sim::make_simulation(scene, options);
-  const auto top_of_coarse = [&] {
-    double sum = 0;
-    int count = 0;
-    for (const auto& p : fluid->read_state()) {
-      if (p.level == 3) sum += static_cast<double>(p.y_m), ++count;
-    }
-    return sum / count;
-  };
-  for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
-  const double early = top_of_coarse();
-  double densest = 0;
-  for (int frame = 0; frame < 240; ++frame) {
-    fluid->step_frame();
-    if (frame % 20 == 0) densest = std::max(densest, fluid->report().density_max);
-  }
-  const auto state = fluid->read_state();
-  std::printf("S3: coarse particles moved by %.3f d, max rho %.3f, v_rms %.3f m/s, centre %.3f of 1.2 m\n",
-              (top_of_coarse() - early) / d, densest, fluid_test::rms_speed(state),
-              mass_centre_height(state));
-  EXPECT_LT(std::abs(top_of_coarse() - early), d);
-  EXPECT_LT(densest, 1.08);
-  EXPECT_EQ(mass_units(state), 8 * Settled::n_star);
-}
-TEST(Levels, MassInterfaceRests) { interface_rests(Backend::Cpu); }
-TEST(LevelsGpu, MassInterfaceRests) { interface_rests(Backend::Cuda); }
+TEST(S05Merges, SquareWaveDoesNotOscillate) { square_wave_does_not_oscillate(Backend::Cpu); }
+TEST(S05MergesGpu, SquareWaveDoesNotOscillate) { square_wave_does_not_oscillate(Backend::Cuda); }
 
 }  // namespace

@@ -1,0 +1,123 @@
+/// S11: water that sloshes from corner to corner of a tank, driven by kicks.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "libsim/cases/cases.hpp"
+#include "libsim/cases/watch.hpp"
+
+namespace sim::cases {
+
+namespace {
+
+/// Largest rho / rho_0 within a support of two walls or three, as the last projection met it.
+double densest_in_corners(const Simulation& fluid, const Scene& scene) {
+  std::vector<RenderParticle> places;
+  std::vector<float> error;
+  fluid.read_particles(places);
+  fluid.read_field(ParticleField::DensityError, error);
+  double out = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto x = static_cast<double>(places[i].x_m), y = static_cast<double>(places[i].y_m),
+               z = static_cast<double>(places[i].z_m);
+    const double support = 4 * static_cast<double>(places[i].radius_m);
+    int walls = 0;
+    for (const double away : {x, scene.tank_size_m[0] - x, z, scene.tank_size_m[2] - z, y}) {
+      walls += away < support;
+    }
+    if (walls >= 2) out = std::max(out, 1 + static_cast<double>(error[i]));
+  }
+  return out;
+}
+
+/// Tells who hangs in the air: two frames without moving, and nobody near. What flies moves by g dt^2 more in
+/// a frame than in the one before.
+class Hanging {
+ public:
+  explicit Hanging(double frame_dt_s) : still_m_(gravity * frame_dt_s * frame_dt_s / 3) {}
+
+  int count(const State& state) {
+    int out = 0;
+    std::map<int, Seen> now;
+    for (const auto& p : state) {
+      Seen seen{p, 0};
+      const auto before = seen_.find(p.id);
+      if (before != seen_.end() && distance(before->second.at, p) < still_m_) {
+        seen.still = before->second.still + 1;
+      }
+      if (seen.still >= 2 && static_cast<double>(p.y_m) > 2 * d && alone(p, state)) ++out;
+      now.emplace(p.id, seen);
+    }
+    seen_ = std::move(now);
+    return out;
+  }
+
+ private:
+  struct Seen {
+    ParticleState at;
+    int still;
+  };
+  static double distance(const ParticleState& a, const ParticleState& b) {
+    return std::hypot(static_cast<double>(a.x_m - b.x_m), static_cast<double>(a.y_m - b.y_m),
+                      static_cast<double>(a.z_m - b.z_m));
+  }
+  static bool alone(const ParticleState& p, const State& state) {
+    const double support = 2 * d * std::cbrt(mass(p));
+    return std::none_of(state.begin(), state.end(), [&](const ParticleState& other) {
+      return other.id != p.id && distance(p, other) < support;
+    });
+  }
+
+  double still_m_;
+  std::map<int, Seen> seen_;
+};
+
+Outcome run(const Setting& setting) {
+  const bool small = setting.size == Size::Small;
+  const double side = small ? 12 * d : 24 * d, depth = small ? 6 * d : 10 * d;
+  const Scene scene = tank({side, 3 * depth, side}, {side, depth, side});
+  SimulationOptions options = options_of(setting);
+  options.n_star = std::lround(side * side * depth / (d * d * d) / 8);
+  Watch watch(scene, options, {.density = 1.5, .outside_m = 0.1 * d});
+  const double kick = 2 * setting.scale;  // m/s
+  const int frames = frames_of(setting, small ? 5 : 60), period = frames_of(setting, 1.5);
+  double densest = 0;
+  int hanging = 0;
+  Hanging air(frame_dt_of(setting));
+  for (int frame = 0; frame < frames; ++frame) {
+    if (frame % period == 0) {
+      // Towards each corner in turn.
+      const int turn = frame / period;
+      State state = watch.state();
+      for (auto& p : state) {
+        p.vx_m_s += static_cast<float>(turn & 1 ? kick : -kick);
+        p.vz_m_s += static_cast<float>(turn & 2 ? kick : -kick);
+      }
+      watch.fluid().put(state);
+    }
+    if (!watch.step()) break;
+    densest = std::max(densest, densest_in_corners(watch.fluid(), scene));
+    hanging = std::max(hanging, air.count(watch.state()));
+  }
+  return watch.outcome({watch.outside_finding(), at_most("largest rho / rho_0 in corners", densest, 1.3),
+                        at_most("hanging in the air", hanging, 0),
+                        reported("largest rho / rho_0", watch.densest()),
+                        reported("fastest", watch.fastest_m_s(), "m/s")});
+}
+
+}  // namespace
+
+HardCase corners() {
+  return {.id = "S11",
+          .suite = "S11Corners",
+          .title = "water that sloshes into corners for 60 s",
+          .asked = "nobody outside by > 0.1 d, rho < 1.3 in corners, nobody stuck in the air",
+          .methods = every_method(),
+          .scaled = "2 m/s of the kicks",
+          .frame_dt_s = 1.0 / 60,
+          .iterations = 4,
+          .run = run};
+}
+
+}  // namespace sim::cases
