@@ -90,6 +90,135 @@ void asking_changes_no_bit(Backend backend) {
 TEST(WallImpulse, AskingChangesNoBit) { asking_changes_no_bit(Backend::Cpu); }
 TEST(WallImpulseGpu, AskingChangesNoBit) { asking_changes_no_bit(Backend::Cuda); }
 
+/// Sums over frames, each as a share of the weight's impulse.
+struct Books {
+  double change = 0, forces = 0, walls = 0;  ///< along y
+  double open = 0;                  ///< what forces and walls leave of the change, the largest component
+  std::vector<double> pressure_pa;  ///< of the gauges, mean
+};
+
+Books books_of(sim::Simulation& fluid, const Column& column, int frames) {
+  Books out;
+  Vec3d open{};
+  out.pressure_pa.resize(column.options.gauges.size());
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid.step_frame();
+    const auto account = fluid.momentum();
+    const auto walls = account.walls_sum();
+    for (std::size_t k = 0; k < 3; ++k)
+      open[k] += account.after[k] - account.before[k] - account.forces[k] - walls[k];
+    out.change += account.after[1] - account.before[1];
+    out.forces += account.forces[1];
+    out.walls += walls[1];
+    for (std::size_t k = 0; k < out.pressure_pa.size(); ++k) {
+      const double area = sim::area_m2(column.options.gauges[k], column.scene.tank_size_m);
+      out.pressure_pa[k] += account.gauges[k].sum() / (area * frames * column.scene.frame_dt_s);
+    }
+  }
+  const double impulse = column.weight * frames * column.scene.frame_dt_s;
+  for (double* sum : {&out.change, &out.forces, &out.walls}) *sum /= impulse;
+  for (const double part : open) out.open = std::max(out.open, std::abs(part) / impulse);
+  return out;
+}
+
+/// Fine water in the middle, splits and merges round it.
+void wander(sim::Simulation& fluid, int frame) {
+  fluid.force_targets({{4 * d, 8 * d * (1 + std::sin(0.3 * frame)), 8 * d}, 5 * d, 0, 3});
+}
+
+void ledger_closes(Backend backend, bool ours, bool dam) {
+  Column column(backend);
+  column.options.start = sim::make_simulation(column.scene, column.options)->read_state();
+  if (dam) column.scene.tank_size_m[0] *= 3;
+  column.options.wall_impulse = true;
+  if (ours) {
+    column.options.method = sim::MethodKind::Ours;
+    column.options.forced_targets = sim::TargetRegion{{4 * d, 8 * d, 8 * d}, 5 * d, 0, 3};
+  }
+  const auto fluid = sim::make_simulation(column.scene, column.options);
+  Books all;
+  constexpr int parts = 12;
+  for (int part = 0; part < parts; ++part) {
+    if (ours) wander(*fluid, part * 5);
+    const auto books = books_of(*fluid, column, 5);
+    // The larger of both sides is at least the weight's impulse, over any five frames.
+    EXPECT_LT(books.open, 1e-3) << "frames " << part * 5 << " to " << part * 5 + 4;
+    all.change += books.change / parts;
+    all.walls += books.walls / parts;
+    all.open = std::max(all.open, books.open);
+  }
+  const auto levels = fluid->report().levels;
+  std::printf("walls, %s %s: gave %.4f of the weight, change %.4f, open %.1e; %llu splits, %llu merges\n",
+              ours ? "Ours" : "HiRes", dam ? "dam" : "tank", all.walls, all.change, all.open,
+              static_cast<unsigned long long>(levels.splits), static_cast<unsigned long long>(levels.merges));
+  EXPECT_NEAR(all.walls, 1 + all.change, 1e-3);
+  EXPECT_EQ(levels.splits > 50 && levels.merges > 50, ours);
+}
+TEST(WallImpulse, TheLedgerOfATankCloses) {
+  for (const bool ours : {false, true}) ledger_closes(Backend::Cpu, ours, false);
+}
+TEST(WallImpulse, TheLedgerOfADamCloses) {
+  for (const bool ours : {false, true}) ledger_closes(Backend::Cpu, ours, true);
+}
+TEST(WallImpulseGpu, TheLedgersOfTankAndDamClose) {
+  for (const bool ours : {false, true}) {
+    for (const bool dam : {false, true}) ledger_closes(Backend::Cuda, ours, dam);
+  }
+}
+
+void column_presses_by_its_depth(Backend backend, bool ours, double bound) {
+  Column column(backend);
+  if (ours) {
+    column.options.method = sim::MethodKind::Ours;
+    column.options.forced_targets = sim::TargetRegion{{4 * d, 8 * d, 8 * d}, 5 * d, 0, 3};
+  }
+  constexpr int bands = 8;
+  const double height = Column::layers * d;
+  for (int k = 0; k < bands; ++k) {
+    column.options.gauges.push_back(
+        {"band", Wall::HighX, {0, k * height / bands, 0}, {0, (k + 1) * height / bands, 8 * d}});
+  }
+  column.options.gauges.push_back({"floor", Wall::Floor, {2 * d, 0, 2 * d}, {6 * d, 0, 6 * d}});
+  const auto fluid = sim::make_simulation(column.scene, column.options);
+  for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
+  const auto books = books_of(*fluid, column, 60);
+  const auto truth = fluid_test::read_columns("data/truth/hydrostatic_column.csv");
+  // A settled pool stands a little lower than its volume over its floor (docs/stability.md); its weight
+  // stays.
+  double moment = 0;
+  for (const auto& p : fluid->read_state()) moment += static_cast<double>(p.y_m) * (1 << p.level);
+  const double depth = 2 * moment / static_cast<double>(fluid->report().mass_units);
+  EXPECT_NEAR(depth / height, 1, 0.06);
+  const auto expected = [&](double z) {  // Pa
+    const auto& p = truth.at("p_Pa_for_H_1m");
+    const double at = z / depth / 0.05;
+    const auto low = std::min(static_cast<std::size_t>(at), p.size() - 2);
+    return std::max(0.0, p[low] + (at - static_cast<double>(low)) * (p[low + 1] - p[low])) * height;
+  };
+  const double most = expected(0);
+  double worst = 0;
+  for (int k = 0; k < bands; ++k) {
+    const double p = books.pressure_pa[static_cast<std::size_t>(k)];
+    worst = std::max(worst, std::abs(p - expected((k + 0.5) * height / bands)) / most);
+  }
+  const double floor = books.pressure_pa.back() / most;
+  std::printf(
+      "column, %s: on the floor %.4f of rho g H, walls bear %.4f of the weight, profile within %.4f rho g "
+      "H\n",
+      ours ? "Ours" : "HiRes", floor, books.walls, worst);
+  EXPECT_NEAR(books.walls, 1, 0.01);
+  EXPECT_NEAR(floor, 1, 0.05);
+  EXPECT_LT(worst, bound);
+}
+TEST(WallImpulse, AColumnPressesByItsDepth) {
+  column_presses_by_its_depth(Backend::Cpu, false, 0.08);
+  column_presses_by_its_depth(Backend::Cpu, true, 0.1);
+}
+TEST(WallImpulseGpu, AColumnPressesByItsDepth) {
+  column_presses_by_its_depth(Backend::Cuda, false, 0.08);
+  column_presses_by_its_depth(Backend::Cuda, true, 0.1);
+}
+
 TEST(WallImpulse, AGaugeWithoutAreaIsNamed) {
   Column column(Backend::Cpu);
   column.scene.settle_frames = 0;

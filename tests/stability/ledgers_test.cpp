@@ -1,0 +1,81 @@
+/// The books of the study's scenes close over splits, merges, rests and nozzles.
+
+#include "tests/stability/ledger.hpp"
+
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+using ledger_test::Ledger;
+using sim::Backend;
+using sim::MethodKind;
+
+struct Case {
+  const char* scene;
+  MethodKind method;
+};
+
+void books_close(Backend backend, const Case& run, std::int64_t n_star, int frames) {
+  const std::string name = std::string(run.scene) + " " + sim::method_name(run.method);
+  SCOPED_TRACE(name);
+  const auto scene = sim::read_scene(std::string("data/scenes/") + run.scene + ".toml");
+  sim::SimulationOptions options;
+  options.method = run.method;
+  options.backend = backend;
+  options.n_star = n_star;
+  options.wall_impulse = true;
+  options.temporal.fixed_tau = -6;
+  const bool adaptive = sim::traits_of(run.method).adaptive();
+  const auto& size = scene.tank_size_m;
+  const double reach = size[0] / 4;
+  const sim::Vec3d middle{size[0] / 3, scene.fill_max_m[1] / 2, size[2] / 2};
+  if (adaptive) options.forced_targets = sim::TargetRegion{middle, reach, 0, 3};
+  const auto fluid = sim::make_simulation(scene, options);
+  Ledger ledger(*fluid, scene, n_star);
+  std::int64_t rested = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    // Fine water wanders through the tank.
+    if (adaptive)
+      fluid->force_targets({{middle[0] * (1 + std::sin(frame * 0.1)), middle[1], middle[2]}, reach, 0, 3});
+    fluid->step_frame();
+    ledger.frame();
+    if (const auto& went_by = fluid->account().temporal) rested += fluid->particle_count() - went_by->active;
+  }
+  const auto books = ledger.balance();
+  const auto report = fluid->report();
+  std::printf(
+      "%s: %llu splits, %llu merges, %lld rests; open %.1e, unattributed %.1e, with rests %.1e, event %.1e, "
+      "energy %.4f\n",
+      name.c_str(), static_cast<unsigned long long>(report.levels.splits),
+      static_cast<unsigned long long>(report.levels.merges), static_cast<long long>(rested), books.open,
+      books.unattributed, books.rests, books.event, books.energy);
+  EXPECT_LT(books.open, 1e-9);
+  EXPECT_LT(books.forces, 1e-5) << "g dt in single precision";
+  EXPECT_LT(books.event, 1e-6);
+  if (adaptive) {
+    EXPECT_GT(report.levels.splits, 50u);
+    EXPECT_GT(report.levels.merges, 200u);
+  }
+  if (sim::traits_of(run.method).temporal) {
+    // Who is not solved does not yield to those who are; the velocity grid brings a part of it back.
+    EXPECT_GT(rested, 50);
+    EXPECT_LT(books.rests, 0.1);
+  } else {
+    EXPECT_LT(books.unattributed, 1e-3);
+  }
+  // Asked is 1. What merges overlaps and is parted, and coarse water stands higher.
+  EXPECT_LT(books.energy, adaptive ? 1.06 : 1.001);
+}
+
+void books_of(Backend backend, const char* scene, std::int64_t n_star) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::Ours, MethodKind::OursTsp})
+    books_close(backend, {scene, method}, n_star, 45);
+}
+TEST(Ledgers, SingleDamsBooksClose) { books_of(Backend::Cpu, "single_dam", 128); }
+TEST(Ledgers, JetImpactsBooksClose) { books_of(Backend::Cpu, "jet_impact", 128); }
+TEST(Ledgers, FaucetsBooksClose) { books_of(Backend::Cpu, "faucet", 128); }
+TEST(LedgersGpu, SingleDamsBooksClose) { books_of(Backend::Cuda, "single_dam", 2048); }
+TEST(LedgersGpu, JetImpactsBooksClose) { books_of(Backend::Cuda, "jet_impact", 2048); }
+TEST(LedgersGpu, FaucetsBooksClose) { books_of(Backend::Cuda, "faucet", 2048); }
+
+}  // namespace
