@@ -23,6 +23,7 @@ docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
 docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|scripts/window_protocols.sh
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
+docs/stability.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
 "
 outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview)'
 

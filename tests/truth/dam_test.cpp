@@ -1,6 +1,5 @@
 /// Plane dams on a dry bed: front and column height over time, against experiments (Martin and Moyce 1952).
 
-#include "libsim/scene/fill.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
@@ -95,12 +94,6 @@ Collapse collapse(const Run& run, const std::filesystem::path& path, std::int64_
   return out;
 }
 
-/// The scene beside its file, or among those of the project.
-std::filesystem::path scene_of(const TruthFile& file) {
-  const auto beside = file.path.parent_path() / file.text("scene");
-  return std::filesystem::exists(beside) ? beside : base::resource("data/scenes/" + file.text("scene"));
-}
-
 /// The file's numbers against a run's, in the file's own scales.
 void compare(const TruthFile& file, const Run& run, const Collapse& dam, std::int64_t n_star) {
   const Axis x = file.time(), y = file.length();
@@ -141,5 +134,56 @@ TEST(TruthDamGpu, HiResFollowsTheExperiments) {
 TEST(TruthDamGpu, OursFollowsTheExperiments) {
   dams_follow_experiments({Backend::Cuda, MethodKind::Ours}, 16 * 1024);
 }
+
+/// Depth of the water within one spacing of x, by volume, in a slab `width` wide.
+double depth_at(const State& state, double x, double d, double width) {
+  double volume = 0;
+  for (const auto& p : state) volume += std::abs(place(p)[0] - x) < d ? mass(p) * d * d * d : 0;
+  return volume / (2 * d * width);
+}
+
+/// Ritter's shallow water: depth over the bed, without the tip, where friction rules.
+void dam_spreads(Run run, const TruthFile& file, int layers) {
+  const auto &times = file.column("t_s"), &places = file.column("x_m"), &depths = file.column("h_m");
+  const double deep = file.number("length_m"), end = *std::max_element(times.begin(), times.end());
+  const double d = 0.8 / layers, height = layers * d, width = 6 * d;
+  const double scale = height / deep,
+               pace = std::sqrt(scale);  // a run's metres and seconds for one of the file's
+  const double c = std::sqrt(gravity * height), ahead = c * end * pace;
+  const double dam = d * std::ceil(1.1 * ahead / d);
+  const State start = settled(run.backend, {dam, height, width}, d, 40);
+  const auto scene = fluid_test::tank({dam + 2.5 * ahead, 2 * height, width}, {});
+  const auto fluid = start_from(run, scene, d, start);
+  double sum = 0, time = 0, front = dam;
+  int points = 0;
+  while (time < end * pace - 1e-9) {
+    fluid->step_frame();
+    const auto state = fluid->read_state();
+    const double before = time;
+    time = fluid->frame() * scene.frame_dt_s;
+    front = front_of(state, d);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (times[i] * pace <= before || times[i] * pace > time || depths[i] < 0.1 * deep) continue;
+      sum += std::pow(depth_at(state, dam + places[i] * scale, d, width) / height - depths[i] / deep, 2);
+      ++points;
+    }
+  }
+  const double error = std::sqrt(sum / points);
+  std::printf(
+      "%s, %s, %d layers: depth off by %.4f of the reservoir's (RMS of %d points), front at %.3f of 2 c t; "
+      "%s\n",
+      file.name().c_str(), run.name().c_str(), layers, error, points, (front - dam) / (2 * c * time),
+      share(*fluid, start).c_str());
+  expect_within(error, file.gate("gate", run.ours()), file.name() + ", " + run.name());
+  EXPECT_LE((front - dam) / (2 * c * time), 1) << file.name() << ": no front outruns 2 c";
+}
+void dams_spread(Backend backend, int layers) {
+  const auto files = truth_of("dam_profile");
+  if (files.empty()) GTEST_SKIP() << "no file of a dam's profile";
+  for (const auto& file : files)
+    for (const auto method : methods) dam_spreads({backend, method}, file, layers);
+}
+TEST(TruthDam, SpreadsAsShallowWater) { dams_spread(Backend::Cpu, 16); }
+TEST(TruthDamGpu, SpreadsAsShallowWater) { dams_spread(Backend::Cuda, 48); }
 
 }  // namespace

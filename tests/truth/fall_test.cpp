@@ -42,29 +42,55 @@ void particles_fall(Backend backend) {
 TEST(TruthFall, EqualsSymplecticEuler) { particles_fall(Backend::Cpu); }
 TEST(TruthFallGpu, EqualsSymplecticEuler) { particles_fall(Backend::Cuda); }
 
+/// Mean pressure on the floor and on bands of one wall, by their impulse, against rho g (H - z).
+void column_rests(Run run, const TruthFile& file, int layers, const State& rest, double d) {
+  const double height = layers * d, width = 10 * d, full = 1000 * gravity * height;
+  constexpr int bands = 6, frames = 30;
+  sim::SimulationOptions options;
+  options.gauges.push_back({"floor", sim::Wall::Floor, {0, 0, 0}, {width, 0, width}});
+  for (int k = 0; k < bands; ++k)
+    options.gauges.push_back(
+        {"band", sim::Wall::HighX, {0, k * height / bands, 0}, {0, (k + 1) * height / bands, width}});
+  const auto scene = fluid_test::tank({width, 2 * height, width}, {});
+  const auto fluid = start_from(run, scene, d, rest, options);
+  for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
+  double centre = 0;
+  std::vector<double> pressure(options.gauges.size(), 0);
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid->step_frame();
+    centre += mean(fluid->read_state(), [](const auto& p) { return place(p)[1]; }) / frames;
+    const auto account = fluid->momentum();
+    for (std::size_t g = 0; g < pressure.size(); ++g)
+      pressure[g] += account.gauges[g].sum() /
+                     (frames * scene.frame_dt_s * sim::area_m2(options.gauges[g], scene.tank_size_m));
+  }
+  const double lost = 1 - centre / (height / 2);
+  double worst = 0;
+  for (int k = 0; k < bands; ++k) {
+    const double z = (k + 0.5) / bands;
+    const double asked =
+        interpolate(file.column("z_over_H"), file.column("p_Pa_for_H_1m"), z) / (1000 * gravity);
+    worst = std::max(worst, std::abs(pressure[static_cast<std::size_t>(k) + 1] / full - asked));
+  }
+  std::printf(
+      "%s, %s, %d layers: centre of mass lower by %.4f of H / 2; floor feels %.4f of rho g H, a wall's six "
+      "bands off by %.4f of it at most; %s\n",
+      file.name().c_str(), run.name().c_str(), layers, lost, pressure[0] / full, worst,
+      share(*fluid, rest).c_str());
+  expect_within(std::abs(lost), file.gate("gate", run.ours()), file.name() + ", " + run.name());
+  expect_within(std::abs(pressure[0] / full - 1), 0.03, file.name() + ", weight on the floor, " + run.name());
+  expect_within(worst, file.gate("gate_pressure", run.ours()), file.name() + ", pressure, " + run.name());
+}
+
 void columns_rest(Backend backend, int layers) {
   const auto files = truth_of("column_at_rest");
   if (files.empty()) GTEST_SKIP() << "no file of a column at rest";
-  const double height = 1.2, d = height / layers;
-  const State rest = settled(backend, {10 * d, height, 10 * d}, d, 60);
-  for (const auto& file : files) {
-    for (const auto method : methods) {
-      const Run run{backend, method};
-      const auto fluid = start_from(run, fluid_test::tank({10 * d, 2 * height, 10 * d}, {}), d, rest);
-      for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
-      double centre = 0;  // mean of 30 frames
-      for (int frame = 0; frame < 30; ++frame) {
-        fluid->step_frame();
-        centre += mean(fluid->read_state(), [](const auto& p) { return place(p)[1]; }) / 30;
-      }
-      const double lost = 1 - centre / (height / 2);
-      std::printf("%s, %s, %d layers: centre of mass lower by %.4f of H / 2; %s\n", file.name().c_str(),
-                  run.name().c_str(), layers, lost, share(*fluid, rest).c_str());
-      expect_within(std::abs(lost), file.gate("gate", run.ours()), file.name() + ", " + run.name());
-    }
-  }
+  const double d = 1.2 / layers;
+  const State rest = settled(backend, {10 * d, 1.2, 10 * d}, d, 60);
+  for (const auto& file : files)
+    for (const auto method : methods) column_rests({backend, method}, file, layers, rest, d);
 }
-TEST(TruthColumn, KeepsItsHeight) { columns_rest(Backend::Cpu, 24); }
-TEST(TruthColumnGpu, KeepsItsHeight) { columns_rest(Backend::Cuda, 80); }
+TEST(TruthColumn, KeepsItsHeightAndItsWeight) { columns_rest(Backend::Cpu, 24); }
+TEST(TruthColumnGpu, KeepsItsHeightAndItsWeight) { columns_rest(Backend::Cuda, 80); }
 
 }  // namespace

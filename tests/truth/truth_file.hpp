@@ -69,6 +69,11 @@ struct TruthFile {
     const auto [name, number, scaled] = match("x", form, "T = t sqrt(2 g / length)");
     return {name, scaled ? std::sqrt(number) : std::sqrt(this->number("length_m") / gravity)};
   }
+  /// "P = p / (rho g length)": the column's name; pressures have no other scale.
+  std::string pressure() const {
+    static const std::regex form(R"((\w+) = (p / \(rho g length\))(x?))");
+    return match("y", form, "P = p / (rho g length)").name;
+  }
   /// "H = h / (2 length)": the column's value is factor * h / length. "H = h": metres.
   Axis length() const {
     static const std::regex form(R"((\w+) = \w+( / (?:length|\(([0-9.]+) length\)))?)");
@@ -88,23 +93,40 @@ struct TruthFile {
     if (!std::regex_match(value, found, form))
       fail(keys.at(key).second, key + " is '" + value + "'", "write it like '" + example + "'");
     column(found[1]);
-    return {found[1], found[3].matched ? std::stod(found[3]) : 1, found[2].matched};
+    return {found[1], found[3].length() > 0 ? std::stod(found[3]) : 1, found[2].matched};
   }
 };
 
 /// The quantities that tests measure; each is named by one test file.
 inline const std::vector<std::string>& quantities() {
-  static const std::vector<std::string> all{"column_at_rest",  "dam_front", "dam_height",
-                                            "elliptical_drop", "free_fall", "standing_wave",
-                                            "taylor_green"};
+  static const std::vector<std::string> all{
+      "column_at_rest", "dam_front",  "dam_height",       "dam_profile",   "draining",     "elliptical_drop",
+      "free_fall",      "lamb_oseen", "oscillating_drop", "standing_wave", "taylor_green", "wall_pressure"};
   return all;
 }
 
 /// base::Error at file:line: no quantity or one that is not known, a key that is not known or comes twice, a
 /// row that has other columns than the header or a cell that is no number.
 inline TruthFile parse_truth(const std::filesystem::path& path, const std::string& bytes) {
-  static const std::vector<std::string> known{"quantity", "scene", "x",         "y",     "length_m", "source",
-                                              "licence",  "gate",  "gate_ours", "shift", "viscosity"};
+  static const std::vector<std::string> known{"quantity",
+                                              "source",
+                                              "licence",
+                                              "gate",
+                                              "gate_ours",
+                                              "gate_amplitude",
+                                              "gate_amplitude_ours",
+                                              "gate_pressure",
+                                              "gate_pressure_ours",
+                                              "gate_plateau",
+                                              "gate_plateau_ours",
+                                              "plateau_from",
+                                              "plateau_to",
+                                              "scene",
+                                              "x",
+                                              "y",
+                                              "length_m",
+                                              "shift",
+                                              "viscosity"};
   static const std::regex key_line(R"(# ([a-z_]+): +(.*\S)\s*)");
   TruthFile out;
   out.path = path;

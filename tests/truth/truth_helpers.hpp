@@ -9,6 +9,7 @@
 #include <functional>
 #include <numeric>
 
+#include "libsim/scene/fill.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 #include "tests/truth/truth_file.hpp"
 
@@ -114,6 +115,7 @@ inline sim::SimulationOptions inviscid() {
   sim::SimulationOptions out;
   out.viscosity_m2_s = 0;
   out.substeps = 4;
+
   return out;
 }
 
@@ -180,6 +182,12 @@ inline void expect_within(double value, const std::optional<double>& gate, const
   } else {
     EXPECT_TRUE(std::isfinite(value)) << what;
   }
+}
+
+/// The scene beside its file, or among those of the project.
+inline std::filesystem::path scene_of(const TruthFile& file) {
+  const auto beside = file.path.parent_path() / file.text("scene");
+  return std::filesystem::exists(beside) ? beside : base::resource("data/scenes/" + file.text("scene"));
 }
 
 }  // namespace truth_test
