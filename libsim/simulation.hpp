@@ -67,6 +67,9 @@ struct SimulationOptions {
   /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %; velocities stay. The velocity
   /// grid of temporal acceleration is then made from the start as well. 0 = take the start as it is.
   int start_projections = 0;
+  /// Go on from a file that Simulation::save_state wrote, in a run with the same scene and options: from
+  /// there on the run is bit for bit the one that was saved. Excludes `start`; start_frame is the file's.
+  std::filesystem::path resume_from;
   /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
   bool wall_impulse = false;  ///< keep Simulation::momentum(); costs passes of its own
@@ -249,6 +252,10 @@ class Simulation {
   virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;
   /// Everything about every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
+  /// Writes the whole state between two frames, for SimulationOptions::resume_from: a file of a name of its
+  /// own that is renamed. The last look() and the frames' times that tau follows from are part of it; times
+  /// of parts and momentum() are not. base::Error when the file cannot be written.
+  virtual void save_state(const std::filesystem::path& path) = 0;
   /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.
   /// False when this back end cannot (the CPU, or a context on another device) or the buffer is too small:
   /// read_particles and upload instead.

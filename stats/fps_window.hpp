@@ -34,6 +34,8 @@ class FpsWindow {
   /// interval_s > 0; others throw std::invalid_argument.
   void push(double interval_s);
   FpsMoments moments() const;
+  /// The oldest first, s.
+  const std::deque<double>& intervals_s() const { return intervals_s_; }
 
  private:
   std::size_t capacity_;

@@ -35,6 +35,7 @@ struct FrameOptions {
   std::string tau = "live";
   std::string rate, ptpe;
   std::string json;
+  std::string save_state;
   int frames = 100;
   int warm_up = 5;
   int measure_every = 0;
@@ -167,6 +168,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
                         {"ms_a_frame", pass.ms / options.frames}});
   }
   check_finite(*fluid, options.scene);
+  if (!options.save_state.empty()) fluid->save_state(options.save_state);
   const auto report = fluid->report();
   const double mean =
       std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
@@ -312,6 +314,13 @@ void add_frame_command(CLI::App& app) {
       ->check(CLI::Range(0, 16));
   command->add_option("--coarse-edge", options->fluid.coarse_edge, "Edge of its cells in h")
       ->check(number_in(0.5, 8.0));
+  command
+      ->add_option("--resume", options->fluid.resume_from,
+                   "Go on from a state that --save-state wrote, with the same scene and options")
+      ->check(CLI::ExistingFile);
+  command
+      ->add_option("--save-state", options->save_state, "Write the state after the last frame to this file")
+      ->check(output_file());
   add_count(*command, "--measure-every", options->measure_every, 0, 100000,
             "Measure the density every so many frames, untimed; 0 = ten times");
   command->add_flag("--passes", options->passes, "Also time every launch of the solver (slows it down)");

@@ -31,6 +31,11 @@ class PercentileRange {
   const ValueRange* range() const { return range_.data(); }
   /// Copied to the host (a synchronisation).
   ValueRange read() const { return range_.to_host()[0]; }
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(range_);
+  }
 
  private:
   void ready();

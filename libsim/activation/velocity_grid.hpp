@@ -100,6 +100,12 @@ class VelocityGrid {
   const Array<Vec4>& velocity() const { return velocity_; }
   const Array<float>& energy() const { return energy_; }
   std::size_t bytes() const;
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(frame_, block_, velocity_, energy_);
+    if constexpr (Archive::reads) energy_sums_.resize(energy_.size());
+  }
 
  private:
   CellFrame frame_;

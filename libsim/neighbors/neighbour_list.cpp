@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stats/base/error.hpp"
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -201,6 +203,33 @@ void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {
   }
   count_.from_host(counts);
   entry_.from_host(entries);
+}
+
+void NeighbourList::put_back(const std::vector<int>& counts, const std::vector<int>& entries) {
+  const std::size_t groups = (counts.size() + list_interleave - 1) / list_interleave;
+  std::vector<int> placed(groups * list_interleave * static_cast<std::size_t>(capacity_));
+  std::vector<int> store;
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto length = static_cast<std::size_t>(std::max(counts[i], 0));
+    if (length > entries.size() - from)
+      throw base::Error("saved state", "holds lists of neighbours that end early", "save the state again");
+    const int slot = static_cast<int>(i);
+    const bool stored = counts[i] > view().room();
+    if (stored) placed[view().place(slot, 0)] = static_cast<int>(store.size());
+    for (std::size_t k = 0; k < length; ++k, ++from) {
+      if (stored) {
+        store.push_back(entries[from]);
+      } else {
+        placed[view().place(slot, static_cast<int>(k))] = entries[from];
+      }
+    }
+  }
+  if (store.size() > store_.size())
+    throw base::Error("saved state", "holds more neighbours than their store", "save the state again");
+  count_.from_host(counts);
+  entry_.from_host(placed);
+  if (!store.empty()) copy_from_host(store_.data(), store.data(), store.size() * sizeof(int));
 }
 
 std::vector<std::vector<int>> NeighbourList::lists() const {

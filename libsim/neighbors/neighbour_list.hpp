@@ -104,6 +104,25 @@ class NeighbourList {
   const Need* need() const { return need_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
+  /// What outlives a frame (libsim/solver/state_archive.hpp): how far the lists have grown and, where they
+  /// hold, the lists themselves. Room that nothing uses is left out.
+  template <class Archive>
+  void keep(Archive& archive, bool with_lists) {
+    std::uint64_t store = store_.size();
+    archive(capacity_, store, need_);
+    if constexpr (Archive::reads) {
+      if (capacity_ < 2 || capacity_ > most_capacity || store > most_store)
+        Archive::fail("holds lists of neighbours of no length");
+      store_.resize(static_cast<std::size_t>(store));
+    }
+    if (!with_lists) return;
+    std::vector<int> counts = count_.to_host();
+    std::vector<int> entries;
+    if constexpr (!Archive::reads)
+      for (const auto& list : lists()) entries.insert(entries.end(), list.begin(), list.end());
+    archive(counts, entries);
+    if constexpr (Archive::reads) put_back(counts, entries);
+  }
 
  private:
   /// A coarse particle among the finest has 113 within the support, some 150 within the margin.
@@ -111,6 +130,9 @@ class NeighbourList {
   /// A thousand particles in one place, 4 MB.
   static constexpr std::size_t least_store = 1 << 20;
   static constexpr std::size_t most_store = 1 << 26;
+
+  /// Fills the lists from their entries, one list after the other.
+  void put_back(const std::vector<int>& counts, const std::vector<int>& entries);
 
   template <class Rows, class Selection>
   void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, Witness witness);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "stats/fps_window.hpp"
 #include "stats/ptpe/ptpe.hpp"
@@ -48,6 +49,16 @@ class ToleranceSwitch {
   /// particle to be solved.
   double beta() const;
   std::uint64_t left_out() const { return left_out_; }
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    std::vector<double> known(window_.intervals_s().begin(), window_.intervals_s().end());
+    archive(known, on_, tau_, rate_, left_out_);
+    if constexpr (Archive::reads) {
+      window_ = stats::FpsWindow(window_frames);
+      for (const double interval_s : known) window_.push(interval_s);
+    }
+  }
 
  private:
   void set(double tau);

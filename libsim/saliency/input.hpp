@@ -35,6 +35,12 @@ class SaliencyInput {
   SeenReport seen() const { return seen_; }
   /// Bytes of the pictures.
   std::size_t bytes() const;
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(count_, gaze_lost_, seen_);
+    for (auto& eye : eyes_) eye.keep(archive);
+  }
 
  private:
   struct OneEye {
@@ -48,6 +54,22 @@ class SaliencyInput {
     Array<float> depth, normal;
     GlSharing sharing{GlSharing::Access::Read};
 
+    template <class Archive>
+    void keep(Archive& archive) {
+      bool there = picture.depth != nullptr;
+      archive(gaze, view, visual_scale, last_direction, lost_s, picture_view, there);
+      if (!there) return;
+      archive(picture.normal_stride, picture.width, picture.height, picture.radius_scale, depth, normal);
+      if constexpr (Archive::reads) {
+        const std::size_t pixels =
+            static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+        if (depth.size() != pixels ||
+            normal.size() != static_cast<std::size_t>(picture.normal_stride) * pixels)
+          Archive::fail("holds a picture that is not whole");
+        picture.depth = depth.data();
+        picture.normal = normal.data();
+      }
+    }
     void take(const GBuffer& seen);
     void take(const GlPicture& shared);
   };

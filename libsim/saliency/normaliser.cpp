@@ -110,6 +110,8 @@ void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* 
   if (range_.size() == 0) {
     range_.resize(1);
     range_.zero();
+  }
+  if (histograms_.size() == 0) {
     histograms_.resize(2 * bins * copies);
     histograms_.zero();
     totals_.resize(2 * bins);

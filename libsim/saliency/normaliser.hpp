@@ -41,6 +41,12 @@ class SaliencyNormaliser {
   /// Histograms that share the particles, so that few threads meet at one counter.
   static constexpr int copies = 32;
 
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(range_);
+  }
+
  private:
   Array<int> histograms_, totals_;
   Array<Selection> selections_;

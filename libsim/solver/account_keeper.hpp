@@ -50,6 +50,12 @@ class AccountKeeper {
   const FrameAccount& account() const { return account_; }
   /// What take() has found since begin().
   const std::optional<Divergence>& divergence() const { return divergence_; }
+  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(finest_level_, coarsest_level_, account_.particles_by_level, account_.temporal, account_.guards,
+            met_, divergence_);
+  }
 
  private:
   int finest_level_ = 0, coarsest_level_ = 0;

@@ -8,7 +8,9 @@
 #include "libsim/scene/extent.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/account_keeper.hpp"
+#include "libsim/solver/kept_state.hpp"
 #include "libsim/solver/readout.hpp"
+#include "libsim/solver/state_file.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -48,7 +50,9 @@ class FluidSimulation final : public Simulation {
     state_.guards.zero();
     state_.refuge = {static_cast<float>(scene.tank_size_m[0] / 2), static_cast<float>(scene.tank_size_m[1]),
                      static_cast<float>(scene.tank_size_m[2] / 2)};
-    if (options.start) {
+    if (!options.resume_from.empty()) {
+      resume(read_state_file(options.resume_from, run_key(scene, options)));
+    } else if (options.start) {
       open(*options.start);
       if (options.start_projections > 0) prepare_start();
     } else {
@@ -225,6 +229,15 @@ class FluidSimulation final : public Simulation {
 
   std::vector<ParticleState> read_state() const override { return states_of(state_.particles); }
 
+  void save_state(const std::filesystem::path& path) override {
+    StateWriter out;
+    int n = state_.particles.size();
+    int capacity = state_.particles.capacity();
+    out(n, capacity, finest_level_, coarsest_level_);
+    keep(out);
+    write_state_file(path, run_key(scene_, options_), out.bytes());
+  }
+
   bool copy_to_gl(const GlBufferRef& buffer) override {
     const int n = state_.particles.size();
     if (buffer.bytes < static_cast<std::size_t>(n) * sizeof(Vec4) || !gl_.accept({buffer})) return false;
@@ -278,27 +291,50 @@ class FluidSimulation final : public Simulation {
     }
     const int capacity = capacity_for(start.size());
     check_start(start, capacity, adaptive());
-    schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
-    auto& p = state_.particles;
-    p.allocate(schedule_.columns, static_cast<int>(start.size()), capacity);
     const auto [finest, coarsest] = levels_of(start, resolution_.level);
-    state_.one_level = !adaptive() && finest == coarsest;
     finest_level_ = adaptive() ? 0 : finest;
     coarsest_level_ = adaptive() ? std::max(coarsest, options_.levels - 1) : coarsest;
+    lay_out(static_cast<int>(start.size()), capacity);
+    keeper_.begin(start, finest_level_, coarsest_level_);
+    state_.parameters.most_speed = static_cast<float>(speed_bound(start));
+    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
+                             start_acceleration(scene_, start));
+    put_in(state_, start);
+    if (adaptive()) state_.levels.begin(NewLevelsView(state_.particles));
+  }
+
+  /// Columns, walls and jets for n particles of the levels that there can be.
+  void lay_out(int n, int capacity) {
+    schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
+    state_.particles.allocate(schedule_.columns, n, capacity);
+    state_.one_level = !adaptive() && finest_level_ == coarsest_level_;
     state_.supports = level_supports(2 * resolution_.finest_spacing_m);
     state_.finest_support = state_.supports.h[0];
     state_.lightest_support = state_.supports.h[finest_level_];
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
-    keeper_.begin(start, finest_level_, coarsest_level_);
-    state_.parameters.most_speed = static_cast<float>(speed_bound(start));
-    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
-                             start_acceleration(scene_, start));
-    put_in(state_, start);
-    if (adaptive()) state_.levels.begin(NewLevelsView(p));
     state_.walls = walls_of(scene_, false);
     begin_jets(state_, scene_, options_, resolution_, frame_);
+  }
+
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive(frame_, relaxed_, substeps_, substeps_taken_, compression_, tolerance_, keeper_);
+    keep_fluid(archive, state_);
+  }
+
+  void resume(std::string_view body) {
+    StateReader in(body);
+    int n = 0;
+    int capacity = 0;
+    in(n, capacity, finest_level_, coarsest_level_);
+    if (n < 0 || capacity < n || finest_level_ < 0 || coarsest_level_ < finest_level_ ||
+        coarsest_level_ >= most_levels)
+      StateReader::fail("holds no particles");
+    lay_out(n, capacity);
+    keep(in);
+    in.finish();
   }
 
   /// Three times what falling gives. Water that strikes a wall shoots up at twice that (PeersDam: 8.7 m/s

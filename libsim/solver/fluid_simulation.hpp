@@ -33,8 +33,8 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
 /// base::Error for a level that does not exist.
 TargetSphere sphere_of(const TargetRegion& region);
-/// The tank's floor and sides with their outlets. While the water settles outlets are shut, and where there is
-/// a gate the walls are those of the water block. Open above.
+/// The tank's floor and sides with their outlets. While the water settles outlets are shut, and where there
+/// is a gate the walls are those of the water block. Open above.
 Walls walls_of(const Scene& scene, bool settling);
 
 /// Density and neighbour counts at the present positions, measured on a copy: the run goes on as if nobody

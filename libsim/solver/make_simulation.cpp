@@ -1,6 +1,7 @@
 #include "libsim/scene/extent.hpp"
 #include "libsim/simulation.hpp"
 #include "libsim/solver/settled_state.hpp"
+#include "stats/base/error.hpp"
 
 namespace sim {
 
@@ -26,7 +27,11 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
 }  // namespace
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
-  if (options.start || scene.settle_frames == 0) return make_on_backend(scene, options);
+  const bool resumes = !options.resume_from.empty();
+  if (resumes && options.start) {
+    throw base::Error("start", "is given, and a state to resume from too", "give one of them");
+  }
+  if (options.start || resumes || scene.settle_frames == 0) return make_on_backend(scene, options);
   const std::string key = options.cache.empty() ? "" : settled_key(scene, options);
   SimulationOptions rested = options;
   if (!key.empty()) rested.start = read_settled(options.cache, key);

@@ -50,6 +50,7 @@ class FakeSimulation final : public sim::Simulation {
   std::vector<int> read_ids() const override { return {}; }
   void read_field(sim::ParticleField, std::vector<float>& out) const override { out.clear(); }
   std::vector<sim::ParticleState> read_state() const override { return {}; }
+  void save_state(const std::filesystem::path&) override {}
   sim::PartTimes part_times() const override { return {}; }
   bool copy_to_gl(const sim::GlBufferRef&) override { return false; }
   void synchronize() override {}

@@ -1,0 +1,40 @@
+#pragma once
+/// What of a fluid outlives a frame, for a file of its state.
+
+#include "libsim/solver/stages/fluid_state.hpp"
+#include "libsim/solver/state_archive.hpp"
+
+namespace sim::SIM_BACKEND {
+
+template <class Archive>
+void keep_jets(Archive& archive, Jets& jets) {
+  const std::size_t nozzles = jets.before.size();
+  archive(jets.before, jets.level, jets.reservoir, jets.poured, jets.made, jets.taken, jets.waited);
+  if constexpr (Archive::reads) {
+    if (jets.before.size() != nozzles) Archive::fail("holds other nozzles");
+  }
+}
+
+template <class Archive>
+void keep_activation(Archive& archive, Activation& a) {
+  archive(a.columns_set, a.all_marked, a.grid, a.near, a.range, a.slots, a.slot_of);
+}
+
+/// The particles in their order, each method's memory, and the neighbours that the next frame begins with.
+/// `state` has its particles' number, columns and walls. What is rebuilt in each frame is left out.
+template <class Archive>
+void keep_fluid(Archive& archive, FluidState& state) {
+  archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,
+          state.parameters.most_speed, state.lists_hold, state.lists_by_slot);
+  keep_columns(archive, state.particles);
+  keep_jets(archive, state.jets);
+  archive(state.levels.forced, state.levels.frame, state.levels.counts);
+  archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser);
+  keep_activation(archive, state.activation);
+  // Only methods with levels look at neighbours before anything moves.
+  const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
+  state.neighbours.keep(archive, with_lists);
+  if constexpr (Archive::reads) state.lists_hold = with_lists;
+}
+
+}  // namespace sim::SIM_BACKEND
