@@ -27,7 +27,7 @@ using sim::cases::Setting;
 struct StabilityOptions {
   std::string cases = "all", methods = "all", backend = "auto";
   std::string csv, markdown, svg;
-  double most = 4, resolution = 1.2;
+  double most = 4, resolution = 1.5;
   bool quick = false, full = false;
 };
 

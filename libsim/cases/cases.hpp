@@ -18,6 +18,7 @@ HardCase jet();
 HardCase thin_sheet();
 HardCase corners();
 HardCase coincident();
+HardCase gaze();
 HardCase energy_of_a_dam();
 HardCase soak();
 

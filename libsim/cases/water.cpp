@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <unordered_map>
 
 namespace sim::cases {
@@ -127,6 +128,8 @@ std::vector<double> nearest_distances(const State& state) {
 
 const Pool& settled_pool(Backend backend) {
   static std::map<Backend, Pool> pools;
+  static std::mutex one;
+  const std::lock_guard lock(one);
   const auto found = pools.find(backend);
   if (found != pools.end()) return found->second;
   Pool out;

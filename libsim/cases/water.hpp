@@ -49,7 +49,7 @@ struct Pool {
   Scene scene;
   State state;
 };
-/// Settles once for each back end.
+/// Settles once for each back end; from any thread.
 const Pool& settled_pool(Backend backend);
 
 /// One eye at the view's place that looks at `point`. `valid`: the tracker's word.
