@@ -1,5 +1,6 @@
 #include "libsim/scene/central_force.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "stats/base/toml.hpp"
@@ -10,19 +11,21 @@ namespace {
 constexpr double farthest_m = 1e4;
 }
 
-std::optional<CentralForce> read_central_force(const base::TomlTable& scene) {
+std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
+                                               const std::array<double, 3>& origin_m) {
   if (!scene.has("central_force")) return {};
   const auto table = scene.table("central_force");
   CentralForce out;
   out.omega_per_s = table.number("omega_per_s", {1e-3, 1e3});
-  const auto centre = table.numbers("centre_m", 3, {-farthest_m, farthest_m});
+  const auto [least, most] = std::minmax_element(origin_m.begin(), origin_m.end());
+  const auto centre = table.numbers("centre_m", 3, {*least - farthest_m, *most + farthest_m});
   const auto axis = table.numbers("axis", 3, {-1e3, 1e3});
   const double length = std::hypot(axis[0], axis[1], axis[2]);
   if (!(length >= 1e-3)) {
     table.fail("axis", "has no direction", "use a vector of some length, such as [0.0, 0.0, 1.0]");
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    out.centre_m[k] = centre[k];
+    out.centre_m[k] = centre[k] - origin_m[k];
     out.axis[k] = axis[k] / length;
   }
   return out;

@@ -19,8 +19,9 @@ struct CentralForce {
 };
 
 /// The table [central_force] of a scene file; none when it is absent. Errors are base::Error: unknown key,
-/// out of range, an axis without direction.
-std::optional<CentralForce> read_central_force(const base::TomlTable& scene);
+/// out of range, an axis without direction. origin_m: Scene::origin_m, which the centre then counts from.
+std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
+                                               const std::array<double, 3>& origin_m);
 
 /// Metres from the axis.
 double distance_from_axis(const CentralForce& force, const std::array<double, 3>& point_m);

@@ -25,6 +25,8 @@ inline constexpr std::size_t most_outlets = 4;
 /// The tables [[outlet]] of a scene file: wall = "x_low", "x_high", "z_low", "z_high" or "y_low", and min_m
 /// and max_m, two numbers each, such as y and z of x_low. Errors are base::Error: unknown key, another wall,
 /// no area, a rectangle that reaches beyond the wall, more than most_outlets.
-std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m);
+/// origin_m: Scene::origin_m, which the rectangles then count from.
+std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
+                                 const std::array<double, 3>& origin_m);
 
 }  // namespace sim

@@ -13,16 +13,30 @@ namespace {
 constexpr int format_version = 1;
 // Far enough for any room, near enough for float coordinates to resolve 1 mm.
 constexpr double farthest_m = 1e4;
+// A double resolves 1e-10 m there.
+constexpr double farthest_origin_m = 1e6;
 
-Vec3d vector(const base::TomlTable& table, const char* key, base::Range range = {-farthest_m, farthest_m}) {
+Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   const auto v = table.numbers(key, 3, range);
   return {v[0], v[1], v[2]};
 }
 
-Camera camera(const base::TomlTable& table) {
+/// A place as the file has it, in the world, as one from the tank's low corner.
+Vec3d place(const base::TomlTable& table, const char* key, const Vec3d& origin_m) {
+  const auto [least, most] = std::minmax_element(origin_m.begin(), origin_m.end());
+  Vec3d out = vector(table, key, {*least - farthest_m, *most + farthest_m});
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] -= origin_m[k];
+    if (std::abs(out[k]) > farthest_m)
+      table.fail(key, "lies too far from the tank", "keep it within 10 km of tank.origin_m");
+  }
+  return out;
+}
+
+Camera camera(const base::TomlTable& table, const Vec3d& origin_m) {
   Camera out;
-  out.eye_m = vector(table, "eye_m");
-  out.target_m = vector(table, "target_m");
+  out.eye_m = place(table, "eye_m", origin_m);
+  out.target_m = place(table, "target_m", origin_m);
   out.vertical_fov_deg = table.number("vertical_fov_deg", {1, 170});
   out.near_m = table.number("near_m", {1e-3, 10});
   const double dx = out.target_m[0] - out.eye_m[0];
@@ -41,15 +55,15 @@ Camera overview_of(const Camera& view) {
 }
 
 void read_water(const base::TomlTable& table, Scene& scene) {
-  scene.fill_min_m = vector(table, "min_m");
-  scene.fill_max_m = vector(table, "max_m");
+  scene.fill_min_m = place(table, "min_m", scene.origin_m);
+  scene.fill_max_m = place(table, "max_m", scene.origin_m);
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(scene.fill_max_m[k] - scene.fill_min_m[k] >= 1e-3)) {
       table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
     }
     const bool above = k == 1;  // the tank is open above
-    if (scene.fill_min_m[k] < 0 || (!above && scene.fill_max_m[k] > scene.tank_size_m[k] + 1e-9)) {
-      table.fail("max_m", "reaches outside the tank", "keep the block within [0, tank.size_m]");
+    if (scene.fill_min_m[k] < -1e-9 || (!above && scene.fill_max_m[k] > scene.tank_size_m[k] + 1e-9)) {
+      table.fail("max_m", "reaches outside the tank", "keep the block within tank.size_m from tank.origin_m");
     }
   }
   scene.gate = table.boolean("gate");
@@ -62,7 +76,8 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
   for (const std::size_t k : {0u, 2u}) {
     const double at = nozzle.position_m[k];
     if (at < 0 || at > scene.tank_size_m[k])
-      table.fail("position_m", "lies outside the tank", "keep the nozzle within [0, tank.size_m]");
+      table.fail("position_m", "lies outside the tank",
+                 "keep the nozzle within tank.size_m from tank.origin_m");
     if (std::min(at, scene.tank_size_m[k] - at) < nozzle.diameter_m / 2)
       table.fail("position_m", "puts a part of the mouth inside a wall",
                  "keep the centre at least half a diameter away from the walls");
@@ -75,7 +90,7 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
   for (const auto& table : root.tables("nozzle")) {
     Nozzle nozzle;
     nozzle.diameter_m = table.number("diameter_m", {1e-3, farthest_m});
-    nozzle.position_m = vector(table, "position_m");
+    nozzle.position_m = place(table, "position_m", scene.origin_m);
     nozzle.speed_m_s = table.number("speed_m_s", {1e-2, 1000});
     nozzle.on_frames = static_cast<int>(table.integer("on_frames", {1, 1e6}));
     nozzle.off_frames = static_cast<int>(table.integer("off_frames", {0, 1e6}));
@@ -93,10 +108,10 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
                        "use at most half of the tank's width");
 }
 
-std::vector<VisibleBox> visible_boxes(const base::TomlTable& root) {
+std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& origin_m) {
   std::vector<VisibleBox> out;
   for (const auto& table : root.tables("visible")) {
-    VisibleBox box{table.string("name"), vector(table, "min_m"), vector(table, "max_m")};
+    VisibleBox box{table.string("name"), place(table, "min_m", origin_m), place(table, "max_m", origin_m)};
     if (box.name.empty() || box.name.size() > 64)
       table.fail("name", "is empty or too long", "use 1 to 64 characters");
     for (std::size_t k = 0; k < 3; ++k) {
@@ -121,10 +136,13 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   if (scene.name.empty() || scene.name.size() > 64)
     root.fail("name", "is empty or too long", "use 1 to 64 characters");
   scene.gravity_m_s2 = root.number("gravity_m_s2", {0, 1000});
-  scene.central_force = read_central_force(root);
   for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
     scene.checkpoints.push_back(static_cast<int>(frame));
-  scene.tank_size_m = vector(root.table("tank"), "size_m", {1e-2, farthest_m});
+  const auto tank = root.table("tank");
+  scene.tank_size_m = vector(tank, "size_m", {1e-2, farthest_m});
+  if (tank.has("origin_m"))
+    scene.origin_m = vector(tank, "origin_m", {-farthest_origin_m, farthest_origin_m});
+  scene.central_force = read_central_force(root, scene.origin_m);
   read_water(root.table("water"), scene);
 
   const auto time = root.table("time");
@@ -135,12 +153,14 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   if (time.has("courant")) scene.courant = time.number("courant", {0.05, 4});
 
   read_nozzles(root, scene);
-  scene.outlets = read_outlets(root, scene.tank_size_m);
-  scene.view = camera(root.table("view"));
-  scene.overview = root.has("overview") ? camera(root.table("overview")) : overview_of(scene.view);
-  scene.visible = visible_boxes(root);
+  scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
+  scene.view = camera(root.table("view"), scene.origin_m);
+  scene.overview =
+      root.has("overview") ? camera(root.table("overview"), scene.origin_m) : overview_of(scene.view);
+  scene.visible = visible_boxes(root, scene.origin_m);
   for (const auto& key : root.tables("gaze")) {
-    scene.gaze.push_back({static_cast<int>(key.integer("frame", {0, 1e6})), vector(key, "point_m")});
+    scene.gaze.push_back(
+        {static_cast<int>(key.integer("frame", {0, 1e6})), place(key, "point_m", scene.origin_m)});
     const auto n = scene.gaze.size();
     if (n > 1 && scene.gaze[n - 1].frame <= scene.gaze[n - 2].frame) {
       key.fail("frame", "does not come after the key before it", "order the gaze keys by frame");

@@ -40,7 +40,11 @@ struct VisibleBox {
 
 struct Scene {
   std::string name;
-  /// Inner size of the tank from (0,0,0); glass walls and floor, open above (y is the walls' drawn height
+  /// Where the file's world has the tank's low corner. All places in this struct, and all that a simulation
+  /// takes and gives, count from that corner, so that floats are as fine for a tank far out; place in the
+  /// world = origin_m + place.
+  Vec3d origin_m{};
+  /// Inner size of the tank; glass walls and floor, open above (y is the walls' drawn height
   /// only).
   Vec3d tank_size_m{};
   /// Box that is filled with water before frame 0.
