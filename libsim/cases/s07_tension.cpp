@@ -82,7 +82,7 @@ Outcome run(const Setting& setting) {
     stir(start, {middle, middle, middle}, [&](const Vec3d& x) {
       return Vec3d{strain * x[0], strain * x[1], -2 * strain * x[2]};
     });
-    follow(out, "sphere", setting, scene, start, 0.2 / strain, 0.3);
+    follow(out, "sphere", setting, scene, start, 0.2 / strain, setting.size == Size::Full ? 0.12 : 0.3);
   }
   return out;
 }
