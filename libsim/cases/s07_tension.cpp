@@ -62,7 +62,7 @@ Outcome run(const Setting& setting) {
     const double low = (room - side) / 2, middle = room / 2;
     State start = block(setting.method, {low, low, 0}, {low + side, low + side, thick});
     stir(start, {middle, middle, 0}, [&](const Vec3d& x) { return Vec3d{spin * x[1], -spin * x[0], 0}; });
-    follow(out, "square", setting, scene, start, 1 / spin, levels ? 0.1 : 0.5);
+    follow(out, "square", setting, scene, start, 1 / spin, levels || setting.size == Size::Full ? 0.07 : 0.5);
   }
   {
     // Its thickness falls to 0.67 of what it was.
@@ -82,7 +82,7 @@ Outcome run(const Setting& setting) {
     stir(start, {middle, middle, middle}, [&](const Vec3d& x) {
       return Vec3d{strain * x[0], strain * x[1], -2 * strain * x[2]};
     });
-    follow(out, "sphere", setting, scene, start, 0.2 / strain, 0.3);
+    follow(out, "sphere", setting, scene, start, 0.2 / strain, setting.size == Size::Full ? 0.12 : 0.3);
   }
   return out;
 }
