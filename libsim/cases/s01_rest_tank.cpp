@@ -32,7 +32,7 @@ Outcome run(const Setting& setting) {
   Finding densest = watch.density_finding();
   densest.asked = 1.08;
   const double fall = std::sqrt(gravity * height);
-  Finding stirred = at_most("v_rms over sqrt(g H)", rms / fall, calm ? 0.02 : 0.1);
+  Finding stirred = at_most("v_rms over sqrt(g H)", rms / fall, calm ? 0.02 : 0.15);
   stirred.asked = 0.02;
   Finding drift = at_most("drift of the centre in the second half",
                           std::abs(centre_height(watch.state()) / half - 1), calm ? 0.005 : 0.02);

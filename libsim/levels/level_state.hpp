@@ -25,7 +25,8 @@ struct LevelRules {
         merge_overlap(static_cast<float>(readings.merge_overlap)),
         merge_keeps_steps(readings.merge_keeps_steps),
         dead_band(static_cast<float>(readings.merge_dead_band)),
-        kick_filter(static_cast<float>(readings.kick_filter)) {}
+        kick_filter(static_cast<float>(readings.kick_filter)),
+        calm_viscosity(static_cast<float>(readings.calm_viscosity)) {}
 
   int coarsest;  ///< N - 1
   bool graded;
@@ -38,6 +39,7 @@ struct LevelRules {
   /// A particle wants to be coarser only when Eq. 9, without its floor, lies this far beyond its level.
   float dead_band;
   float kick_filter;
+  float calm_viscosity;
 
   // What no reading of the paper decides.
   /// Frames after which a particle without a partner looks farther, and after which finer laggards no longer

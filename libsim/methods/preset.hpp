@@ -52,6 +52,11 @@ struct Readings {
   double speed_floor = 1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
+  /// Speed below which water counts as at rest, as a share of sqrt(g d_*); 0 = none does.
+  double calm_speed = 0.65;
+  /// Eq. 6: in water at rest only what exceeds this counts. Splits and merges stir it, and what they stir
+  /// would make the next ones. Levels follow this; masks and figures do not.
+  double calm_floor = 0.3;
   double saliency_floor = 0.1;  ///< F that counts as s = 1 at least, however calm the rest
   /// How long a lost gaze stays where it was, before it follows the view's axis; a blink lasts 0.1 to 0.4 s.
   double gaze_hold_s = 0.5;
@@ -73,10 +78,13 @@ struct Readings {
   bool merge_keeps_steps = true;
   /// Who would become coarser must lie this far, in levels, beyond the border that Eq. 9 draws with s: what
   /// hovers about a border neither splits nor merges. [0, 1)
-  double merge_dead_band = 0.25;
+  double merge_dead_band = 0.5;
   /// Share of the differences between neighbours' velocity changes that is evened out in a substep round
-  /// fresh particles, whose overlap would otherwise set energy free. [0, 1]; 0 = no filter.
+  /// fresh particles of water at rest, whose overlap would otherwise set energy free. [0, 1]; 0 = no filter.
   double kick_filter = 0.9;
+  /// Viscosity that water at rest has besides its own, as a multiple of it: what splits and merges have left
+  /// uneven comes to rest. >= 0
+  double calm_viscosity = 20;
 
   // Algorithm 3: temporal acceleration
   /// Eq. 14: dV/dl over |V| + epsilon, without unit; false leaves m/s.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "libsim/particles/calm.hpp"
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -15,14 +17,22 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
           speed_epsilon,  p.dimensionless};
 }
 
-/// What is not known yet starts with the frame's value, so that a NaN does not stay.
+/// In water at rest only what exceeds `floor` counts; where it moves faster the floor fades out, so that no
+/// level hangs on one speed. What is not known yet starts with the frame's value, so
+/// that a NaN does not stay.
 struct FollowUnrest {
   const float* now;
   float* unrest;
-  float share;
+  const Vec4* velocity;
+  Calm fading;  ///< over a half up to the speed below which water rests
+  float share, floor;
   SIM_FN void operator()(int i) const {
     const float before = unrest[i];
-    unrest[i] = std::isfinite(before) ? before + share * (now[i] - before) : now[i];
+    const Vec4 v = velocity[i];
+    const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
+    // A NaN passes, so that it is seen.
+    const float wish = now[i] < rest ? 0 : now[i] - rest;
+    unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
   }
 };
 
@@ -38,7 +48,13 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
   if (fluid.unrest) {
     for_each("saliency unrest", fluid.n,
-             FollowUnrest{state.temporal.data(), fluid.unrest, static_cast<float>(p.temporal_follow)});
+             FollowUnrest{.now = state.temporal.data(),
+                          .unrest = fluid.unrest,
+                          .velocity = fluid.velocity,
+                          .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
+                                               static_cast<double>(fluid.finest_support) / 2),
+                          .share = static_cast<float>(p.temporal_follow),
+                          .floor = static_cast<float>(p.calm_floor)});
   }
   const float* unrest = fluid.unrest ? fluid.unrest : state.temporal.data();
   combine_features(feature_numbers(p), state.eyes, fluid.position, unrest, state.combined.data(), fluid.parts,

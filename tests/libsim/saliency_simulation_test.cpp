@@ -69,7 +69,7 @@ void parts_make_up_the_whole(Backend backend) {
   fluid->read_saliency(saliency);
   EXPECT_TRUE(saliency.empty()) << "before the first frame";
   fluid->look({{eye_at(ahead)}});
-  for (int frame = 0; frame < 4; ++frame) fluid->step_frame();
+  for (int frame = 0; frame < 20; ++frame) fluid->step_frame();
   fluid->read_saliency(saliency);
   ASSERT_EQ(saliency.size(), static_cast<std::size_t>(fluid->particle_count()));
   bool moving = false;

@@ -1,22 +1,40 @@
+#include "libsim/particles/calm.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// What is done to pairs besides the viscosity: nothing, or, round fresh particles, a filter of the kick that
-/// the substep gave them. After a split or a merge neighbours overlap; the projections part them, and how
-/// fast they part is no motion of the fluid. Kicks are evened out among neighbours, so that the momentum
-/// stays and what all of them feel, gravity and pressure, passes.
+/// What is done to pairs besides the viscosity: nothing, or what brings water at rest to rest again after
+/// splits and merges. Neighbours overlap then; the projections part them, and how fast they part is no motion
+/// of the fluid. Round fresh particles kicks are evened out among neighbours, so that the momentum stays and
+/// what all of them feel, gravity and pressure, passes. What is left uneven sinks back over a second or two
+/// and stirs; a stronger viscosity takes that. Water that moved before the kick has less of the filter and no
+/// such viscosity: it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
-struct KickFilter {
+struct RestingWater {
   static constexpr bool filters = true;
   const Vec4* kick;
   const float* ease;
   float strength;
-  SIM_FN float share(int i, int j) const { return strength * (1 - fminf(ease[i], ease[j])); }
+  Calm calm;
+  /// Share of the filter that moving water keeps: with all of it dams lose 4 % of their energy, with none a
+  /// deep pool of levels stirs itself beyond what rests.
+  static constexpr float in_motion = 0.4f;
+  float viscosity;  ///< of water at rest besides its own, as a multiple of it
+
+  /// How much of the pair is water at rest that was so before the substep's kicks. Without gravity nothing
+  /// rests, and kicks are filtered everywhere.
+  SIM_FN float rest(Vec4 v, int i) const {
+    const Vec4 k = kick[i];
+    return calm(v.x - k.x, v.y - k.y, v.z - k.z);
+  }
+  SIM_FN float share(int i, int j, float resting) const {
+    return (calm.inverse_square > 0 ? fmaxf(resting, in_motion) : 1) * strength *
+           (1 - fminf(ease[i], ease[j]));
+  }
 };
 
 /// More of the difference than this is not taken in one substep: the explicit step stays stable.
@@ -51,7 +69,11 @@ struct Xsph {
     const Vec4 own = velocity[i];
     const float own_density = density[i];
     [[maybe_unused]] Vec4 own_kick{};
-    if constexpr (Filter::filters) own_kick = filter.kick[i];
+    [[maybe_unused]] float own_rest = 0;
+    if constexpr (Filter::filters) {
+      own_kick = filter.kick[i];
+      own_rest = filter.rest(own, i);
+    }
     float vx = 0;
     float vy = 0;
     float vz = 0;
@@ -67,15 +89,18 @@ struct Xsph {
       const float dz = self.z - other.z;
       const float weight =
           pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      const Vec4 v = velocity[j];
+      float thicker = 1;
       if constexpr (Filter::filters) {
-        const float share = filter.share(i, j) * weight;
+        const float resting = fminf(own_rest, filter.rest(v, j));
+        thicker += filter.viscosity * resting;
+        const float share = filter.share(i, j, resting) * weight;
         const Vec4 kick = filter.kick[j];
         vx += share * (kick.x - own_kick.x);
         vy += share * (kick.y - own_kick.y);
         vz += share * (kick.z - own_kick.z);
       }
-      const float flow = fminf(spread * reciprocal(kernel.h2), most_share) * weight;
-      const Vec4 v = velocity[j];
+      const float flow = fminf(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
       vx += flow * (v.x - own.x);
       vy += flow * (v.y - own.y);
       vz += flow * (v.z - own.z);
@@ -123,9 +148,15 @@ using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column
                               columns(Column::VelocityNext, Column::Velocity)>;
 
 void run_levels(FluidState& state, LevelsView p) {
-  launch<false>(
-      state, p,
-      KickFilter{.kick = p.predicted_next(), .ease = p.ease(), .strength = state.levels.rules.kick_filter});
+  const auto& rules = state.levels.rules;
+  launch<false>(state, p,
+                RestingWater{.kick = p.predicted_next(),
+                             .ease = p.ease(),
+                             .strength = rules.kick_filter,
+                             .calm = calm_below(state.saliency.readings.calm_speed,
+                                                static_cast<double>(state.parameters.gravity),
+                                                static_cast<double>(state.finest_support) / 2),
+                             .viscosity = rules.calm_viscosity});
 }
 
 }  // namespace
@@ -141,11 +172,12 @@ Stage xsph_stage() {
 }
 
 Stage xsph_of_levels_stage() {
-  return stage_of<run_levels>({.name = "xsph of levels",
-                               .source = "Monaghan 1989, with a filter of kicks round fresh particles",
-                               .phase = Phase::SubstepEnd,
-                               .called_for = if_levels,
-                               .changes = Change::Viscosity});
+  return stage_of<run_levels>(
+      {.name = "xsph of levels",
+       .source = "Monaghan 1989, with a filter of kicks and more viscosity where water rests",
+       .phase = Phase::SubstepEnd,
+       .called_for = if_levels,
+       .changes = Change::Viscosity});
 }
 
 }  // namespace sim::SIM_BACKEND

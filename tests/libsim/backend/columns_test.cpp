@@ -56,7 +56,7 @@ SIM_TEST(Columns, ThatNobodyCallsForAreNull) {
 
 SIM_TEST(Columns, OfEachStageAreThoseOfItsView) {
   const Stage predict = predict_stage();
-  EXPECT_EQ(predict.reads.bits, columns(Column::Position, Column::Velocity).bits);
+  EXPECT_EQ(predict.reads.bits, columns(Column::Position, Column::Velocity, Column::Id).bits);
   EXPECT_EQ(predict.writes.bits, columns(Column::Predicted, Column::Position, Column::Velocity).bits);
   // What a pass may touch where others call for it costs no memory.
   const Schedule hires = compile_schedule({});

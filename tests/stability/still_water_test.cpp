@@ -1,0 +1,107 @@
+/// Levels over water at rest under a gaze at rest: what splits and merges set free must not stir it. What
+/// calms it must not brake water that moves.
+
+#include "tests/libsim/levels_helpers.hpp"
+
+namespace {
+
+using namespace levels_test;
+using sim::MethodKind;
+using sim::Vec3d;
+
+constexpr std::int64_t n_star = 512;  // 4,096 finest particles
+
+/// A tank of 4.8 m x 2.4 m, seen from in front of it.
+sim::Scene seen(double width, double height) {
+  auto out = fluid_test::tank({4.8, 5, 2.4}, {width, height, 2.4}, 60);
+  out.gate = width < 4.8;
+  out.view.eye_m = {2.4, 1.6, 5.2};
+  out.view.target_m = {2.4, 0.6, 1.2};
+  return out;
+}
+
+void look_at(sim::Simulation& fluid, const sim::Scene& scene, double x) {
+  const auto eye = scene.view.eye_m;
+  const Vec3d direction{x - eye[0], 0.6 - eye[1], 1.2 - eye[2]};
+  fluid.look({{{{eye, direction, true}, sim::make_view(scene.view, 320, 240), nullptr}}});
+}
+
+std::unique_ptr<sim::Simulation> start(Backend backend, const sim::Scene& scene, MethodKind method,
+                                       std::optional<std::vector<ParticleState>> from = {}) {
+  sim::SimulationOptions options;
+  options.method = method;
+  options.n_star = n_star;
+  options.backend = backend;
+  options.start = std::move(from);
+  return sim::make_simulation(scene, options);
+}
+
+struct Stir {
+  double rms = 0;     ///< of the speeds by mass, on average from 2.5 to 4 s, m/s
+  double jumps = 0;   ///< largest share of pairs whose levels differ by more than one
+  double splits = 0;  ///< a frame then
+};
+
+Stir stir(Backend backend, MethodKind method, const std::vector<ParticleState>& water, double x) {
+  const auto scene = seen(4.8, 1.2);
+  const auto fluid = start(backend, scene, method, water);
+  Stir out;
+  std::uint64_t before = 0;
+  for (int frame = 1; frame <= 240; ++frame) {
+    look_at(*fluid, scene, x);
+    fluid->step_frame();
+    if (frame == 150) before = fluid->report().levels.splits;
+    if (frame <= 150 || frame % 10) continue;
+    const auto state = fluid->read_state();
+    out.rms += std::sqrt(2 * kinetic_energy(state) / static_cast<double>(mass_units(state))) / 9;
+    out.jumps = std::max(out.jumps, fluid->report().jump_share);
+  }
+  out.splits = static_cast<double>(fluid->report().levels.splits - before) / 90;
+  std::printf("%s over still water, gaze at %.1f m: v_rms %.3f m/s, %.1f splits a frame, jumps %.4f\n",
+              sim::method_name(method).c_str(), x, out.rms, out.splits, out.jumps);
+  return out;
+}
+
+void still_water_stays_calm(Backend backend) {
+  const auto water = start(backend, seen(4.8, 1.2), MethodKind::HiRes)->read_state();
+  for (const auto method : {MethodKind::FovFluid, MethodKind::Ours}) {
+    double rms = 0;
+    for (const double x : {1.2, 1.7}) {
+      const Stir one = stir(backend, method, water, x);
+      EXPECT_LT(one.jumps, 0.02);
+      rms += one.rms / 2;
+    }
+    // The aim is 0.08. Before, FovFluid had 0.22 and Ours 0.27.
+    EXPECT_LT(rms, 0.11) << sim::method_name(method);
+  }
+}
+TEST(StillWater, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu); }
+TEST(StillWaterGpu, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cuda); }
+
+void a_dam_keeps_its_energy(Backend backend) {
+  double mean = 0;
+  for (const double depth : {2.2, 2.4, 2.6}) {
+    const auto scene = seen(1.6, depth);
+    const auto fine = start(backend, scene, MethodKind::HiRes);
+    const auto ours = start(backend, scene, MethodKind::Ours, fine->read_state());
+    double fine_sum = 0;
+    double ours_sum = 0;
+    for (int frame = 0; frame < 120; ++frame) {
+      fine->step_frame();
+      look_at(*ours, scene, 1.2);
+      ours->step_frame();
+      fine_sum += kinetic_energy(fine->read_state());
+      ours_sum += kinetic_energy(ours->read_state());
+    }
+    std::printf("dam of %.1f m: Ours has %.3f of HiRes' kinetic energy over two seconds\n", depth,
+                ours_sum / fine_sum);
+    mean += ours_sum / fine_sum / 3;
+  }
+  // The aim is 0.97; single dams scatter by 0.01 from processor to processor.
+  EXPECT_GT(mean, 0.96);
+  EXPECT_LT(mean, 1.03);
+}
+TEST(StillWater, ADamKeepsItsEnergyUnderLevels) { a_dam_keeps_its_energy(Backend::Cpu); }
+TEST(StillWaterGpu, ADamKeepsItsEnergyUnderLevels) { a_dam_keeps_its_energy(Backend::Cuda); }
+
+}  // namespace
