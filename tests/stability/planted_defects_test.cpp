@@ -7,7 +7,7 @@
 namespace {
 
 TEST(PlantedDefects, StandWhereTheyArePlantedAndInTheDocs) {
-  EXPECT_EQ(std::system("scripts/planted_defects.sh --check"), 0);
+  EXPECT_EQ(std::system("'" VIP_TEST_DIR "/../scripts/planted_defects.sh' --check"), 0);
 }
 
 }  // namespace
