@@ -27,7 +27,7 @@ Readings readings_of(Preset preset) {
   out.calm_out_of_view = false;
   out.dimensionless = false;
   out.normalisation = Normalisation::MinMax;
-  out.calm_floor = 0;
+  out.calm_speed = 0;
   out.saliency_floor = 0;
   out.graded_targets = false;
   std::fill_n(out.split_offset, 3, 0.794);

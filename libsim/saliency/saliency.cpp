@@ -18,8 +18,8 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
 }
 
 /// In water at rest only what exceeds `floor` counts; where it moves faster the floor fades out, so that no
-/// level hangs on one speed. What is not known yet starts with the frame's value, so
-/// that a NaN does not stay.
+/// level hangs on one speed. What is not known yet starts with the frame's value, so that a NaN does not
+/// stay.
 struct FollowUnrest {
   const float* now;
   float* unrest;

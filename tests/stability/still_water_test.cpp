@@ -1,13 +1,13 @@
 /// Levels over water at rest under a gaze at rest: what splits and merges set free must not stir it. What
 /// calms it must not brake water that moves.
 
+#include "libsim/cases/water.hpp"
 #include "tests/libsim/levels_helpers.hpp"
 
 namespace {
 
 using namespace levels_test;
 using sim::MethodKind;
-using sim::Vec3d;
 
 constexpr std::int64_t n_star = 512;  // 4,096 finest particles
 
@@ -21,9 +21,7 @@ sim::Scene seen(double width, double height) {
 }
 
 void look_at(sim::Simulation& fluid, const sim::Scene& scene, double x) {
-  const auto eye = scene.view.eye_m;
-  const Vec3d direction{x - eye[0], 0.6 - eye[1], 1.2 - eye[2]};
-  fluid.look({{{{eye, direction, true}, sim::make_view(scene.view, 320, 240), nullptr}}});
+  fluid.look(sim::cases::look_at(scene, {x, 0.6, 1.2}));
 }
 
 std::unique_ptr<sim::Simulation> start(Backend backend, const sim::Scene& scene, MethodKind method,
