@@ -40,6 +40,8 @@ class HeadsetRuns : public ::testing::Test {
     ::setenv("VIP_XR_LOG", log().c_str(), 1);
     ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
     ::setenv("XR_LOADER_DEBUG", "none", 1);
+    // Rates and settled water that another run kept would let this one skip its measuring.
+    ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1);
     for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   }
   /// The simulated headset of this profile.
