@@ -93,7 +93,7 @@ struct SimulationOptions {
 struct GuardCounts {
   std::uint64_t speed_limited = 0;       ///< particle-substeps whose speed was limited
   std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
-  std::uint64_t not_finite = 0;          ///< particles whose NaN or infinity was quarantined
+  std::uint64_t not_finite = 0;          ///< particles quarantined: NaN, infinite or far outside the tank
   std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back inside a wall
   std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles

@@ -17,11 +17,12 @@ void check_finite(sim::Simulation& fluid, const std::string& place) {
   const sim::FrameReport report = fluid.report();
   const bool finite = std::isfinite(report.density_error_mean) && std::isfinite(report.speed_max_m_s);
   if (report.guards.not_finite == 0 && finite) return;
-  throw base::Error(place,
-                    "the water broke: " + std::to_string(report.guards.not_finite) +
-                        " times a particle was not finite, so that nothing of it can be used" +
-                        first_of(fluid),
-                    "use another time step, more substeps, or numbers of the solver nearer to the defaults");
+  throw base::Error(
+      place,
+      "the water broke: " + std::to_string(report.guards.not_finite) +
+          " times a particle was not finite or far outside the tank, so that nothing of it can be used" +
+          first_of(fluid),
+      "use another time step, more substeps, or numbers of the solver nearer to the defaults");
 }
 
 }  // namespace apps

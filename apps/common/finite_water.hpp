@@ -7,7 +7,8 @@
 
 namespace apps {
 
-/// base::Error naming `place` when a particle was not finite since the run began, or a figure is not now.
+/// base::Error naming `place` when a particle was not finite or far outside the tank since the run began,
+/// or a figure is not finite now.
 void check_finite(sim::Simulation& fluid, const std::string& place);
 
 }  // namespace apps

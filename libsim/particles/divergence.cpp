@@ -8,6 +8,8 @@ const char* in_words(Trouble cause) {
   switch (cause) {
     case Trouble::NotFinite:
       return "is not finite";
+    case Trouble::FarOutside:
+      return "was far outside the tank";
     case Trouble::TooFast:
       return "is faster than water gets and was braked";
     case Trouble::NeighboursDropped:

@@ -11,6 +11,7 @@ namespace sim {
 /// In the order in which a substep can meet them.
 enum class Trouble : std::uint8_t {
   NotFinite,          ///< a place or a velocity is NaN or infinite
+  FarOutside,         ///< beyond a wall by ten times the tank's longest side
   TooFast,            ///< the guard on speed braked it
   NeighboursDropped,  ///< neighbours found no room in its list
   Coincident,         ///< another particle is at the same place

@@ -155,7 +155,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   state.lists_hold = false;
   if (const auto lost = state.guards.to_host()[0].not_finite; lost > 0) {
     throw base::Error("scene " + scene.name + ", settling",
-                      std::to_string(lost) + " times a particle was not finite",
+                      std::to_string(lost) + " times a particle was not finite or far outside the tank",
                       "use a longer or shorter time step, or other numbers of the solver");
   }
   // What else was met on the way to rest is not part of the run.

@@ -20,15 +20,6 @@ std::string scene_with(const std::string& axis, const std::string& omega = "omeg
          omega + "\ncentre_m = [1.5, 1.0, 0.5]\naxis = " + axis + "\n";
 }
 
-std::string error_of(const std::string& text) {
-  try {
-    sim::parse_scene(text, "scene.toml");
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(CentralForce, IsReadFromASceneFile) {
   EXPECT_FALSE(sim::read_scene("data/scenes/peers_dam.toml").central_force);
   const auto scene = sim::parse_scene(scene_with("[0.0, 3.0, 4.0]"), "scene.toml");
@@ -41,14 +32,15 @@ TEST(CentralForce, IsReadFromASceneFile) {
 }
 
 TEST(CentralForce, ErrorsNameThePlaceAndTheMend) {
-  EXPECT_THAT(error_of(scene_with("[0.0, 0.0, 0.0]")),
+  EXPECT_THAT(fluid_test::scene_error(scene_with("[0.0, 0.0, 0.0]")),
               testing::AllOf(testing::HasSubstr("axis"), testing::HasSubstr("has no direction")));
-  EXPECT_THAT(error_of(scene_with("[0.0, 1.0]")), testing::HasSubstr("axis"));
-  EXPECT_THAT(error_of(scene_with("[0.0, 0.0, 1.0]", "omega_per_s = 0.0")),
+  EXPECT_THAT(fluid_test::scene_error(scene_with("[0.0, 1.0]")), testing::HasSubstr("axis"));
+  EXPECT_THAT(fluid_test::scene_error(scene_with("[0.0, 0.0, 1.0]", "omega_per_s = 0.0")),
               testing::HasSubstr("out of range"));
-  EXPECT_THAT(error_of(scene_with("[0.0, 0.0, 1.0]", "omega = 1.0")),
+  EXPECT_THAT(fluid_test::scene_error(scene_with("[0.0, 0.0, 1.0]", "omega = 1.0")),
               testing::HasSubstr("'central_force.omega_per_s' is missing"));
-  EXPECT_THAT(error_of(scene_with("[0.0, 0.0, 1.0]\nspeed = 1.0")), testing::HasSubstr("is not a known key"));
+  EXPECT_THAT(fluid_test::scene_error(scene_with("[0.0, 0.0, 1.0]\nspeed = 1.0")),
+              testing::HasSubstr("is not a known key"));
 }
 
 sim::Scene space(double omega, const sim::Vec3d& axis) {
@@ -104,8 +96,8 @@ void a_turning_drop_keeps_its_spin(Backend backend) {
     const auto at = [](int k) { return d * (k - 5.5); };
     const double x = at(i % 12), y = at(i / 144), z = at(i / 12 % 12);
     if (x * x + z * z > 0.81) continue;
-    start.push_back({static_cast<int>(start.size()), 0, static_cast<float>(4 + x),
-                     static_cast<float>(4 + y), static_cast<float>(4 + z), static_cast<float>(spin * z), 0,
+    start.push_back({static_cast<int>(start.size()), 0, static_cast<float>(4 + x), static_cast<float>(4 + y),
+                     static_cast<float>(4 + z), static_cast<float>(spin * z), 0,
                      static_cast<float>(-spin * x)});
   }
   sim::SimulationOptions options;

@@ -12,8 +12,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "libsim/cases/water.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/simulation.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
 namespace fluid_test {
@@ -30,29 +32,18 @@ inline sim::Scene tank(sim::Vec3d size, sim::Vec3d water, int settle_frames = 0)
   return scene;
 }
 
-inline double centre_height(const std::vector<ParticleState>& state) {
-  double sum = 0;
-  for (const auto& p : state) sum += static_cast<double>(p.y_m);
-  return sum / static_cast<double>(state.size());
-}
+using sim::cases::centre_height;
+using sim::cases::outside;
+using sim::cases::rms_speed;
 
-inline double rms_speed(const std::vector<ParticleState>& state) {
-  double sum = 0;
-  for (const auto& p : state) {
-    sum += static_cast<double>(p.vx_m_s * p.vx_m_s + p.vy_m_s * p.vy_m_s + p.vz_m_s * p.vz_m_s);
+/// What reading this scene complains of; "no error" when it does not.
+inline std::string scene_error(const std::string& text) {
+  try {
+    sim::parse_scene(text, "scene.toml");
+  } catch (const base::Error& error) {
+    return error.what();
   }
-  return std::sqrt(sum / static_cast<double>(state.size()));
-}
-
-/// Particles outside [0, size] in x and z or below the floor by more than `tolerance_m`, or not finite.
-inline int outside(const std::vector<ParticleState>& state, const sim::Vec3d& size, double tolerance_m) {
-  int count = 0;
-  for (const auto& p : state) {
-    const bool inside = p.x_m >= -tolerance_m && p.x_m <= size[0] + tolerance_m && p.z_m >= -tolerance_m &&
-                        p.z_m <= size[2] + tolerance_m && p.y_m >= -tolerance_m && std::isfinite(p.y_m);
-    count += !inside;
-  }
-  return count;
+  return "no error";
 }
 
 /// Neighbours of each particle within `radius_m`, counted over a host-side map of cells.

@@ -48,12 +48,6 @@ inline std::array<double, 3> momentum(const std::vector<ParticleState>& state) {
   return sum;
 }
 
-inline double mass_centre_height(const std::vector<ParticleState>& state) {
-  double sum = 0;
-  for (const auto& p : state) sum += static_cast<double>(p.y_m) * (1 << p.level);
-  return sum / static_cast<double>(mass_units(state));
-}
-
 inline double share_at(const sim::FrameReport& report, std::size_t level) {
   if (report.particles_by_level.size() <= level) return 0;
   return static_cast<double>(report.particles_by_level[level] << level) /
@@ -92,19 +86,12 @@ struct Settled {
   }
 };
 
-/// Over m_*, m2/s2.
-inline double kinetic_energy(const std::vector<ParticleState>& state) {
-  double sum = 0;
-  for (const auto& p : state) {
-    const auto [x, y, z] = std::array{static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s),
-                                      static_cast<double>(p.vz_m_s)};
-    sum += (1 << p.level) * 0.5 * (x * x + y * y + z * z);
-  }
-  return sum;
-}
+using sim::cases::kinetic_energy;
+
 /// Potential and kinetic, over m_*, m2/s2.
 inline double energy(const std::vector<ParticleState>& state) {
-  return gravity * mass_centre_height(state) * static_cast<double>(mass_units(state)) + kinetic_energy(state);
+  return gravity * sim::cases::centre_height(state) * static_cast<double>(mass_units(state)) +
+         kinetic_energy(state);
 }
 
 }  // namespace levels_test

@@ -87,24 +87,15 @@ TEST(LayersDue, NothingComesWhileTheNozzleRests) {
   }
 }
 
-std::string error_of(const std::string& text) {
-  try {
-    sim::parse_scene(text, "scene.toml");
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(NozzleScene, ErrorsNameThePlaceAndTheMend) {
   const std::string good = base::read_file(base::resource("data/scenes/jet_impact.toml"), 1 << 20);
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     const auto at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
-    return error_of(text.replace(at, from.size(), to));
+    return fluid_test::scene_error(text.replace(at, from.size(), to));
   };
-  EXPECT_EQ(error_of(good), "no error");
+  EXPECT_EQ(fluid_test::scene_error(good), "no error");
   EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [1.0, 7.7, 7.2]"),
               testing::AllOf(testing::HasSubstr("inside a wall"), testing::HasSubstr("scene.toml:2")));
   EXPECT_THAT(with("position_m = [7.2, 7.7, 7.2]", "position_m = [7.2, 7.7, 13.0]"),

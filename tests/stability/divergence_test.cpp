@@ -106,6 +106,20 @@ void a_lost_place(Backend backend) {
 TEST(Divergence, TheLowestOfSeveralIsNamed) { a_lost_place(Backend::Cpu); }
 TEST(DivergenceGpu, TheLowestOfSeveralIsNamed) { a_lost_place(Backend::Cuda); }
 
+void a_place_far_outside(Backend backend) {
+  const auto fluid = pool(backend);
+  auto far = fluid->read_state()[100];
+  far.x_m = 1e4f;
+  fluid->put({far});
+  fluid->step_frame();
+  expect_first(*fluid, Trouble::FarOutside, 100, 11);
+  ASSERT_TRUE(fluid->divergence()->where_m);
+  EXPECT_NEAR((*fluid->divergence()->where_m)[1], pool_tank[1], d) << "the refuge at the tank's top";
+  EXPECT_EQ(fluid->divergence()->count, 1u);
+}
+TEST(Divergence, APlaceFarOutsideIsNamed) { a_place_far_outside(Backend::Cpu); }
+TEST(DivergenceGpu, APlaceFarOutsideIsNamed) { a_place_far_outside(Backend::Cuda); }
+
 void a_bullet(Backend backend) {
   const auto fluid = pool(backend), twin = pool(backend);
   constexpr int id = 292;

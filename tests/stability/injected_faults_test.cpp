@@ -127,6 +127,23 @@ void one_is_no_number(Backend backend) {
 TEST(InjectedFaults, NotANumberStaysWhereItIs) { one_is_no_number(Backend::Cpu); }
 TEST(InjectedFaultsGpu, NotANumberStaysWhereItIs) { one_is_no_number(Backend::Cuda); }
 
+void ten_kilometres_away(Backend backend) {
+  for (const auto method : methods) {
+    for (const float away_m : {1e4f, -1e4f}) {
+      expect_local(
+          "10 km away", backend, method,
+          [&](sim::Simulation& fluid) {
+            State one = at_the_low_end(fluid, 1);
+            one[0].x_m = away_m;
+            fluid.put(one);
+          },
+          [](const sim::GuardCounts& guards) { return guards.not_finite; });
+    }
+  }
+}
+TEST(InjectedFaults, AParticleTenKilometresAwayComesBack) { ten_kilometres_away(Backend::Cpu); }
+TEST(InjectedFaultsGpu, AParticleTenKilometresAwayComesBack) { ten_kilometres_away(Backend::Cuda); }
+
 void several_in_one_place(Backend backend) {
   for (const auto method : methods) {
     expect_local(

@@ -46,6 +46,7 @@ struct Unrest {
 std::vector<sim::Vec3d> middle_particles(const std::vector<ParticleState>& state, std::size_t count) {
   std::vector<sim::Vec3d> places;
   for (const auto& p : state) {
+    if (p.level < 3) continue;  // found no partner yet, and may have nothing to split
     places.push_back({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
   }
   const auto from_middle = [](const sim::Vec3d& at) {

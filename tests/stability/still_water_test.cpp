@@ -95,8 +95,8 @@ void a_dam_keeps_its_energy(Backend backend) {
                 ours_sum / fine_sum);
     mean += ours_sum / fine_sum / 3;
   }
-  // The aim is 0.97; single dams scatter by 0.01 from processor to processor.
-  EXPECT_GT(mean, 0.96);
+  // Over nine dams it was 0.988 on the CPU and 0.989 on a GPU; single dams scatter by 0.012.
+  EXPECT_GT(mean, 0.97);
   EXPECT_LT(mean, 1.03);
 }
 TEST(StillWater, ADamKeepsItsEnergyUnderLevels) { a_dam_keeps_its_energy(Backend::Cpu); }

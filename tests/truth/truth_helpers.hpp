@@ -33,7 +33,7 @@ struct Run {
   std::string name() const { return sim::method_name(method); }
 };
 
-inline double mass(const ParticleState& p) { return 1 << p.level; }
+using sim::cases::mass;
 inline double total_mass(const State& state) {
   return std::accumulate(state.begin(), state.end(), 0.0,
                          [](double sum, const auto& p) { return sum + mass(p); });

@@ -32,6 +32,7 @@ struct Predict {
   Vec3 refuge;
   Brake brake;
   float dt, wall_gap;
+  float reach;  ///< beyond a wall by more than this a place is lost, m
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
@@ -51,13 +52,14 @@ struct Predict {
     predicted[i] = with_w(x, h);
   }
 
-  /// A broken velocity is lost; a broken position goes to the refuge. The rest of the fluid never reads
-  /// either.
+  /// A broken velocity is lost; a broken position goes to the refuge, and so does one so far outside that the
+  /// guard on speed would not let the walls bring it back. The rest of the fluid never reads either.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
-    const bool place_lost = !all_finite(x);
+    const bool far_outside = all_finite(x) && walls.nearest(x) < -reach;
+    const bool place_lost = far_outside || !all_finite(x);
     if (!place_lost && all_finite(v)) return;
     atomic_add(&brake.witness.guards->not_finite, std::uint64_t{1});
-    brake.witness.note(Trouble::NotFinite, i);
+    brake.witness.note(far_outside ? Trouble::FarOutside : Trouble::NotFinite, i);
     brake.take(v, h);
     v = {0, 0, 0};
     if (place_lost) x = refuge;
@@ -70,6 +72,8 @@ using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::I
 template <class Selection, class Forces>
 void launch(FluidState& state, Columns p, Selection select, Forces forces) {
   const auto& k = state.parameters;
+  const Vec3 size = state.domain.high - state.domain.low;
+  const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
   for_each("predict", p.size(),
            Predict<Selection, Forces>{.select = select,
                                       .forces = forces,
@@ -80,7 +84,8 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces) {
                                       .refuge = state.refuge,
                                       .brake = state.brake(p.id(), 0),
                                       .dt = k.dt,
-                                      .wall_gap = k.wall_gap});
+                                      .wall_gap = k.wall_gap,
+                                      .reach = 10 * longest});
 }
 
 template <class Selection>

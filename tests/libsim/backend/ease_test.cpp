@@ -79,5 +79,18 @@ void equals_brute_force(bool resting) {
 SIM_TEST(Ease, FollowsTheYoungestWithinTheSupport) { equals_brute_force(false); }
 SIM_TEST(Ease, LeavesOutWhoIsNotSolved) { equals_brute_force(true); }
 
+/// Two per cent of compression is an overlap that parts slowly, ten are an impact.
+SIM_TEST(Ease, WhatIsPressedHasTheWholeConstraint) {
+  auto state = crowd(6, false);
+  auto& p = state.particles.all();
+  p.lambda.from_host(std::vector<float>(6, -2));
+  p.ease.from_host({0.1f, 0.1f, 0.1f, 0.1f, 0.7f, 1});
+  p.density.from_host({0.9f, 1.02f, 1.06f, 1.3f, 1.06f, 1.01f});
+  eased_constraint_stage().run(state);
+  const float wanted[] = {-0.2f, -0.2f, -1, -2, -1.4f, -2};
+  const auto lambda = p.lambda.to_host();
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(lambda[i], wanted[i], 1e-5f) << i;
+}
+
 }  // namespace
 }  // namespace sim::SIM_BACKEND
