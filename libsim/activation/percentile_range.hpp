@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libsim/exec/space.hpp"
+#include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -15,7 +15,7 @@ struct ValueRange {
   /// 0 at low, 1 at high, clamped; 1 everywhere when the range has no width.
   SIM_FN float normalised(float value) const {
     if (!(high > low)) return 1;
-    return fminf(fmaxf((value - low) / (high - low), 0.0f), 1.0f);
+    return at_most(at_least((value - low) / (high - low), 0.0f), 1.0f);
   }
 };
 

@@ -15,7 +15,7 @@ constexpr float fastest = 1000;
 
 SIM_FN std::uint64_t fixed(float value) {
   return static_cast<std::uint64_t>(
-      static_cast<std::int64_t>(fminf(fmaxf(value, -fastest), fastest) * 1048576.0f));
+      static_cast<std::int64_t>(at_most(at_least(value, -fastest), fastest) * 1048576.0f));
 }
 
 struct AddMomentum {
@@ -85,7 +85,7 @@ struct AddEnergy {
         place = here;
         sum = 0;
       }
-      const float specific = fminf(0.5f * dot(v, v), 0.5f * fastest * fastest);
+      const float specific = at_most(0.5f * dot(v, v), 0.5f * fastest * fastest);
       sum += (std::uint64_t{1} << level[i]) * static_cast<std::uint64_t>(specific * 65536.0f);
     }
     if (place >= 0) atomic_add(&sums[place], sum);

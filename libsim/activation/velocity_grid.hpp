@@ -35,7 +35,7 @@ struct GridFrame {
 
   SIM_FN int cells() const { return block.size(); }
   SIM_FN int clamped(float at, int n) const {
-    return static_cast<int>(fminf(fmaxf(floorf(at), 0.0f), static_cast<float>(n - 1)));
+    return static_cast<int>(at_most(at_least(floorf(at), 0.0f), static_cast<float>(n - 1)));
   }
   /// The cell that holds x, or the nearest one.
   SIM_FN int cell_of(Vec3 x) const {
@@ -50,7 +50,7 @@ struct GridFrame {
     int second[3];
     float part[3];
     for (int k = 0; k < 3; ++k) {
-      const float inside = fminf(fmaxf(place[k], 0.0f), static_cast<float>(size[k] - 1));
+      const float inside = at_most(at_least(place[k], 0.0f), static_cast<float>(size[k] - 1));
       first[k] = static_cast<int>(inside);
       second[k] = first[k] + 1 < size[k] ? first[k] + 1 : first[k];
       part[k] = inside - static_cast<float>(first[k]);

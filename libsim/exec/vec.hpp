@@ -17,6 +17,23 @@ struct alignas(16) Vec4 {
   float x, y, z, w;
 };
 
+/// max(a, b) and min(a, b) for a bound b that is a number: an a that is none gives way to it, as in fmaxf and
+/// fminf. Those are a call on the CPU, and a call in a loop over lanes leaves one lane.
+SIM_FN float at_least(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return fmaxf(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+SIM_FN float at_most(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return fminf(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+
 SIM_FN Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 SIM_FN Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 SIM_FN Vec3 operator*(float s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }

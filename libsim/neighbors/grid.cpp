@@ -8,7 +8,7 @@ SIM_FN int cell_coordinate(float x, float edge, int limit) {
   const float cell = floorf(x / edge);
   // One cell short of the field's ends, so that the neighbouring cells have keys too.
   const auto most = static_cast<float>(limit - 2);
-  return static_cast<int>(fminf(fmaxf(cell, -most), most));
+  return static_cast<int>(at_most(at_least(cell, -most), most));
 }
 
 struct MakeKeys {

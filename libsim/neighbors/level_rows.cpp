@@ -16,9 +16,10 @@ SIM_FN CellSpan reach(int cell, float edge, float other_edge, float radius, int 
   const float low = (static_cast<float>(cell) * edge - radius) / other_edge;
   const float high = (static_cast<float>(cell + 1) * edge + radius) / other_edge;
   // Coordinates are rounded to floats before their cell is found.
-  const float slack = 1e-3f + 1e-6f * fmaxf(fabsf(low), fabsf(high));
+  const float slack = 1e-3f + 1e-6f * at_least(fabsf(low), fabsf(high));
   const auto clamped = [most](float at) {
-    return static_cast<int>(fminf(fmaxf(floorf(at), -static_cast<float>(most)), static_cast<float>(most)));
+    return static_cast<int>(
+        at_most(at_least(floorf(at), -static_cast<float>(most)), static_cast<float>(most)));
   };
   // The outermost cells hold everything beyond them, in every grid.
   return {cell <= -most ? -most : clamped(low - slack), cell >= most ? most : clamped(high + slack)};

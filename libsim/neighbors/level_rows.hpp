@@ -43,8 +43,8 @@ struct LevelBox {
     if (row.y() == LevelRow::anywhere) return false;
     const float low_y = y + static_cast<float>(row.y()) * edge - x.y;
     const float low_z = z + static_cast<float>(row.z()) * edge - x.z;
-    const float dy = fmaxf(fmaxf(low_y, -(low_y + edge)), 0.0f);
-    const float dz = fmaxf(fmaxf(low_z, -(low_z + edge)), 0.0f);
+    const float dy = at_least(at_least(low_y, -(low_y + edge)), 0.0f);
+    const float dz = at_least(at_least(low_z, -(low_z + edge)), 0.0f);
     // Coordinates were rounded when their cell was found.
     const float slack = 1e-3f * edge + 2e-6f * (fabsf(x.y) + fabsf(x.z));
     const float limit = reach + slack;

@@ -65,16 +65,46 @@ struct ListNeighbours {
     int slot, i;
     Vec4 self;
     int& found;
+#ifdef SIM_CUDA
     SIM_FN void operator()(int begin, int end) const {
       for (int first = begin; first < end; first += Team::size) {
         const int j = first + team.rank();
         const bool near = task.near(self, task.predicted[j < end ? j : begin]) && j != i && j < end;
         int all;
         const int place = found + team.before(near, all);
-        task.append(slot, place, j, near);
+        if (near && place < task.list.capacity) task.entry[task.list.place(slot, place)] = j;
         found += all;
       }
     }
+#else
+    /// First who is near, several at once; then the list, one by one.
+    void operator()(int begin, int end) const {
+      constexpr int most = 32;
+      int near[most];
+      int* const entry = task.entry + task.list.place(slot, 0);
+      const int last = task.list.capacity - 1;
+      int place = found;
+      for (int first = begin; first < end; first += most) {
+        const int size = end - first < most ? end - first : most;
+        const Vec4* const other = task.predicted + first;
+        const float half = 0.5f * task.margin;
+#pragma omp simd
+        for (int k = 0; k < size; ++k) {
+          const float dx = self.x - other[k].x;
+          const float dy = self.y - other[k].y;
+          const float dz = self.z - other[k].z;
+          const float radius = half * (self.w + other[k].w);
+          near[k] = dx * dx + dy * dy + dz * dz < radius * radius;
+        }
+        for (int k = 0; k < size; ++k) {
+          // Stored in any case and kept by the count: a branch here is mispredicted every third time.
+          entry[place < last ? place : last] = first + k;
+          place += near[k] & (first + k != i);
+        }
+      }
+      found = place;
+    }
+#endif
   };
 
   template <class Team>
@@ -123,16 +153,6 @@ struct ListNeighbours {
     const Vec3 offset = xyz(self) - xyz(other);
     const float radius = margin * 0.5f * (self.w + other.w);
     return dot(offset, offset) < radius * radius;
-  }
-
-  SIM_FN void append(int slot, int place, int j, bool near) const {
-#ifdef SIM_CUDA
-    if (near && place < list.capacity) entry[list.place(slot, place)] = j;
-#else
-    // Stored in any case and kept by the count: a branch here is mispredicted every third time.
-    entry[list.place(slot, place < list.capacity ? place : list.capacity - 1)] = j;
-    (void)near;
-#endif
   }
 };
 

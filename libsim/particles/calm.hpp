@@ -13,7 +13,7 @@ struct Calm {
 
   SIM_FN float operator()(float vx, float vy, float vz) const {
     if (inverse_square == 0) return 0;
-    return fmaxf(1 - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
+    return at_least(1 - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
   }
 };
 

@@ -32,12 +32,12 @@ struct Kernel {
 
   /// W in 1/m3, r2 = r r.
   SIM_FN float density(float r2) const {
-    const float t = fmaxf(h2 - r2, 0.0f);
+    const float t = at_least(h2 - r2, 0.0f);
     return poly6 * t * t * t;
   }
   /// -dW/dr in 1/m4; grad_i W = -slope (x_i - x_j) / r.
   SIM_FN float slope(float r) const {
-    const float t = fmaxf(h - r, 0.0f);
+    const float t = at_least(h - r, 0.0f);
     return spiky * t * t;
   }
 };
@@ -77,7 +77,7 @@ SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   const std::uint32_t x = random_bits(a, b);
   const float y = static_cast<float>(x & 0xffff) / 32768.0f - 1;
   const float angle = static_cast<float>(x >> 16) * (2 * pi / 65536.0f);
-  const float across = sqrtf(fmaxf(1 - y * y, 0.0f));
+  const float across = sqrtf(at_least(1 - y * y, 0.0f));
   const float sign = swapped ? -1.0f : 1.0f;
   return {sign * across * cosf(angle), sign * y, sign * across * sinf(angle)};
 }

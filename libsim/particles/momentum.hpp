@@ -43,7 +43,7 @@ struct MassSum {
   SIM_FN static std::uint64_t fixed(float value) {
     constexpr auto most = static_cast<float>(1ull << (56 - Bits));  // of one particle; a sum of many has room
     return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(rintf(fminf(fmaxf(value, -most), most) / unit)));
+        static_cast<std::int64_t>(rintf(at_most(at_least(value, -most), most) / unit)));
   }
 };
 

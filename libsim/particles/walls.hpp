@@ -84,7 +84,7 @@ struct Walls {
       const float q = (dot(planes[k].normal, x) - planes[k].offset) / h;
       if (q >= 1) continue;
       if (absent(k, x)) continue;
-      const float inside = fmaxf(q, 0.0f);
+      const float inside = at_least(q, 0.0f);
       const float kept = 1 - behind(inside);
       // Product rule; the wall's share falls along its normal.
       gradient = kept * gradient - (present * slope(inside) / h) * planes[k].normal;
@@ -113,14 +113,14 @@ struct Walls {
   }
   SIM_FN float distance_in_h(int k, Vec3 x, float h) const {
     if (absent(k, x)) return 1;
-    return fminf(fmaxf((dot(planes[k].normal, x) - planes[k].offset) / h, 0.0f), 1.0f);
+    return at_most(at_least((dot(planes[k].normal, x) - planes[k].offset) / h, 0.0f), 1.0f);
   }
   SIM_FN float slope_at(int k, Vec3 x, float h) const { return slope(distance_in_h(k, x, h)); }
 
   /// Signed distance to the nearest wall's plane, m.
   SIM_FN float nearest(Vec3 x) const {
     float least = 3e38f;
-    for (int k = 0; k < count; ++k) least = fminf(least, dot(planes[k].normal, x) - planes[k].offset);
+    for (int k = 0; k < count; ++k) least = at_most(dot(planes[k].normal, x) - planes[k].offset, least);
     return least;
   }
 
@@ -140,7 +140,7 @@ struct Walls {
     bool held = false;
     for (int k = 0; k < count; ++k) {
       const float border = planes[k].offset + gap;
-      const float least = kept_distance * fmaxf(dot(planes[k].normal, x) - border, 0.0f);
+      const float least = kept_distance * at_least(dot(planes[k].normal, x) - border, 0.0f);
       const float beyond = least - (dot(planes[k].normal, to) - border);
       if (beyond <= 0 || lets(k, x, to)) continue;
       to += beyond * planes[k].normal;

@@ -68,7 +68,7 @@ struct Smooth {
     const Around around(grid, p);
     if (around.weights <= 0) return;
     const float q = (grid.source[i] + around.sum) / around.weights;
-    grid.q[i] = push_only ? fmaxf(q, 0.0f) : q;
+    grid.q[i] = push_only ? at_least(q, 0.0f) : q;
   }
 };
 
@@ -116,7 +116,7 @@ struct Prolong {
       sum += weight * (solid ? shut * coarse.q_at(parent.x, parent.y, parent.z) : coarse.q_at(c.x, c.y, c.z));
     }
     const float q = fine.q[i] + sum;
-    fine.q[i] = push_only ? fmaxf(q, 0.0f) : q;
+    fine.q[i] = push_only ? at_least(q, 0.0f) : q;
   }
 };
 

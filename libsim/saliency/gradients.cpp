@@ -12,7 +12,7 @@ SIM_FN Vec4 quantities(const GradientFields& f, int i) { return with_w(xyz(f.vel
 
 /// Rest volume m_j / rho_0 = d^3 with d = h / 2, and a guard: the emptiest place, a particle alone, has a
 /// fifth of the rest density.
-SIM_FN float volume(float h, float density) { return 0.125f * h * h * h / fmaxf(density, 0.1f); }
+SIM_FN float volume(float h, float density) { return 0.125f * h * h * h / at_least(density, 0.1f); }
 
 /// Gradients of velocity and density: (d/dx, d/dy, d/dz) of (vx, vy, vz, rho).
 struct Gradients {
@@ -147,7 +147,7 @@ struct AverageGradients {
 
 SIM_FN int wide_cell(float x, float edge, int limit) {
   const auto most = static_cast<float>(limit - 8);
-  return static_cast<int>(fminf(fmaxf(floorf(x / edge), -most), most));
+  return static_cast<int>(at_most(at_least(floorf(x / edge), -most), most));
 }
 
 struct WideKeys {

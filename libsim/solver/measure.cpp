@@ -42,7 +42,7 @@ struct MeasureOne {
       const float h = 0.5f * (self.w + other.w);
       within += dot(offset, offset) < h * h;
     }
-    excess[i] = fmaxf(density[i] - 1, 0.0f);
+    excess[i] = at_least(density[i] - 1, 0.0f);
     near[i] = static_cast<float>(within);
     speed[i] = length(xyz(velocity[i]));
   }

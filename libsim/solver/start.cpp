@@ -22,7 +22,7 @@ struct Excess {
   float* mass;
   SIM_FN void operator()(int i) const {
     mass[i] = static_cast<float>(1 << level[i]);
-    excess[i] = mass[i] * fmaxf(density[i] - 1, 0.0f);
+    excess[i] = mass[i] * at_least(density[i] - 1, 0.0f);
   }
 };
 

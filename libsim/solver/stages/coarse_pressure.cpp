@@ -30,7 +30,7 @@ struct Gather {
     if (!block.holds(x, y, z)) return;
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
-    float excess = fminf(fmaxf(density[i] - 1, -1.0f), most_excess);
+    float excess = at_most(at_least(density[i] - 1, -1.0f), most_excess);
     // Not much less: the cells are what keeps a whole tank that splits from getting too dense, and what they
     // leave for later comes back as speed.
     if (ease) excess *= 0.75f + 0.25f * ease[i];
@@ -153,11 +153,11 @@ float cell_edge(const FluidState& state) {
   const float finest = state.parameters.coarse_edge * state.lightest_support;
   if (state.mass_units == 0 || n == 0) return finest;
   const float mean = static_cast<float>(state.mass_units) / static_cast<float>(n);
-  const float half_levels = roundf(2 * log2f(fmaxf(mean, 1.0f)));
+  const float half_levels = roundf(2 * log2f(at_least(mean, 1.0f)));
   const float wish = state.parameters.coarse_edge * state.finest_support * exp2f(half_levels / 6);
   const Vec3 size = state.domain.high - state.domain.low;
-  const float across = fminf(size.x, fminf(size.y, size.z)) / 3;
-  return fmaxf(finest, fminf(wish, across));
+  const float across = at_most(size.x, at_most(size.y, size.z)) / 3;
+  return at_least(finest, at_most(wish, across));
 }
 
 template <class Selection>

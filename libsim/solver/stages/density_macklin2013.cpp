@@ -48,7 +48,7 @@ struct Density {
       const float r2 = dx * dx + dy * dy + dz * dz;
       const float least = coincident * kernel.h;
       zero += r2 < least * least;
-      const float r = sqrtf(fmaxf(r2, least * least));
+      const float r = sqrtf(at_least(r2, least * least));
       const float slope = kernel.slope(r);
       const float along = ratio * slope / r;
       rho += ratio * kernel.density(r2);
@@ -78,7 +78,7 @@ struct Density {
     const float spacing = 0.5f * self.w;
     const float softness = relaxation / (spacing * spacing);
     const float stiffness = dot(gradient, gradient) + volume * volume * squares + softness;
-    lambda[i] = fminf(-mass * (filled - 1) / stiffness, 0.0f);
+    lambda[i] = at_most(-mass * (filled - 1) / stiffness, 0.0f);
     density[i] = filled;
   }
 };

@@ -45,7 +45,7 @@ struct Apply {
   static constexpr float overlap = 0.02f;
   static constexpr float impact = 0.1f;
   SIM_FN void operator()(int i) const {
-    lambda[i] *= fmaxf(ease[i], fminf((density[i] - 1 - overlap) / (impact - overlap), 1.0f));
+    lambda[i] *= at_least(ease[i], at_most((density[i] - 1 - overlap) / (impact - overlap), 1.0f));
   }
 };
 

@@ -73,7 +73,7 @@ template <class Selection, class Forces>
 void launch(FluidState& state, Columns p, Selection select, Forces forces) {
   const auto& k = state.parameters;
   const Vec3 size = state.domain.high - state.domain.low;
-  const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
+  const float longest = at_least(size.x, at_least(size.y, size.z));
   for_each("predict", p.size(),
            Predict<Selection, Forces>{.select = select,
                                       .forces = forces,

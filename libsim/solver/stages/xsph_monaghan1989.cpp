@@ -32,8 +32,8 @@ struct RestingWater {
     return calm(v.x - k.x, v.y - k.y, v.z - k.z);
   }
   SIM_FN float share(int i, int j, float resting) const {
-    return (calm.inverse_square > 0 ? fmaxf(resting, in_motion) : 1) * strength *
-           (1 - fminf(ease[i], ease[j]));
+    return (calm.inverse_square > 0 ? at_least(resting, in_motion) : 1) * strength *
+           (1 - at_most(ease[i], ease[j]));
   }
 };
 
@@ -92,7 +92,7 @@ struct Xsph {
       const Vec4 v = velocity[j];
       float thicker = 1;
       if constexpr (Filter::filters) {
-        const float resting = fminf(own_rest, filter.rest(v, j));
+        const float resting = at_most(own_rest, filter.rest(v, j));
         thicker += filter.viscosity * resting;
         const float share = filter.share(i, j, resting) * weight;
         const Vec4 kick = filter.kick[j];
@@ -100,7 +100,7 @@ struct Xsph {
         vy += share * (kick.y - own_kick.y);
         vz += share * (kick.z - own_kick.z);
       }
-      const float flow = fminf(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
+      const float flow = at_most(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
       vx += flow * (v.x - own.x);
       vy += flow * (v.y - own.y);
       vz += flow * (v.z - own.z);
