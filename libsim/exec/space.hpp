@@ -4,6 +4,7 @@
 /// from one text. Kernels are trivially copyable functors `void operator()(int i) const`; all work is in
 /// order on one stream.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -137,15 +138,43 @@ struct OneLane {
   SIM_FN void wait() const {}
 };
 
+/// What a functor of for_each_team does with its lanes: one long loop, or many short ones with work between
+/// them that every lane does.
+enum class Loop { Long, Short };
+
 #ifdef SIM_CUDA
 
 void check(cudaError_t status, const char* what);
-/// Lanes that should share each of n indices. Measured on an H200 with the solver's passes over neighbours: a
-/// million particles fill it with one lane each, 300,000 run 1.04 to 1.3 times faster with four.
-int team_wish(int n);
+/// Do launches take their places before the one before them has ended?
+bool launches_overlap();
+/// Lanes that should share each of n indices.
+int team_wish(int n, Loop loop);
+
+/// Launches `kernel` behind what was launched before. Where the device can, its blocks take their places
+/// while the last ones before it end, and wait there: begin_kernel() is the first that each kernel does.
+template <class... Parameters, class... Arguments>
+void launch(const char* label, void (*kernel)(Parameters...), unsigned blocks, unsigned threads,
+            Arguments... arguments) {
+  cudaLaunchAttribute overlap{};
+  overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  overlap.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = dim3(blocks);
+  config.blockDim = dim3(threads);
+  config.attrs = &overlap;
+  config.numAttrs = launches_overlap() ? 1 : 0;
+  check(cudaLaunchKernelEx(&config, kernel, Parameters(arguments)...), label);
+}
+__device__ __forceinline__ void begin_kernel() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
 
 template <class F>
 __global__ void __launch_bounds__(256) run_kernel(int n, F f) {
+  begin_kernel();
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < n) f(i);
 }
@@ -156,8 +185,7 @@ void for_each(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  run_kernel<<<(n + 255) / 256, 256>>>(n, f);
-  check(cudaGetLastError(), label);
+  launch(label, run_kernel<F>, static_cast<unsigned>((n + 255) / 256), 256, n, f);
 }
 
 /// The threads of one block, which can wait for each other.
@@ -177,6 +205,7 @@ struct OneBlock {
 
 template <class F>
 __global__ void __launch_bounds__(OneBlock::size) run_block_kernel(F f) {
+  begin_kernel();
   f(OneBlock{});
 }
 
@@ -185,8 +214,7 @@ template <class F>
 void in_one_block(const char* label, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   const LaunchTimer timer(label);
-  run_block_kernel<<<1, OneBlock::size>>>(f);
-  check(cudaGetLastError(), label);
+  launch(label, run_block_kernel<F>, 1, OneBlock::size, f);
 }
 /// Passes over at most so many cells belong in one block.
 constexpr int one_block_cells = 8192;
@@ -229,8 +257,44 @@ SIM_FN float reciprocal(float x) {
 #endif
 }
 
+/// a / b to some units in the last place.
+SIM_FN float quotient(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return __fdividef(a, b);
+#else
+  return a / b;
+#endif
+}
+/// sqrt(x), the same.
+SIM_FN float rough_root(float x) {
+#ifdef __CUDA_ARCH__
+  float root;
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(x));
+  return root;
+#else
+  return sqrtf(x);
+#endif
+}
+
+/// A distance r > 0 from its square, and quotients by it: on the GPU both come from one reciprocal root.
+struct Root {
+#ifdef __CUDA_ARCH__
+  float r, inverse;
+  __device__ explicit Root(float square) {
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(square));
+    r = square * inverse;
+  }
+  __device__ float under(float value) const { return value * inverse; }
+#else
+  float r;
+  SIM_FN explicit Root(float square) : r(sqrtf(square)) {}
+  SIM_FN float under(float value) const { return value / r; }
+#endif
+};
+
 template <int Size, class F>
 __global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
+  begin_kernel();
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / Size);
   if (i >= n) return;
   if constexpr (Size == 1) {
@@ -241,27 +305,28 @@ __global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
 }
 
 template <int Size, class F>
-void launch_teams(int n, F f) {
+void launch_teams(const char* label, int n, F f) {
   const auto blocks = (static_cast<long long>(n) * Size + 255) / 256;
-  run_team_kernel<Size><<<static_cast<unsigned>(blocks), 256>>>(n, f);
+  launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), 256, n, f);
 }
 
-/// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a long loop inside: the fewer indices there
-/// are, the more lanes share each, so that the device stays full.
+/// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a loop inside: the fewer indices there are,
+/// the more lanes share each, so that the device stays full.
 template <class F>
-void for_each_team(const char* label, int n, F f) {
+void for_each_team(const char* label, int n, F f, Loop loop = Loop::Long) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  const int wish = team_wish(n);
-  if (wish >= 8) {
-    launch_teams<8>(n, f);
-  } else if (wish >= 4) {
-    launch_teams<4>(n, f);
-  } else {
-    launch_teams<1>(n, f);
+  switch (team_wish(n, loop)) {
+    case 8:
+      return launch_teams<8>(label, n, f);
+    case 4:
+      return launch_teams<4>(label, n, f);
+    case 2:
+      return launch_teams<2>(label, n, f);
+    default:
+      return launch_teams<1>(label, n, f);
   }
-  check(cudaGetLastError(), label);
 }
 
 template <class T>
@@ -287,6 +352,16 @@ SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
   return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
 #else
   const std::uint64_t was = *target;
+  *target += amount;
+  return was;
+#endif
+}
+
+SIM_FN int atomic_take(int* target, int amount) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(target, amount);
+#else
+  const int was = *target;
   *target += amount;
   return was;
 #endif
@@ -330,6 +405,15 @@ void for_each(const char* label, int n, F f) {
 }
 
 inline float reciprocal(float x) { return 1 / x; }
+inline float quotient(float a, float b) { return a / b; }
+inline float rough_root(float x) { return std::sqrt(x); }
+
+/// A distance r > 0 from its square, and quotients by it.
+struct Root {
+  float r;
+  explicit Root(float square) : r(std::sqrt(square)) {}
+  float under(float value) const { return value / r; }
+};
 
 struct OneBlock {
   /// f(i) for i = 0 ... n-1; all are done when it returns.
@@ -357,7 +441,7 @@ struct OnOneLane {
 /// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a long loop inside, which a device may share
 /// between lanes.
 template <class F>
-void for_each_team(const char* label, int n, F f) {
+void for_each_team(const char* label, int n, F f, Loop = Loop::Long) {
   for_each(label, n, OnOneLane<F>{f});
 }
 
@@ -368,8 +452,9 @@ void atomic_add(T* target, T value) {
 }
 
 /// *target += amount; gives what it was.
-inline std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
-  std::uint64_t was;
+template <class T>
+T atomic_take(T* target, T amount) {
+  T was;
 #pragma omp atomic capture
   {
     was = *target;

@@ -28,11 +28,6 @@ SIM_FN CellCoordinates cell_of_key(std::uint64_t key) {
           static_cast<int>(key >> 22 & mask22) - cell_limit_xz};
 }
 
-/// Particles i with begin <= i < end.
-struct IndexRange {
-  int begin, end;
-};
-
 /// The first of keys[0 .. count) that is not less than `key`.
 SIM_FN int lower_bound(const std::uint64_t* keys, int count, std::uint64_t key) {
   int first = 0;

@@ -1,82 +1,68 @@
 #include "libsim/neighbors/grid.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sim::SIM_BACKEND {
 
 namespace {
 
-SIM_FN int cell_coordinate(float x, float edge, int limit) {
-  const float cell = floorf(x / edge);
-  // One cell short of the field's ends, so that the neighbouring cells have keys too.
-  const auto most = static_cast<float>(limit - 2);
-  return static_cast<int>(at_most(at_least(cell, -most), most));
-}
-
-struct MakeKeys {
+/// Counts the particles of each cell, one place later than the cell, and notes who came as which.
+struct CountCells {
   const Vec4* predicted;
-  const std::uint8_t* level;
-  std::uint64_t* keys;
-  int* order;
-  float margin;
-  SIM_FN void operator()(int i) const {
-    const Vec4 p = predicted[i];
-    const float edge = margin * p.w;
-    keys[i] = cell_key({level[i], cell_coordinate(p.x, edge, cell_limit_xz),
-                        cell_coordinate(p.y, edge, cell_limit_y), cell_coordinate(p.z, edge, cell_limit_xz)});
-    order[i] = i;
-  }
-};
-
-struct MarkHeads {
-  const std::uint64_t* keys;
-  int* heads;
-  SIM_FN void operator()(int i) const { heads[i] = i == 0 || keys[i] != keys[i - 1]; }
-};
-
-/// cell_of holds the inclusive sum of the heads; turns it into indices and writes each cell's first particle.
-struct ListCells {
-  const std::uint64_t* keys;
-  const int* heads;
+  const std::uint8_t* level;  ///< nullptr: one level
+  CellTable cells;
+  int* counts;
   int* cell_of;
-  int* cell_begin;
-  std::uint64_t* cell_keys;
-  int* cell_count;
-  int n;
+  int* arrival;
   SIM_FN void operator()(int i) const {
-    const int cell = cell_of[i] - 1;
+    const int cell = cells.cell(level ? level[i] : 0, predicted[i]);
     cell_of[i] = cell;
-    if (heads[i]) {
-      cell_begin[cell] = i;
-      cell_keys[cell] = keys[i];
-    }
-    if (i == n - 1) {
-      cell_begin[cell + 1] = n;
-      *cell_count = cell + 1;
-    }
+    arrival[i] = atomic_take(counts + cell + 1, 1);
   }
+};
+
+struct Place {
+  const int* begin;
+  const int* cell_of;
+  const int* arrival;
+  int* placed;
+  SIM_FN void operator()(int i) const { placed[begin[cell_of[i]] + arrival[i]] = i; }
 };
 
 /// Orders the particles within each cell by id, so that the result does not depend on the order before.
 struct OrderWithinCells {
-  const int* cell_begin;
-  const int* cell_count;
+  const int* begin;
+  const int* cell_of;
+  const int* placed;
   const int* id;
   int* order;
 
-  SIM_FN void insertion_sort(int begin, int end) const {
-    for (int i = begin + 1; i < end; ++i) {
-      const int moving = order[i];
-      int at = i;
-      for (; at > begin && id[order[at - 1]] > id[moving]; --at) order[at] = order[at - 1];
-      order[at] = moving;
+  /// In crowded cells (all in one cell is a test case) counting would be quadratic.
+  static constexpr int crowd = 64;
+
+  SIM_FN bool before(int a, int b) const { return id[a] < id[b] || (id[a] == id[b] && a < b); }
+
+  SIM_FN void operator()(int slot) const {
+    const int i = placed[slot];
+    const int first = begin[cell_of[i]];
+    const int end = begin[cell_of[i] + 1];
+    if (end - first > crowd) {
+      if (slot == first) heap_sort(first, end);
+      return;
     }
+    int rank = 0;
+    for (int k = first; k < end; ++k) rank += before(placed[k], i);
+    order[first + rank] = i;
   }
-  /// Crowded cells (all in one cell is a test case) would make insertion quadratic.
-  SIM_FN void heap_sort(int begin, int end) const {
-    const int size = end - begin;
-    for (int start = size / 2 - 1; start >= 0; --start) sift(begin, start, size);
+
+  SIM_FN void heap_sort(int first, int end) const {
+    for (int k = first; k < end; ++k) order[k] = placed[k];
+    const int size = end - first;
+    for (int root = size / 2 - 1; root >= 0; --root) sift(first, root, size);
     for (int last = size - 1; last > 0; --last) {
-      exchange(begin, begin + last);
-      sift(begin, 0, last);
+      exchange(first, first + last);
+      sift(first, 0, last);
     }
   }
   SIM_FN void exchange(int a, int b) const {
@@ -84,98 +70,107 @@ struct OrderWithinCells {
     order[a] = order[b];
     order[b] = kept;
   }
-  SIM_FN void sift(int begin, int root, int size) const {
+  SIM_FN void sift(int first, int root, int size) const {
     for (int child = 2 * root + 1; child < size; child = 2 * root + 1) {
-      if (child + 1 < size && id[order[begin + child + 1]] > id[order[begin + child]]) ++child;
-      if (id[order[begin + root]] >= id[order[begin + child]]) return;
-      exchange(begin + root, begin + child);
+      if (child + 1 < size && before(order[first + child], order[first + child + 1])) ++child;
+      if (!before(order[first + root], order[first + child])) return;
+      exchange(first + root, first + child);
       root = child;
     }
   }
-  SIM_FN void operator()(int cell) const {
-    if (cell >= *cell_count) return;
-    const int begin = cell_begin[cell];
-    const int end = cell_begin[cell + 1];
-    if (end - begin <= 48) {
-      insertion_sort(begin, end);
-    } else {
-      heap_sort(begin, end);
-    }
-  }
 };
 
-struct FindRows {
-  const std::uint64_t* cell_keys;
-  const int* cell_begin;
-  const int* cell_count;
-  IndexRange* rows;
-  SIM_FN void operator()(int cell) const {
-    const int cells = *cell_count;
-    if (cell >= cells) return;
-    const CellCoordinates c = cell_of_key(cell_keys[cell]);
-    for (int row = 0; row < Grid::rows_per_cell; ++row) {
-      const int y = c.y + row / 3 - 1;
-      const int z = c.z + row % 3 - 1;
-      const std::uint64_t last = cell_key({c.level, c.x + 1, y, z});
-      int at = lower_bound(cell_keys, cells, cell_key({c.level, c.x - 1, y, z}));
-      const int begin = cell_begin[at];
-      while (at < cells && cell_keys[at] <= last) ++at;
-      rows[cell * Grid::rows_per_cell + row] = {begin, cell_begin[at]};
-    }
-  }
-};
+/// Cells of `edge` over the domain, with the outermost ones.
+LevelCells cells_of(Vec3 size, double edge, float support) {
+  const auto count = [edge](float length) {
+    const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / edge);
+    return static_cast<int>(std::min(inside, 1e6)) + 2;
+  };
+  const auto narrow = static_cast<float>(edge);
+  return {support, narrow, 1 / narrow, count(size.x), count(size.y), count(size.z), 0};
+}
+
+/// Water splashes above the rim; what is higher shares the uppermost cells.
+constexpr float headroom = 1.25f;
 
 }  // namespace
 
-void Grid::find_cells(int n) {
-  const auto size = static_cast<std::size_t>(n);
-  heads_.resize(size);
-  cell_keys_.resize(size);
-  cell_begin_.resize(size + 1);
-  cell_count_.resize(1);
-  for_each("mark cells", n, MarkHeads{keys_.data(), heads_.data()});
-  scanner_.inclusive_sum(heads_, cell_of_);
-  for_each("list cells", n,
-           ListCells{keys_.data(), heads_.data(), cell_of_.data(), cell_begin_.data(), cell_keys_.data(),
-                     cell_count_.data(), n});
+void Grid::shape(const Domain& domain, float margin, int capacity) {
+  Vec3 size = domain.high - domain.low;
+  size.y *= headroom;
+  shape_.low = domain.low;
+  const std::int64_t most = std::max(always, most_per_particle * capacity);
+  const double reach = static_cast<double>(margin) / static_cast<double>(cells_per_reach);
+  for (double wider = 1;; wider *= 1.1) {
+    double sum = 0;
+    int first = 0;
+    for (int l = 0; l < shape_.levels; ++l) {
+      LevelCells& grid = shape_.level[l];
+      grid = cells_of(size, wider * reach * static_cast<double>(grid.support), grid.support);
+      sum += static_cast<double>(grid.nx) * grid.ny * grid.nz;
+      if (sum > static_cast<double>(most)) break;
+      grid.first = first;
+      first += grid.size();
+    }
+    if (sum <= static_cast<double>(most)) return;
+  }
 }
 
-void Grid::sort(Particles& particles, float margin) {
+void Grid::sort(Particles& particles, bool by_level) {
   const Reads<Column::Predicted, Column::Level, Column::Id> p(particles);
   const int n = particles.size();
-  const auto size = static_cast<std::size_t>(n);
   // Once for all sizes to come.
   const auto room = static_cast<std::size_t>(particles.capacity());
-  for (auto* column : {&keys_, &cell_keys_}) column->reserve(room);
-  for (auto* column : {&order_, &heads_, &cell_of_}) column->reserve(room);
-  cell_begin_.reserve(room + 1);
-  keys_.resize(size);
-  order_.resize(size);
-  for_each("cell keys", n, MakeKeys{p.predicted(), p.level(), keys_.data(), order_.data(), margin});
-  sorter_.sort(keys_, order_);
-  find_cells(n);
+  for (auto* column : {&cell_of_, &arrival_, &placed_, &order_}) {
+    column->reserve(room);
+    column->resize(static_cast<std::size_t>(n));
+  }
+  counts_.resize(static_cast<std::size_t>(size()) + 1);
+  counts_.zero();
+  for_each("count cells", n,
+           CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, counts_.data(), cell_of_.data(),
+                      arrival_.data()});
+  scanner_.inclusive_sum(counts_, begin_);
+  for_each("place by cell", n, Place{begin_.data(), cell_of_.data(), arrival_.data(), placed_.data()});
   for_each("order within cells", n,
-           OrderWithinCells{cell_begin_.data(), cell_count_.data(), p.id(), order_.data()});
+           OrderWithinCells{begin_.data(), cell_of_.data(), placed_.data(), p.id(), order_.data()});
   particles.reorder(order_);
 }
 
-void Grid::build(Particles& particles, float margin) {
-  const int n = particles.size();
-  if (n == 0) return;
-  sort(particles, margin);
-  rows_.reserve(static_cast<std::size_t>(particles.capacity()) * rows_per_cell);
-  rows_.resize(static_cast<std::size_t>(n) * rows_per_cell);
-  for_each("find rows", n, FindRows{cell_keys_.data(), cell_begin_.data(), cell_count_.data(), rows_.data()});
+void Grid::build(Particles& particles, float margin, const Domain& domain, float support) {
+  if (particles.size() == 0) return;
+  shape_.levels = 1;
+  shape_.level[0].support = support;
+  shape(domain, margin, particles.capacity());
+  sort(particles, false);
 }
 
-void Grid::build(Particles& particles, float margin, const LevelSupports& supports) {
-  const int n = particles.size();
-  if (n == 0) return;
-  sort(particles, margin);
-  level_rows_.find({cell_keys_.data(), cell_begin_.data(), cell_count_.data()}, n, particles.capacity(),
-                   supports, margin);
+void Grid::build(Particles& particles, float margin, const Domain& domain, const LevelSupports& supports) {
+  if (particles.size() == 0) return;
+  shape_.levels = LevelSupports::most;
+  for (int l = 0; l < LevelSupports::most; ++l) shape_.level[l].support = supports.h[l];
+  shape(domain, margin, particles.capacity());
+  sort(particles, true);
 }
 
-int Grid::count_cells() const { return cell_count_.size() ? cell_count_.to_host()[0] : 0; }
+int Grid::size() const {
+  if (shape_.levels == 0) return 0;
+  const LevelCells& last = shape_.level[shape_.levels - 1];
+  return last.first + last.size();
+}
+
+int Grid::count_cells() const {
+  const auto begin = begin_.to_host();
+  int out = 0;
+  for (std::size_t c = 1; c < begin.size(); ++c) out += begin[c] > begin[c - 1];
+  return out;
+}
+
+std::size_t Grid::bytes() const {
+  std::size_t sum = 0;
+  for (const auto* column : {&begin_, &counts_, &cell_of_, &arrival_, &placed_, &order_})
+    sum += column->bytes();
+  return sum;
+}
 
 }  // namespace sim::SIM_BACKEND

@@ -1,42 +1,49 @@
 #pragma once
-/// A sorted, compact grid: particles ordered by (64-bit cell key, id), a list of the occupied cells, no array
-/// over the domain. Each mass level has its own cell size, its key's top bits, and so its own run of the
-/// list.
+/// Orders the particles by (mass level, cell, id) with a counting sort over a table of bounded size.
 
-#include "libsim/neighbors/level_rows.hpp"
+#include "libsim/neighbors/cell_table.hpp"
 
 namespace sim::SIM_BACKEND {
 
 class Grid {
  public:
-  /// Rows of three cells along x that make a cell's surroundings.
-  static constexpr int rows_per_cell = 9;
+  /// Sorts particles of one support by the cell of their predicted positions and permutes their columns. The
+  /// order does not depend on the order before, as long as no two share an id.
+  void build(Particles& particles, float margin, const Domain& domain, float support);
+  /// The same for mixed levels, whose supports are the given ones.
+  void build(Particles& particles, float margin, const Domain& domain, const LevelSupports& supports);
 
-  /// Sorts the particles by the cell of their predicted positions and permutes their columns. Cell edge =
-  /// margin x h. Positions beyond the key's range share its outermost cells; pairs are still decided by
-  /// distance, so none is lost or made up.
-  void build(Particles& particles, float margin);
-  /// The same for mixed levels, whose supports are the given ones; level_rows() instead of rows().
-  void build(Particles& particles, float margin, const LevelSupports& supports);
-
-  /// For particle i: the cell it lies in; for cell c: its rows.
-  const int* cell_of_particle() const { return cell_of_.data(); }
-  const IndexRange* rows() const { return rows_.data(); }
-  LevelRowsView level_rows() const { return level_rows_.view(); }
-  /// Occupied cells, read back from the device (a synchronisation; for tests and reports).
+  CellTable cells() const {
+    CellTable out = shape_;
+    out.begin = begin_.data();
+    return out;
+  }
+  /// Cells that hold particles, read back from the device (a synchronisation; for tests).
   int count_cells() const;
+  /// Cells in the table.
+  int size() const;
+  std::size_t bytes() const;
+
+  /// Cells along the reach of a pair, margin x h: the finer they are, the fewer particles beyond it are
+  /// looked at, and the more lines of cells. The GPU reads short lines side by side, the CPU long ones in
+  /// lanes.
+#ifdef SIM_CUDA
+  static constexpr float cells_per_reach = 2;
+#else
+  static constexpr float cells_per_reach = 1;
+#endif
+  /// The table has at most so many cells for each particle there is room for, and a least number; where the
+  /// domain asks for more, the cells are wider.
+  static constexpr std::int64_t most_per_particle = 4;
+  static constexpr std::int64_t always = 1 << 16;
 
  private:
-  void sort(Particles& particles, float margin);
-  void find_cells(int n);
+  void shape(const Domain& domain, float margin, int capacity);
+  void sort(Particles& particles, bool by_level);
 
-  Sorter sorter_;
   Scanner scanner_;
-  Array<std::uint64_t> keys_, cell_keys_;
-  Array<int> order_, heads_, cell_of_, cell_begin_;
-  Array<int> cell_count_;
-  Array<IndexRange> rows_;
-  LevelRows level_rows_;
+  CellTable shape_{};  ///< but for `begin`
+  Array<int> begin_, counts_, cell_of_, arrival_, placed_, order_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -8,46 +8,16 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// The runs of particles that can hold neighbours: nine rows of three cells,
-struct OneLevelRows {
-  const IndexRange* rows;
-  template <class Visit>
-  SIM_FN void operator()(int cell, Vec4, float, Visit visit) const {
-    for (int row = 0; row < Grid::rows_per_cell; ++row) {
-      const IndexRange range = rows[cell * Grid::rows_per_cell + row];
-      visit(range.begin, range.end);
-    }
-  }
-};
-
-/// or those of every level, without the lines of cells beyond the particle's own reach.
-struct MixedRows {
-  LevelRowsView rows;
-  template <class Visit>
-  SIM_FN void operator()(int cell, Vec4 self, float margin, Visit visit) const {
-    for (int level = 0; level < LevelSupports::most; ++level) {
-      const LevelBox box = rows.box(cell, level);
-      const float reach = 0.5f * (margin * self.w + box.edge);
-      for (int row = 0; row < box.rows; ++row) {
-        const LevelRow run = rows(cell, level, row);
-        if (box.misses(run, self, reach)) continue;
-        visit(run.begin, run.begin + run.size());
-      }
-    }
-  }
-};
-
 struct EmptyStore {
   NeighbourList::Need* need;
   SIM_FN void operator()(int) const { need->stored = 0; }
 };
 
-template <class Rows, class Selection>
+template <class Selection>
 struct ListNeighbours {
   Selection select;
   const Vec4* predicted;
-  const int* cell_of;
-  Rows rows;
+  CellTable cells;
   Neighbours list;
   int* entry;
   int* count;
@@ -115,7 +85,7 @@ struct ListNeighbours {
     }
     int found = 0;
     const Vec4 self = predicted[i];
-    rows(cell_of[i], self, margin, Take<Team>{*this, team, slot, i, self, found});
+    cells.around(self, margin, Take<Team>{*this, team, slot, i, self, found});
     team.wait();
     if (team.rank() > 0) return;
     count[slot] = found;
@@ -145,7 +115,7 @@ struct ListNeighbours {
       return;
     }
     Put put{*this, i, self, store + first};
-    rows(cell_of[i], self, margin, [&put](int begin, int end) { put(begin, end); });
+    cells.around(self, margin, [&put](int begin, int end) { put(begin, end); });
     entry[list.place(slot, 0)] = static_cast<int>(first);
   }
 
@@ -158,9 +128,10 @@ struct ListNeighbours {
 
 }  // namespace
 
-template <class Rows, class Selection>
-void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, Selection select,
-                         Witness witness) {
+template <class Selection>
+void NeighbourList::list(PredictedView particles, const Grid& grid, Selection select, Witness witness) {
+  const CellTable cells = grid.cells();
+  if (cells.levels > 1) capacity_ = std::max(capacity_, mixed_capacity);
   const auto n = static_cast<std::size_t>(particles.size());
   const auto room = static_cast<std::size_t>(particles.capacity());
   const auto entries = [&](std::size_t size) {
@@ -176,36 +147,23 @@ void NeighbourList::list(PredictedView particles, const Grid& grid, Rows rows, S
     need_.from_host({{0, 0}});
   }
   for_each("empty store", 1, EmptyStore{need_.data()});
-  for_each_team("list neighbours", particles.size(),
-                ListNeighbours<Rows, Selection>{select, particles.predicted(), grid.cell_of_particle(), rows,
-                                                view(), entry_.data(), count_.data(), store_.data(),
-                                                store_.size(), need_.data(), witness, margin});
+  for_each_team(
+      "list neighbours", particles.size(),
+      ListNeighbours<Selection>{select, particles.predicted(), cells, view(), entry_.data(), count_.data(),
+                                store_.data(), store_.size(), need_.data(), witness, margin});
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, Witness witness) {
-  list(particles, grid, OneLevelRows{grid.rows()}, AllParticles{}, witness);
+  list(particles, grid, AllParticles{}, witness);
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, ActiveParticles active,
                           Witness witness) {
-  list(particles, grid, OneLevelRows{grid.rows()}, active, witness);
+  list(particles, grid, active, witness);
 }
 
-void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, Witness witness) {
-  capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, AllParticles{}, witness);
-}
-
-void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active,
-                                Witness witness) {
-  capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, active, witness);
-}
-
-void NeighbourList::build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone,
-                                Witness witness) {
-  capacity_ = std::max(capacity_, mixed_capacity);
-  list(particles, grid, MixedRows{grid.level_rows()}, everyone, witness);
+void NeighbourList::build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness) {
+  list(particles, grid, everyone, witness);
 }
 
 void NeighbourList::assign(const std::vector<std::vector<int>>& lists) {

@@ -79,11 +79,8 @@ class NeighbourList {
   void build(PredictedView particles, const Grid& grid, Witness witness);
   /// For the active particles only, a list for each of their slots.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
-  /// The same for mixed levels.
-  void build_mixed(PredictedView particles, const Grid& grid, Witness witness);
-  void build_mixed(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
   /// The same with lists for the others' slots too.
-  void build_mixed(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
+  void build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
   /// Takes lists made elsewhere, each within most_capacity; a test's way in.
   void assign(const std::vector<std::vector<int>>& lists);
   /// Every slot's list, for tests.
@@ -134,8 +131,8 @@ class NeighbourList {
   /// Fills the lists from their entries, one list after the other.
   void put_back(const std::vector<int>& counts, const std::vector<int>& entries);
 
-  template <class Rows, class Selection>
-  void list(PredictedView particles, const Grid& grid, Rows rows, Selection select, Witness witness);
+  template <class Selection>
+  void list(PredictedView particles, const Grid& grid, Selection select, Witness witness);
 
   int capacity_ = 80;
   Array<int> count_, entry_, store_;

@@ -285,8 +285,8 @@ class FluidSimulation final : public Simulation {
   }
 
   void open(const std::vector<ParticleState>& start) {
-    // Particles and their nine rows a cell are indexed with int.
-    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::rows_per_cell) {
+    // Particles and their cells are indexed with int.
+    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
       throw base::Error("particles", "are too many", "use a smaller --n-star");
     }
     const int capacity = capacity_for(start.size());

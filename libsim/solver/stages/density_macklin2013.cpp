@@ -48,9 +48,9 @@ struct Density {
       const float r2 = dx * dx + dy * dy + dz * dz;
       const float least = coincident * kernel.h;
       zero += r2 < least * least;
-      const float r = sqrtf(at_least(r2, least * least));
-      const float slope = kernel.slope(r);
-      const float along = ratio * slope / r;
+      const Root root(at_least(r2, least * least));
+      const float slope = kernel.slope(root.r);
+      const float along = root.under(ratio * slope);
       rho += ratio * kernel.density(r2);
       gx -= along * dx;
       gy -= along * dy;

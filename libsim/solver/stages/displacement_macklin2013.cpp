@@ -45,10 +45,10 @@ struct Displace {
       const float r2 = dx * dx + dy * dy + dz * dz;
       const float least = coincident * kernel.h;
       zero += r2 < least * least;
-      const float r = sqrtf(at_least(r2, least * least));
+      const Root root(at_least(r2, least * least));
       float push = pair.mass_ratio(other.w) * own + lambda[j];
       if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
-      const float along = push * kernel.slope(r) / r;
+      const float along = root.under(push * kernel.slope(root.r));
       px -= along * dx;
       py -= along * dy;
       pz -= along * dz;

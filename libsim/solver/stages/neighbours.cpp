@@ -8,9 +8,9 @@ namespace {
 
 void sort(FluidState& state) {
   if (state.one_level) {
-    state.grid.build(state.particles, NeighbourList::margin);
+    state.grid.build(state.particles, NeighbourList::margin, state.domain, state.lightest_support);
   } else {
-    state.grid.build(state.particles, NeighbourList::margin, state.supports);
+    state.grid.build(state.particles, NeighbourList::margin, state.domain, state.supports);
   }
 }
 
@@ -24,13 +24,11 @@ void list_active(FluidState& state, SubstepView p) {
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
-  if (state.one_level) {
+  if (state.one_level || state.substep + 1 < state.parameters.substeps) {
     state.neighbours.build(p, state.grid, state.active(), witness);
-  } else if (state.substep + 1 < state.parameters.substeps) {
-    state.neighbours.build_mixed(p, state.grid, state.active(), witness);
   } else {
     // The next frame's levels compare everyone.
-    state.neighbours.build_mixed(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
+    state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
     state.lists_hold = true;
   }
 }
@@ -55,8 +53,7 @@ void find_neighbours(FluidState& state, NeighboursView p) {
   sort(state);
   state.lists_by_slot = false;
   state.lists_hold = true;
-  state.one_level ? state.neighbours.build(p, state.grid, witness)
-                  : state.neighbours.build_mixed(p, state.grid, witness);
+  state.neighbours.build(p, state.grid, witness);
 }
 
 Stage neighbours_stage() {

@@ -87,8 +87,8 @@ struct Xsph {
       const float dx = self.x - other.x;
       const float dy = self.y - other.y;
       const float dz = self.z - other.z;
-      const float weight =
-          pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz) / (own_density + density[j]);
+      const float weight = quotient(pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz),
+                                    own_density + density[j]);
       const Vec4 v = velocity[j];
       float thicker = 1;
       if constexpr (Filter::filters) {

@@ -1,3 +1,4 @@
+#include "libsim/neighbors/cell_key.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 
 #include <algorithm>
@@ -41,8 +42,16 @@ Particles particles_at(const std::vector<Vec4>& points) {
   return particles;
 }
 
+/// Tanks that hold all points, some, one or none of them.
+const std::vector<Domain> domains{{{-4, -4, -4}, {4, 4, 4}},
+                                  {{0, 0, 0}, {0.7f, 2, 1.1f}},
+                                  {{-1, -1, -1}, {-1, -1, -1}},
+                                  {{500, 500, 500}, {530, 530, 530}},
+                                  {{-3e9f, -3e9f, -3e9f}, {3e9f, 3e9f, 3e9f}}};
+
 /// Lists as one level, or as mixed levels of `finest`.
-Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed = false) {
+Listed list(const std::vector<Vec4>& points, const Domain& domain, bool reversed = false,
+            bool mixed = false) {
   std::vector<Vec4> at = points;
   if (reversed) std::reverse(at.begin(), at.end());
   Particles particles = particles_at(at);
@@ -62,12 +71,11 @@ Listed list(const std::vector<Vec4>& points, bool reversed = false, bool mixed =
   do {
     guards.zero();
     if (mixed) {
-      grid.build(particles, NeighbourList::margin, level_supports(static_cast<double>(finest)));
-      neighbours.build_mixed(PredictedView(particles), grid, {guards.data(), particles.all().id.data(), 0});
+      grid.build(particles, NeighbourList::margin, domain, level_supports(static_cast<double>(finest)));
     } else {
-      grid.build(particles, NeighbourList::margin);
-      neighbours.build(PredictedView(particles), grid, {guards.data(), particles.all().id.data(), 0});
+      grid.build(particles, NeighbourList::margin, domain, points.empty() ? 1 : points[0].w);
     }
+    neighbours.build(PredictedView(particles), grid, {guards.data(), particles.all().id.data(), 0});
   } while (neighbours.grow());
 
   Listed out;
@@ -99,13 +107,17 @@ std::vector<std::set<int>> brute_force(const std::vector<Vec4>& points) {
 }
 
 void expect_brute_force(const std::vector<Vec4>& points, bool mixed = false) {
-  const Listed listed = list(points, false, mixed);
-  EXPECT_EQ(listed.dropped, 0u);
-  std::size_t distinct = 0;
-  for (const auto& set : listed.sets) distinct += set.size();
-  EXPECT_EQ(listed.entries, distinct) << "an entry is listed twice";
-  EXPECT_EQ(listed.sets, brute_force(points));
-  EXPECT_EQ(list(points, true, mixed).id, listed.id) << "the order depends on the order before";
+  const auto expected = brute_force(points);
+  for (std::size_t d = 0; d < domains.size(); ++d) {
+    SCOPED_TRACE("domain " + std::to_string(d));
+    const Listed listed = list(points, domains[d], false, mixed);
+    EXPECT_EQ(listed.dropped, 0u);
+    std::size_t distinct = 0;
+    for (const auto& set : listed.sets) distinct += set.size();
+    EXPECT_EQ(listed.entries, distinct) << "an entry is listed twice";
+    EXPECT_EQ(listed.sets, expected);
+    EXPECT_EQ(list(points, domains[d], true, mixed).id, listed.id) << "the order depends on the order before";
+  }
 }
 
 std::vector<Vec4> random_points(int n, float size, float h, unsigned seed) {
@@ -156,7 +168,7 @@ SIM_TEST(S14MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
       points.push_back({far, far > 0 ? far : 0.1f * static_cast<float>(i), -far, finest});
   }
   expect_brute_force(mixed_points(points, {0, 1, 2, 3}), true);
-  // Only fine particles beyond the range of their own grid but within that of a coarse one.
+  // Fine and coarse beyond their grids.
   expect_brute_force(mixed_points({{1.0e6f, 0, 0, 0}, {1.0e6f, 0.2f, 0, 0}, {1.0e6f, 0.4f, 0, 0}}, {3, 0}),
                      true);
 }
@@ -185,7 +197,7 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceOnCellPlanes) {
 
 SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(random_points(300, 0.05f, 0.3f, 3));
-  // Cells at the far ends of the key's range, and beyond it.
+  // Beyond every tank.
   std::vector<Vec4> points;
   for (const float far : {-1e9f, -6e5f, 0.0f, 6e5f, 1e9f}) {
     for (int i = 0; i < 5; ++i) points.push_back({far, 0.1f * static_cast<float>(i), -far, 0.3f});
@@ -201,7 +213,7 @@ struct FirstBuild {
   Array<Guards> guards{1};
 
   explicit FirstBuild(const std::vector<Vec4>& points) : particles(particles_at(points)) {
-    grid.build(particles, NeighbourList::margin);
+    grid.build(particles, NeighbourList::margin, domains[0], points[0].w);
     guards.zero();
     neighbours.build(PredictedView(particles), grid, {guards.data(), particles.all().id.data(), 0});
   }
@@ -233,7 +245,7 @@ SIM_TEST(S14NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
   EXPECT_GT(first.guards.to_host()[0].neighbours_dropped, 0u);
   EXPECT_EQ(listed + first.guards.to_host()[0].neighbours_dropped, 1500u * 1499u);
   EXPECT_TRUE(first.neighbours.grow());
-  const Listed grown = list(points);
+  const Listed grown = list(points, domains[0]);
   EXPECT_EQ(grown.dropped, 0u);
   EXPECT_EQ(grown.cells, 1);
   EXPECT_EQ(grown.entries, 1500u * 1499u);
@@ -243,6 +255,31 @@ SIM_TEST(S14NeighbourList, TakesNoneAndOne) {
   expect_brute_force({});
   expect_brute_force({{1, 2, 3, 0.1f}});
   expect_brute_force({{0, 0, 0, 0.1f}, {0.101f, 0, 0, 0.1f}});
+}
+
+SIM_TEST(S14Grid, HasFewCellsInAnyTank) {
+  Particles particles = particles_at(random_points(100, 1, finest, 5));
+  for (const Domain& domain : domains) {
+    Grid grid;
+    grid.build(particles, NeighbourList::margin, domain, finest);
+    EXPECT_LE(grid.size(), Grid::always);
+    grid.build(particles, NeighbourList::margin, domain, level_supports(static_cast<double>(finest)));
+    EXPECT_LE(grid.size(), Grid::always);
+  }
+}
+
+/// Ids may not be shared, but no place is lost where they are.
+SIM_TEST(S14Grid, KeepsEveryoneWhereIdsAreShared) {
+  std::vector<Vec4> points = random_points(200, 0.1f, finest, 5);
+  Particles particles = particles_at(points);
+  particles.all().id.zero();
+  Grid grid;
+  grid.build(particles, NeighbourList::margin, domains[0], finest);
+  std::multiset<float> before;
+  std::multiset<float> after;
+  for (const Vec4& p : points) before.insert(p.x);
+  for (const Vec4& p : particles.all().predicted.to_host()) after.insert(p.x);
+  EXPECT_EQ(after, before);
 }
 
 SIM_TEST(S14CellKey, KeepsItsFields) {
