@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -128,6 +129,16 @@ struct OneLane {
   SIM_FN T sum(T value) const {
     return value;
   }
+  template <class T>
+  SIM_FN T min(T value) const {
+    return value;
+  }
+  SIM_FN bool any(bool mine) const { return mine; }
+  /// The lanes' value that comes before all others by T::before, which tells all but equal values apart.
+  template <class T>
+  SIM_FN T first(T value) const {
+    return value;
+  }
   /// Lanes before this one that say yes, and how many of all do.
   SIM_FN int before(bool mine, int& all) const {
     all = mine;
@@ -145,7 +156,7 @@ void check(cudaError_t status, const char* what);
 int team_wish(int n);
 
 template <class F>
-__global__ void __launch_bounds__(256) run_kernel(int n, F f) {
+__global__ void __launch_bounds__(256) run_kernel(int n, const __grid_constant__ F f) {
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < n) f(i);
 }
@@ -203,6 +214,25 @@ struct Lanes {
     for (int step = Size / 2; step > 0; step /= 2) value += __shfl_xor_sync(mask(), value, step, Size);
     return value;
   }
+  template <class T>
+  __device__ T min(T value) const {
+#pragma unroll
+    for (int step = Size / 2; step > 0; step /= 2) {
+      const T other = __shfl_xor_sync(mask(), value, step, Size);
+      value = other < value ? other : value;
+    }
+    return value;
+  }
+  __device__ bool any(bool mine) const { return __any_sync(mask(), mine); }
+  template <class T>
+  __device__ T first(T value) const {
+#pragma unroll
+    for (int step = Size / 2; step > 0; step /= 2) {
+      const T other = across(value, step);
+      if (other.before(value)) value = other;
+    }
+    return value;
+  }
   __device__ int before(bool mine, int& all) const {
     const unsigned votes = __ballot_sync(mask(), mine) >> first();
     all = __popc(votes & whole);
@@ -211,6 +241,18 @@ struct Lanes {
   __device__ void wait() const { __syncwarp(mask()); }
 
  private:
+  /// The value of the lane whose rank differs in the bit `step`, word by word.
+  template <class T>
+  __device__ T across(T value, int step) const {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(unsigned) == 0);
+    unsigned words[sizeof(T) / sizeof(unsigned)];
+    memcpy(words, &value, sizeof value);
+#pragma unroll
+    for (unsigned& word : words) word = __shfl_xor_sync(mask(), word, step, Size);
+    memcpy(&value, words, sizeof value);
+    return value;
+  }
+
   static constexpr unsigned whole = (1u << Size) - 1;
   __device__ unsigned first() const { return threadIdx.x & 31u & ~static_cast<unsigned>(Size - 1); }
   __device__ unsigned mask() const { return whole << first(); }
@@ -220,17 +262,18 @@ template <int Size>
 struct Lanes : OneLane {};
 #endif
 
-/// 1 / x to about one unit in the last place.
-SIM_FN float reciprocal(float x) {
+/// a / b to about one unit in the last place, for b up to 2^126.
+SIM_FN float quotient(float a, float b) {
 #ifdef __CUDA_ARCH__
-  return __fdividef(1.0f, x);
+  return __fdividef(a, b);
 #else
-  return 1 / x;
+  return a / b;
 #endif
 }
+SIM_FN float reciprocal(float x) { return quotient(1, x); }
 
 template <int Size, class F>
-__global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
+__global__ void __launch_bounds__(256) run_team_kernel(int n, const __grid_constant__ F f) {
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / Size);
   if (i >= n) return;
   if constexpr (Size == 1) {
@@ -329,6 +372,7 @@ void for_each(const char* label, int n, F f) {
   for (int i = 0; i < n; ++i) f(i);
 }
 
+inline float quotient(float a, float b) { return a / b; }
 inline float reciprocal(float x) { return 1 / x; }
 
 struct OneBlock {
