@@ -171,37 +171,6 @@ void for_each(const char* label, int n, F f) {
   check(cudaGetLastError(), label);
 }
 
-/// The threads of one block, which can wait for each other.
-struct OneBlock {
-  static constexpr int size = 1024;
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
-  template <class F>
-  SIM_FN void each(int n, F f) const {
-#ifdef __CUDA_ARCH__
-    for (int i = static_cast<int>(threadIdx.x); i < n; i += size) f(i);
-    __syncthreads();
-#else
-    for (int i = 0; i < n; ++i) f(i);
-#endif
-  }
-};
-
-template <class F>
-__global__ void __launch_bounds__(OneBlock::size) run_block_kernel(F f) {
-  f(OneBlock{});
-}
-
-/// f(block) once, for passes over so few cells that launching each would cost more than running it.
-template <class F>
-void in_one_block(const char* label, F f) {
-  static_assert(std::is_trivially_copyable_v<F>);
-  const LaunchTimer timer(label);
-  run_block_kernel<<<1, OneBlock::size>>>(f);
-  check(cudaGetLastError(), label);
-}
-/// Passes over at most so many cells belong in one block.
-constexpr int one_block_cells = 8192;
-
 /// Lanes of a warp; the size is a power of two above one. The host only names the type.
 #ifdef __CUDA_ARCH__
 template <int Size>
@@ -374,23 +343,6 @@ void for_each(const char* label, int n, F f) {
 
 inline float quotient(float a, float b) { return a / b; }
 inline float reciprocal(float x) { return 1 / x; }
-
-struct OneBlock {
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
-  template <class F>
-  void each(int n, F f) const {
-    for (int i = 0; i < n; ++i) f(i);
-  }
-};
-
-/// f(block) once, for passes over so few cells that launching each would cost more than running it.
-template <class F>
-void in_one_block(const char* label, F f) {
-  const LaunchTimer timer(label);
-  f(OneBlock{});
-}
-/// Passes over at most so many cells belong in one block.
-constexpr int one_block_cells = 512;
 
 template <class F>
 struct OnOneLane {

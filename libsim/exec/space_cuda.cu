@@ -4,7 +4,7 @@
 #include <deque>
 #include <map>
 
-#include "libsim/exec/space.hpp"
+#include "libsim/exec/one_block.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -14,6 +14,17 @@ void check(cudaError_t status, const char* what) {
   throw base::Error(std::string("CUDA, ") + what, cudaGetErrorString(status),
                     status == cudaErrorMemoryAllocation ? "use a smaller --n-star or a GPU with more memory"
                                                         : "check the driver, or use --backend cpu");
+}
+
+std::size_t most_block_memory() {
+  static const int bytes = [] {
+    int device = 0;
+    int most = 0;
+    check(cudaGetDevice(&device), "device");
+    check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "shared memory");
+    return most;
+  }();
+  return static_cast<std::size_t>(bytes);
 }
 
 int team_wish(int n) { return n < 150'000 ? 8 : n < 600'000 ? 4 : 1; }
