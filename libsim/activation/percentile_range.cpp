@@ -9,21 +9,12 @@ namespace {
 constexpr int octaves = 32;
 constexpr int bins_an_octave = 8;
 constexpr int bin_count = octaves * bins_an_octave;
-/// Histograms side by side, so that threads seldom meet in one bin.
-constexpr int copies = 16;
-constexpr int run_length = 16;
-int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
 struct Count {
   const float* values;
-  int* bins;
-  int n;
+  Histogram histogram;
 
-  SIM_FN void operator()(int run) const {
-    const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
-    int* mine = bins + (run / 32 % copies) * bin_count;
-    for (int i = run * run_length; i < end; ++i) atomic_add(&mine[bin_of(values[i])], 1);
-  }
+  SIM_FN void operator()(int i) const { histogram.add(i, bin_of(values[i]), 1); }
 
   SIM_FN static int bin_of(float value) {
     const float least = ldexpf(1, -octaves / 2);
@@ -33,41 +24,45 @@ struct Count {
   }
 };
 
-struct AddCopies {
-  int* bins;
-  SIM_FN void operator()(int b) const {
-    for (int c = 1; c < copies; ++c) bins[b] += bins[c * bin_count + b];
+/// Sets a percentile where the count passes it.
+struct Place {
+  BinCounts counts;
+  ValueRange* now;
+  int n;
+  SIM_FN void operator()(int at) const {
+    place(at, 0.01f, now->low);
+    place(at, 0.99f, now->high);
+  }
+  SIM_FN void place(int at, float q, float& percentile) const {
+    const float wanted = q * static_cast<float>(n);
+    counts.find(at, 0, static_cast<int>(ceilf(wanted)) - 1, [&](int bin, int before, int here) {
+      const float part = (wanted - static_cast<float>(before)) / static_cast<float>(here);
+      percentile = exp2f((static_cast<float>(bin) + part) / bins_an_octave - octaves / 2);
+    });
   }
 };
 
-/// One thread: walks to both percentiles and moves the ends.
-struct FindPercentiles {
-  const int* bins;
+struct Follow {
+  const ValueRange* now;
+  ValueRange* range;
+  float share;
+  SIM_FN void operator()(int) const {
+    const ValueRange last = *range;
+    *range = last.low > last.high ? *now
+                                  : ValueRange{last.low + share * (now->low - last.low),
+                                               last.high + share * (now->high - last.high)};
+  }
+};
+
+struct FollowPercentiles {
+  ValueRange* now;
   ValueRange* range;
   int n;
   float share;
-
-  SIM_FN void operator()(int) const {
-    ValueRange now{0, 0};
-    float below = 0;
-    for (int b = 0; b < bin_count; ++b) {
-      const auto here = static_cast<float>(bins[b]);
-      place(0.01f, b, below, here, now.low);
-      place(0.99f, b, below, here, now.high);
-      below += here;
-    }
-    const ValueRange last = *range;
-    *range = last.low > last.high ? now
-                                  : ValueRange{last.low + share * (now.low - last.low),
-                                               last.high + share * (now.high - last.high)};
-  }
-
-  /// Sets the percentile where the count passes it.
-  SIM_FN void place(float q, int b, float below, float here, float& percentile) const {
-    const float wanted = q * static_cast<float>(n);
-    if (below >= wanted || below + here < wanted) return;
-    const float part = (wanted - below) / here;
-    percentile = exp2f((static_cast<float>(b) + part) / bins_an_octave - octaves / 2);
+  template <class Block>
+  SIM_FN void operator()(Block block, const BinCounts& counts) const {
+    block.each(counts.runs(), Place{counts, now, n});
+    block.each(1, Follow{now, range, share});
   }
 };
 
@@ -77,6 +72,9 @@ SIM_FN int bits_of(float value) {
   memcpy(&bits, &value, sizeof bits);
   return bits;
 }
+
+constexpr int run_length = 16;
+int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
 struct Extremes {
   const float* values;
@@ -96,9 +94,13 @@ struct Extremes {
   }
 };
 
-struct SetLeast {
+struct BeginExtremes {
   int* least_negated;
-  SIM_FN void operator()(int) const { *least_negated = -2147483647; }
+  int* largest;
+  SIM_FN void operator()(int) const {
+    *least_negated = -2147483647;
+    *largest = 0;
+  }
 };
 
 struct TakeExtremes {
@@ -115,25 +117,26 @@ struct TakeExtremes {
 }  // namespace
 
 void PercentileRange::ready() {
-  bins_.resize(static_cast<std::size_t>(copies) * bin_count);
-  bins_.zero();
+  now_.resize(1);
   if (range_.size() == 0) range_.from_host({{1, 0}});
 }
 
 void PercentileRange::follow_percentiles(const Array<float>& values, int n, float share) {
   ready();
   if (n == 0) return;
-  for_each("histogram", runs_of(n), Count{values.data(), bins_.data(), n});
-  for_each("add histograms", bin_count, AddCopies{bins_.data()});
-  for_each("percentiles", 1, FindPercentiles{bins_.data(), range_.data(), n, share});
+  for_each("histogram", n, Count{values.data(), histogram_.view(bin_count)});
+  histogram_.take("percentiles", bin_count, FollowPercentiles{now_.data(), range_.data(), n, share});
 }
 
 void PercentileRange::take_extremes(const Array<float>& values, int n) {
   ready();
   if (n == 0) return;
-  for_each("extremes", 1, SetLeast{bins_.data()});
-  for_each("extremes", runs_of(n), Extremes{values.data(), bins_.data(), bins_.data() + 1, n});
-  for_each("extremes", 1, TakeExtremes{bins_.data(), bins_.data() + 1, range_.data()});
+  extremes_.resize(2);
+  int* least_negated = extremes_.data();
+  int* largest = extremes_.data() + 1;
+  for_each("extremes", 1, BeginExtremes{least_negated, largest});
+  for_each("extremes", runs_of(n), Extremes{values.data(), least_negated, largest, n});
+  for_each("extremes", 1, TakeExtremes{least_negated, largest, range_.data()});
 }
 
 }  // namespace sim::SIM_BACKEND

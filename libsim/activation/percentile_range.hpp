@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libsim/exec/histogram.hpp"
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -40,8 +41,9 @@ class PercentileRange {
  private:
   void ready();
 
-  Array<int> bins_;
-  Array<ValueRange> range_;
+  HistogramStore histogram_;
+  Array<int> extremes_;
+  Array<ValueRange> now_, range_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Particles that one thread adds up before it goes to memory: neighbours in memory share a cell.
+/// Particles that a team adds up before it goes to memory: neighbours in memory share a cell.
 constexpr int run_length = 16;
 int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
@@ -17,6 +17,52 @@ SIM_FN std::uint64_t fixed(float value) {
   return static_cast<std::uint64_t>(
       static_cast<std::int64_t>(at_most(at_least(value, -fastest), fastest) * 1048576.0f));
 }
+
+template <class Team>
+SIM_FN std::uint64_t total(Team team, std::uint64_t part) {
+  return team.sum(part);
+}
+template <class Team>
+SIM_FN MomentumSum total(Team team, const MomentumSum& part) {
+  return {team.sum(part.mass), team.sum(part.x), team.sum(part.y), team.sum(part.z)};
+}
+
+SIM_FN void add_at_once(std::uint64_t& to, std::uint64_t sum) { atomic_add(&to, sum); }
+SIM_FN void add_at_once(MomentumSum& to, const MomentumSum& sum) {
+  atomic_add(&to.mass, sum.mass);
+  atomic_add(&to.x, sum.x);
+  atomic_add(&to.y, sum.y);
+  atomic_add(&to.z, sum.z);
+}
+
+/// What a lane has summed up for one place; -1 while there is none.
+template <class Sum>
+struct PlaceSum {
+  Sum* sums;
+  int place = -1;
+  Sum sum{};
+
+  /// What follows is for `here`.
+  SIM_FN void move_to(int here) {
+    if (here == place) return;
+    if (place >= 0) add_at_once(sums[place], sum);
+    place = here;
+    sum = {};
+  }
+  /// Ends the run; the lanes' sums for one place go to memory together.
+  template <class Team>
+  SIM_FN void finish(Team team) {
+    constexpr int none = 2147483647;
+    while (true) {
+      const int next = team.min(place < 0 ? none : place);
+      if (next == none) return;
+      const bool mine = place == next;
+      const Sum all = total(team, mine ? sum : Sum{});
+      if (team.rank() == 0) add_at_once(sums[next], all);
+      if (mine) place = -1;
+    }
+  }
+};
 
 struct AddMomentum {
   const Vec4* position;
@@ -29,37 +75,24 @@ struct AddMomentum {
   int n;
   std::uint8_t which;
 
-  SIM_FN void operator()(int run) const {
+  template <class Team>
+  SIM_FN void operator()(int run, Team team) const {
     const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
-    int place = -1;
-    MomentumSum sum{};
-    for (int i = run * run_length; i < end; ++i) {
+    PlaceSum<MomentumSum> at{sums};
+    for (int i = run * run_length + team.rank(); i < end; i += Team::size) {
       if (active && active[i] != which) continue;
       const Vec3 v = xyz(velocity[i]);
       const Vec3 x = xyz(position[i]);
       if (!all_finite(v) || !all_finite(x)) continue;
       const int cell = cell_of ? cell_of[i] : grid.cell_of(x);
-      const int here = level[i] * grid.cells() + cell;
-      if (here != place) {
-        flush(place, sum);
-        place = here;
-        sum = {};
-      }
+      at.move_to(level[i] * grid.cells() + cell);
       const std::uint64_t mass = std::uint64_t{1} << level[i];
-      sum.mass += mass;
-      sum.x += mass * fixed(v.x);
-      sum.y += mass * fixed(v.y);
-      sum.z += mass * fixed(v.z);
+      at.sum.mass += mass;
+      at.sum.x += mass * fixed(v.x);
+      at.sum.y += mass * fixed(v.y);
+      at.sum.z += mass * fixed(v.z);
     }
-    flush(place, sum);
-  }
-
-  SIM_FN void flush(int place, const MomentumSum& sum) const {
-    if (place < 0) return;
-    atomic_add(&sums[place].mass, sum.mass);
-    atomic_add(&sums[place].x, sum.x);
-    atomic_add(&sums[place].y, sum.y);
-    atomic_add(&sums[place].z, sum.z);
+    at.finish(team);
   }
 };
 
@@ -71,24 +104,19 @@ struct AddEnergy {
   std::uint64_t* sums;
   int n;
 
-  SIM_FN void operator()(int run) const {
+  template <class Team>
+  SIM_FN void operator()(int run, Team team) const {
     const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
-    int place = -1;
-    std::uint64_t sum = 0;
-    for (int i = run * run_length; i < end; ++i) {
+    PlaceSum<std::uint64_t> at{sums};
+    for (int i = run * run_length + team.rank(); i < end; i += Team::size) {
       const Vec3 v = xyz(velocity[i]);
       const Vec3 x = xyz(position[i]);
       if (!all_finite(v) || !all_finite(x)) continue;
-      const int here = grid.cell_of(x);
-      if (here != place) {
-        if (place >= 0) atomic_add(&sums[place], sum);
-        place = here;
-        sum = 0;
-      }
+      at.move_to(grid.cell_of(x));
       const float specific = at_most(0.5f * dot(v, v), 0.5f * fastest * fastest);
-      sum += (std::uint64_t{1} << level[i]) * static_cast<std::uint64_t>(specific * 65536.0f);
+      at.sum += (std::uint64_t{1} << level[i]) * static_cast<std::uint64_t>(specific * 65536.0f);
     }
-    if (place >= 0) atomic_add(&sums[place], sum);
+    at.finish(team);
   }
 };
 
@@ -131,16 +159,16 @@ void add_momentum(MovingView particles, const std::uint8_t* active, const int* c
   sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
   sums.zero();
   const int n = particles.size();
-  for_each("add momentum", runs_of(n),
-           AddMomentum{.position = particles.position(),
-                       .velocity = particles.velocity(),
-                       .level = particles.level(),
-                       .active = active,
-                       .cell_of = cell_of,
-                       .grid = grid,
-                       .sums = sums.data(),
-                       .n = n,
-                       .which = which});
+  for_each_team("add momentum", runs_of(n),
+                AddMomentum{.position = particles.position(),
+                            .velocity = particles.velocity(),
+                            .level = particles.level(),
+                            .active = active,
+                            .cell_of = cell_of,
+                            .grid = grid,
+                            .sums = sums.data(),
+                            .n = n,
+                            .which = which});
 }
 
 void VelocityGrid::fit(const Domain& domain, float edge) {
@@ -175,9 +203,9 @@ void VelocityGrid::update_velocity(MovingView particles, const std::uint8_t* act
 void VelocityGrid::update_energy(MovingView particles) {
   energy_sums_.zero();
   const int n = particles.size();
-  for_each("add energy", runs_of(n),
-           AddEnergy{particles.position(), particles.velocity(), particles.level(), frame(),
-                     energy_sums_.data(), n});
+  for_each_team("add energy", runs_of(n),
+                AddEnergy{particles.position(), particles.velocity(), particles.level(), frame(),
+                          energy_sums_.data(), n});
   for_each("energy", cells(), FinishEnergy{energy_sums_.data(), energy_.data()});
 }
 

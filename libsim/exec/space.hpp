@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -129,6 +130,16 @@ struct OneLane {
   SIM_FN T sum(T value) const {
     return value;
   }
+  template <class T>
+  SIM_FN T min(T value) const {
+    return value;
+  }
+  SIM_FN bool any(bool mine) const { return mine; }
+  /// The lanes' value that comes before all others by T::before, which tells all but equal values apart.
+  template <class T>
+  SIM_FN T first(T value) const {
+    return value;
+  }
   /// Lanes before this one that say yes, and how many of all do.
   SIM_FN int before(bool mine, int& all) const {
     all = mine;
@@ -154,13 +165,14 @@ int team_wish(int n, Loop loop);
 /// while the last ones before it end, and wait there: begin_kernel() is the first that each kernel does.
 template <class... Parameters, class... Arguments>
 void launch(const char* label, void (*kernel)(Parameters...), unsigned blocks, unsigned threads,
-            Arguments... arguments) {
+            std::size_t shared_bytes, Arguments... arguments) {
   cudaLaunchAttribute overlap{};
   overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
   overlap.val.programmaticStreamSerializationAllowed = 1;
   cudaLaunchConfig_t config{};
   config.gridDim = dim3(blocks);
   config.blockDim = dim3(threads);
+  config.dynamicSmemBytes = shared_bytes;
   config.attrs = &overlap;
   config.numAttrs = launches_overlap() ? 1 : 0;
   check(cudaLaunchKernelEx(&config, kernel, Parameters(arguments)...), label);
@@ -173,7 +185,7 @@ __device__ __forceinline__ void begin_kernel() {
 }
 
 template <class F>
-__global__ void __launch_bounds__(256) run_kernel(int n, F f) {
+__global__ void __launch_bounds__(256) run_kernel(int n, const __grid_constant__ F f) {
   begin_kernel();
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < n) f(i);
@@ -185,39 +197,8 @@ void for_each(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  launch(label, run_kernel<F>, static_cast<unsigned>((n + 255) / 256), 256, n, f);
+  launch(label, run_kernel<F>, static_cast<unsigned>((n + 255) / 256), 256, 0, n, f);
 }
-
-/// The threads of one block, which can wait for each other.
-struct OneBlock {
-  static constexpr int size = 1024;
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
-  template <class F>
-  SIM_FN void each(int n, F f) const {
-#ifdef __CUDA_ARCH__
-    for (int i = static_cast<int>(threadIdx.x); i < n; i += size) f(i);
-    __syncthreads();
-#else
-    for (int i = 0; i < n; ++i) f(i);
-#endif
-  }
-};
-
-template <class F>
-__global__ void __launch_bounds__(OneBlock::size) run_block_kernel(F f) {
-  begin_kernel();
-  f(OneBlock{});
-}
-
-/// f(block) once, for passes over so few cells that launching each would cost more than running it.
-template <class F>
-void in_one_block(const char* label, F f) {
-  static_assert(std::is_trivially_copyable_v<F>);
-  const LaunchTimer timer(label);
-  launch(label, run_block_kernel<F>, 1, OneBlock::size, f);
-}
-/// Passes over at most so many cells belong in one block.
-constexpr int one_block_cells = 8192;
 
 /// Lanes of a warp; the size is a power of two above one. The host only names the type.
 #ifdef __CUDA_ARCH__
@@ -231,6 +212,25 @@ struct Lanes {
     for (int step = Size / 2; step > 0; step /= 2) value += __shfl_xor_sync(mask(), value, step, Size);
     return value;
   }
+  template <class T>
+  __device__ T min(T value) const {
+#pragma unroll
+    for (int step = Size / 2; step > 0; step /= 2) {
+      const T other = __shfl_xor_sync(mask(), value, step, Size);
+      value = other < value ? other : value;
+    }
+    return value;
+  }
+  __device__ bool any(bool mine) const { return __any_sync(mask(), mine); }
+  template <class T>
+  __device__ T first(T value) const {
+#pragma unroll
+    for (int step = Size / 2; step > 0; step /= 2) {
+      const T other = across(value, step);
+      if (other.before(value)) value = other;
+    }
+    return value;
+  }
   __device__ int before(bool mine, int& all) const {
     const unsigned votes = __ballot_sync(mask(), mine) >> first();
     all = __popc(votes & whole);
@@ -239,6 +239,18 @@ struct Lanes {
   __device__ void wait() const { __syncwarp(mask()); }
 
  private:
+  /// The value of the lane whose rank differs in the bit `step`, word by word.
+  template <class T>
+  __device__ T across(T value, int step) const {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(unsigned) == 0);
+    unsigned words[sizeof(T) / sizeof(unsigned)];
+    memcpy(words, &value, sizeof value);
+#pragma unroll
+    for (unsigned& word : words) word = __shfl_xor_sync(mask(), word, step, Size);
+    memcpy(&value, words, sizeof value);
+    return value;
+  }
+
   static constexpr unsigned whole = (1u << Size) - 1;
   __device__ unsigned first() const { return threadIdx.x & 31u & ~static_cast<unsigned>(Size - 1); }
   __device__ unsigned mask() const { return whole << first(); }
@@ -248,16 +260,7 @@ template <int Size>
 struct Lanes : OneLane {};
 #endif
 
-/// 1 / x to about one unit in the last place.
-SIM_FN float reciprocal(float x) {
-#ifdef __CUDA_ARCH__
-  return __fdividef(1.0f, x);
-#else
-  return 1 / x;
-#endif
-}
-
-/// a / b to some units in the last place.
+/// a / b to about one unit in the last place, for b up to 2^126.
 SIM_FN float quotient(float a, float b) {
 #ifdef __CUDA_ARCH__
   return __fdividef(a, b);
@@ -265,6 +268,8 @@ SIM_FN float quotient(float a, float b) {
   return a / b;
 #endif
 }
+SIM_FN float reciprocal(float x) { return quotient(1, x); }
+
 /// sqrt(x), the same.
 SIM_FN float rough_root(float x) {
 #ifdef __CUDA_ARCH__
@@ -293,7 +298,7 @@ struct Root {
 };
 
 template <int Size, class F>
-__global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
+__global__ void __launch_bounds__(256) run_team_kernel(int n, const __grid_constant__ F f) {
   begin_kernel();
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / Size);
   if (i >= n) return;
@@ -307,7 +312,7 @@ __global__ void __launch_bounds__(256) run_team_kernel(int n, F f) {
 template <int Size, class F>
 void launch_teams(const char* label, int n, F f) {
   const auto blocks = (static_cast<long long>(n) * Size + 255) / 256;
-  launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), 256, n, f);
+  launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), 256, 0, n, f);
 }
 
 /// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a loop inside: the fewer indices there are,
@@ -404,8 +409,8 @@ void for_each(const char* label, int n, F f) {
   for (int i = 0; i < n; ++i) f(i);
 }
 
-inline float reciprocal(float x) { return 1 / x; }
 inline float quotient(float a, float b) { return a / b; }
+inline float reciprocal(float x) { return 1 / x; }
 inline float rough_root(float x) { return std::sqrt(x); }
 
 /// A distance r > 0 from its square, and quotients by it.
@@ -414,23 +419,6 @@ struct Root {
   explicit Root(float square) : r(std::sqrt(square)) {}
   float under(float value) const { return value / r; }
 };
-
-struct OneBlock {
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
-  template <class F>
-  void each(int n, F f) const {
-    for (int i = 0; i < n; ++i) f(i);
-  }
-};
-
-/// f(block) once, for passes over so few cells that launching each would cost more than running it.
-template <class F>
-void in_one_block(const char* label, F f) {
-  const LaunchTimer timer(label);
-  f(OneBlock{});
-}
-/// Passes over at most so many cells belong in one block.
-constexpr int one_block_cells = 512;
 
 template <class F>
 struct OnOneLane {

@@ -4,7 +4,7 @@
 #include <deque>
 #include <map>
 
-#include "libsim/exec/space.hpp"
+#include "libsim/exec/one_block.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -33,6 +33,17 @@ int team_wish(int n, Loop loop) {
   static const int s8 = env("VIP_S8", 20000), s4 = env("VIP_S4", 60000), s2 = env("VIP_S2", 140000);
   if (loop == Loop::Long) return n < e8 ? 8 : n < e4 ? 4 : n < e2 ? 2 : 1;
   return n < s8 ? 8 : n < s4 ? 4 : n < s2 ? 2 : 1;
+}
+
+std::size_t most_block_memory() {
+  static const int bytes = [] {
+    int device = 0;
+    int most = 0;
+    check(cudaGetDevice(&device), "device");
+    check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "shared memory");
+    return most;
+  }();
+  return static_cast<std::size_t>(bytes);
 }
 
 std::string device_problem() {

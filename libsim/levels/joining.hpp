@@ -14,14 +14,18 @@ SIM_FN bool clear_of(Vec4 other, Vec3 centre, float h, float share) {
 
 /// Would a merged particle of support h at `centre` overlap a coarser one among the neighbours of particle i?
 /// (Fig. 5 d2) `level`: of its members.
+template <class Team>
 SIM_FN bool overlaps_coarser(const Vec4* position, const std::uint8_t* levels,
                              const ParticleNeighbours& neighbours, int i, int level, Vec3 centre, float h,
-                             float share) {
-  for (int k = 0; k < neighbours.size(i); ++k) {
-    const int other = neighbours(i, k);
-    if (levels[other] > level && !clear_of(position[other], centre, h, share)) return true;
+                             float share, Team team) {
+  const int size = neighbours.size(i);
+  const NeighbourRun run = neighbours.run(i);
+  bool overlaps = false;
+  for (int k = team.rank(); k < size && !overlaps; k += Team::size) {
+    const int other = run[k];
+    overlaps = levels[other] > level && !clear_of(position[other], centre, h, share);
   }
-  return false;
+  return team.any(overlaps);
 }
 
 /// Makes particles of two: mass, momentum and centre of mass stay, kinetic energy can only fall.

@@ -100,16 +100,18 @@ struct LevelState {
   Array<std::uint8_t> wish;                 ///< 1 = wants to merge
   Array<std::uint8_t> gone;                 ///< 1 = merged into another
   Array<std::uint8_t> graded;               ///< targets of the next sweep
-  Array<int> partner;                       ///< of a merge, as proposed; then the relay whose bid is accepted
+  Array<int> partner;                       ///< of a merge, as proposed
   Array<int> births;                        ///< particles that one becomes
   Array<int> places;          ///< of these after the frame, as inclusive sums; before that partners that hold
   Array<int> order, child;    ///< a new particle's source, and which of its children it is
   Array<int> flags, sums;     ///< who splits, and how many up to there
   Array<std::uint64_t> keys;  ///< of splits by priority
   Array<int> free_ids;        ///< ascending
-  // The two whom a relay bids for stand where counts of births come later in the frame.
+  // The two whom a relay bids for stand where counts of births come later in the frame, and what the best bid
+  // is worth where the frame's splits were.
   Array<int>& first_bid() { return births; }
   Array<int>& second_bid() { return places; }
+  Array<std::uint64_t>& taken_bids() { return keys; }
 };
 
 /// Two bits a frame, the newest lowest: a particle that has wanted `level` for four frames.

@@ -38,23 +38,30 @@ struct KeepSteps {
   LevelCounts* counts;
   int lags;
   LevelSupports supports;
-  SIM_FN void operator()(int i) const {
-    out[i] = wish[i];
-    if (!wish[i] || level[i] == 0) return;
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    const bool held = wish[i] && level[i] > 0 && team.any(finer_beside(i, team));
+    if (team.rank() > 0) return;
+    out[i] = held ? 0 : wish[i];
+    if (held) atomic_add(&counts->merge_step, std::uint64_t{1});
+  }
+  /// Among this lane's neighbours.
+  template <class Team>
+  SIM_FN bool finer_beside(int i, Team team) const {
     const Vec4 self = position[i];
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int j = run[k];
       const bool finer = level[j] < level[i] && waiting[j] < lags;
       if (!finer && target[j] >= level[i]) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
       // As wide as it will see once it is coarser.
       const float h = 0.5f * (supports.h[level[i] + 1] + other.w);
-      if (dot(offset, offset) >= h * h) continue;
-      out[i] = 0;
-      atomic_add(&counts->merge_step, std::uint64_t{1});
-      return;
+      if (dot(offset, offset) < h * h) return true;
     }
+    return false;
   }
 };
 
@@ -74,6 +81,16 @@ SIM_FN PairKey pair_key(Vec4 a, Vec4 b, int id_a, int id_b) {
 }
 SIM_FN Vec3 middle(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
 
+/// A neighbour as a partner: by the pair's key, then by its place in the list.
+struct Candidate {
+  PairKey key;
+  int place;  ///< -1: none
+  SIM_FN bool before(const Candidate& other) const {
+    return key.before(other.key) ||
+           (key.distance2 == other.key.distance2 && key.chance == other.key.chance && place < other.place);
+  }
+};
+
 /// Each wishing particle names the nearest partner of its level with which it may merge.
 struct Propose {
   const Vec4* position;
@@ -89,40 +106,62 @@ struct Propose {
   LevelRules rules;
   LevelSupports supports;
 
-  SIM_FN void operator()(int i) const {
-    partner[i] = -1;
-    if (!wish[i]) return;
-    const Vec4 self = position[i];
-    PairKey best{3.4e38f, 0};
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    const int found = wish[i] ? nearest(i, team) : -1;
+    if (team.rank() == 0) partner[i] = found;
+  }
+
+  /// Tries one after the other, the nearest first.
+  template <class Team>
+  SIM_FN int nearest(int i, Team team) const {
+    const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
     bool overlapped = false;
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    bool looks_farther = false;
+    for (Candidate tried{{-1, 0}, -1};;) {
+      tried = first_after(tried, i, reach * reach, team);
+      if (tried.place < 0) break;
+      const int j = neighbours(i, tried.place);
+      const bool far = tried.key.distance2 > reach * reach;
+      if (far && !looks_farther && !inside(i, team)) break;
+      looks_farther = far;
+      if (far && !inside(j, team)) continue;
+      if (!overlaps(i, j, team)) return j;
+      overlapped = true;
+    }
+    if (overlapped && team.rank() == 0) atomic_add(&counts->merge_overlap, std::uint64_t{1});
+    return -1;
+  }
+
+  /// Members lie at most merge_reach radii of the new particle from its centre, but for those who look
+  /// farther.
+  template <class Team>
+  SIM_FN Candidate first_after(const Candidate& tried, int i, float reach2, Team team) const {
+    const Vec4 self = position[i];
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    Candidate best{{3.4e38f, 0}, -1};
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int j = run[k];
       if (!wish[j] || level[j] != level[i]) continue;
       if (rules.merge_same_target && target[j] != target[i]) continue;
-      const PairKey key = pair_key(self, position[j], id[i], id[j]);
-      if (!key.before(best) || !in_reach(i, j, key.distance2)) continue;
-      if (overlaps(i, j)) {
-        overlapped = true;
-        continue;
-      }
-      best = key;
-      partner[i] = j;
+      const Candidate next{pair_key(self, position[j], id[i], id[j]), k};
+      if (!next.before(best) || !tried.before(next)) continue;
+      const bool near = next.key.distance2 <= reach2;
+      if (near || waiting[i] >= rules.looks_farther || waiting[j] >= rules.looks_farther) best = next;
     }
-    if (overlapped && partner[i] < 0) atomic_add(&counts->merge_overlap, std::uint64_t{1});
+    return team.first(best);
   }
 
-  /// Members lie at most merge_reach radii of the new particle from its centre.
-  SIM_FN bool in_reach(int i, int j, float distance2) const {
-    const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
-    if (distance2 <= reach * reach) return true;
-    return (waiting[i] >= rules.looks_farther || waiting[j] >= rules.looks_farther) && inside(i) && inside(j);
+  template <class Team>
+  SIM_FN bool inside(int i, Team team) const {
+    return inside_fluid(walls, position, neighbours, i, rules.inside_count, team);
   }
 
-  SIM_FN bool inside(int i) const { return inside_fluid(walls, position, neighbours, i, rules.inside_count); }
-
-  SIM_FN bool overlaps(int i, int j) const {
+  template <class Team>
+  SIM_FN bool overlaps(int i, int j, Team team) const {
     return overlaps_coarser(position, level, neighbours, i, level[i], middle(position[i], position[j]),
-                            supports.h[level[i] + 1], rules.merge_overlap);
+                            supports.h[level[i] + 1], rules.merge_overlap, team);
   }
 };
 
@@ -138,24 +177,31 @@ struct KeepApart {
   LevelSupports supports;
 
   SIM_FN bool mutual(int i) const { return partner[i] >= 0 && partner[partner[i]] == i; }
-  SIM_FN void operator()(int i) const {
-    out[i] = -1;
-    if (!mutual(i) || id[i] > id[partner[i]]) return;
-    const int j = partner[i];
-    if (free_beside(i, j, i) && free_beside(i, j, j)) out[i] = j;
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    int kept = -1;
+    if (mutual(i) && id[i] < id[partner[i]]) {
+      const int j = partner[i];
+      if (!team.any(early_beside(i, j, i, team)) && !team.any(early_beside(i, j, j, team))) kept = j;
+    }
+    if (team.rank() == 0) out[i] = kept;
   }
-  SIM_FN bool free_beside(int i, int j, int member) const {
+  /// Does a pair that comes first, with one of a member's neighbours that are this lane's, need the room?
+  template <class Team>
+  SIM_FN bool early_beside(int i, int j, int member, Team team) const {
     const PairKey own = pair_key(position[i], position[j], id[i], id[j]);
     const Vec3 centre = middle(position[i], position[j]);
-    for (int k = 0; k < neighbours.size(member); ++k) {
-      const int a = neighbours(member, k);
+    const int size = neighbours.size(member);
+    const NeighbourRun run = neighbours.run(member);
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int a = run[k];
       if (a == i || a == j || !mutual(a)) continue;
       const int b = partner[a];
       const Vec4 merged = with_w(middle(position[a], position[b]), supports.h[level[a] + 1]);
       if (clear_of(merged, centre, supports.h[level[i] + 1], rules.merge_overlap)) continue;
-      if (pair_key(position[a], position[b], id[a], id[b]).before(own)) return false;
+      if (pair_key(position[a], position[b], id[a], id[b]).before(own)) return true;
     }
-    return true;
+    return false;
   }
 };
 
@@ -184,41 +230,41 @@ void merge_pairs(LevelState& l, const LevelFluid& fluid) {
                     .wish = l.wish.data(),
                     .gone = l.gone.data()});
   if (l.rules.merge_keeps_steps) {
-    for_each("keep steps", n,
-             KeepSteps{.position = p.position(),
-                       .level = p.level(),
-                       .target = p.target(),
-                       .waiting = p.waiting(),
-                       .wish = l.wish.data(),
-                       .neighbours = fluid.neighbours,
-                       .out = l.status.data(),
-                       .counts = l.counts.data(),
-                       .lags = l.rules.lags,
-                       .supports = fluid.supports});
+    for_each_team("keep steps", n,
+                  KeepSteps{.position = p.position(),
+                            .level = p.level(),
+                            .target = p.target(),
+                            .waiting = p.waiting(),
+                            .wish = l.wish.data(),
+                            .neighbours = fluid.neighbours,
+                            .out = l.status.data(),
+                            .counts = l.counts.data(),
+                            .lags = l.rules.lags,
+                            .supports = fluid.supports});
     l.wish.swap(l.status);
   }
-  for_each("propose merges", n,
-           Propose{.position = p.position(),
-                   .level = p.level(),
-                   .target = p.target(),
-                   .waiting = p.waiting(),
-                   .wish = l.wish.data(),
-                   .id = p.id(),
-                   .neighbours = fluid.neighbours,
-                   .partner = l.partner.data(),
-                   .counts = l.counts.data(),
-                   .walls = fluid.walls,
-                   .rules = l.rules,
-                   .supports = fluid.supports});
-  for_each("keep merges apart", n,
-           KeepApart{.position = p.position(),
-                     .level = p.level(),
-                     .id = p.id(),
-                     .partner = l.partner.data(),
-                     .neighbours = fluid.neighbours,
-                     .out = l.places.data(),
-                     .rules = l.rules,
-                     .supports = fluid.supports});
+  for_each_team("propose merges", n,
+                Propose{.position = p.position(),
+                        .level = p.level(),
+                        .target = p.target(),
+                        .waiting = p.waiting(),
+                        .wish = l.wish.data(),
+                        .id = p.id(),
+                        .neighbours = fluid.neighbours,
+                        .partner = l.partner.data(),
+                        .counts = l.counts.data(),
+                        .walls = fluid.walls,
+                        .rules = l.rules,
+                        .supports = fluid.supports});
+  for_each_team("keep merges apart", n,
+                KeepApart{.position = p.position(),
+                          .level = p.level(),
+                          .id = p.id(),
+                          .partner = l.partner.data(),
+                          .neighbours = fluid.neighbours,
+                          .out = l.places.data(),
+                          .rules = l.rules,
+                          .supports = fluid.supports});
   for_each("merge", n, Merge{joining(l, fluid), l.places.data()});
 }
 

@@ -4,6 +4,24 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// What a relay's bid is worth to a stranded particle, which takes the largest: by chance, drawn anew each
+/// frame. Never 0.
+SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
+  const auto id = static_cast<std::uint32_t>(relay_id);
+  return ~(static_cast<std::uint64_t>(random_bits(id, frame, 0x3e1u)) << 32 | id);
+}
+
+/// A stranded neighbour of a relay: the coarsest, then the nearest, then by its place in the list.
+struct Stranded {
+  int level;
+  float distance2;
+  int place;  ///< -1: none
+  SIM_FN bool before(const Stranded& other) const {
+    if (level != other.level) return level > other.level;
+    return distance2 < other.distance2 || (distance2 == other.distance2 && place < other.place);
+  }
+};
+
 /// Two members of a merge that find each other through a coarser particle between them, so that the last few
 /// of a level, which are too far apart for pairs, need not stay behind. One of twice their mass gives each of
 /// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no step is longer than a merge's.
@@ -17,55 +35,81 @@ struct Bid {
   const std::uint8_t* split_code;
   const std::uint8_t* gone;
   const std::uint8_t* age;
+  const int* id;
   ParticleNeighbours neighbours;
   int* first;
   int* second;
+  std::uint64_t* taken;  ///< worth of the best bid for a stranded particle; 0: none
   Walls walls;
   LevelRules rules;
   LevelSupports supports;
+  std::uint32_t frame;
 
   /// A particle that has waited without a partner and is still there.
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }
   /// The relay names its nearest two stranded neighbours of one level that may join.
-  SIM_FN void operator()(int j) const {
-    first[j] = second[j] = -1;
-    if (level[j] == 0 || target[j] < level[j] || split_code[j] || gone[j] || age[j] == 0) return;
-    first[j] = nearest(j, -1);
-    if (first[j] >= 0) second[j] = nearest(j, first[j]);
-    if (second[j] < 0 || !inside_fluid(walls, position, neighbours, j, rules.inside_count))
-      first[j] = second[j] = -1;
-  }
-  /// The nearest of the coarsest level that has any.
-  SIM_FN int nearest(int j, int other) const {
-    int best = -1;
-    for (int k = 0; k < neighbours.size(j); ++k) {
-      const int i = neighbours(j, k);
-      if (i == other || level[i] >= level[j] || !stranded(i)) continue;
-      if (other >= 0 && (level[i] != level[other] || !may_join(j, i, other))) continue;
-      const float support = 0.5f * (position[j].w + position[i].w);
-      const float distance2 = dot_to(j, i);
-      if (distance2 >= support * support) continue;
-      if (best >= 0 && level[i] < level[best]) continue;
-      if (best >= 0 && level[i] == level[best] && distance2 >= dot_to(j, best)) continue;
-      best = i;
+  template <class Team>
+  SIM_FN void operator()(int j, Team team) const {
+    int a = -1;
+    int b = -1;
+    if (level[j] > 0 && target[j] >= level[j] && !split_code[j] && !gone[j] && age[j] > 0) {
+      a = nearest(j, team);
+      if (a >= 0) b = second_beside(j, a, team);
+      if (b >= 0 && !inside_fluid(walls, position, neighbours, j, rules.inside_count, team)) b = -1;
     }
-    return best;
+    if (team.rank() > 0) return;
+    first[j] = b >= 0 ? a : -1;
+    second[j] = b;
+    if (b < 0) return;
+    const std::uint64_t worth = worth_of(id[j], frame);
+    atomic_max(&taken[a], worth);
+    atomic_max(&taken[b], worth);
   }
-  SIM_FN bool may_join(int j, int a, int b) const {
-    return level[a] + 1 < level[j] ? free_between(j, a, b) : apart(a, b, position[j].w);
+  /// The nearest of the coarsest level that has any; -1: none.
+  template <class Team>
+  SIM_FN int nearest(int j, Team team) const {
+    const Stranded found = first_after({most_levels, 0, -1}, j, -1, team);
+    return found.place < 0 ? -1 : neighbours(j, found.place);
   }
+  /// The nearest that may join `other`, which is of its level; -1: none.
+  template <class Team>
+  SIM_FN int second_beside(int j, int other, Team team) const {
+    for (Stranded tried{most_levels, 0, -1};;) {
+      tried = first_after(tried, j, other, team);
+      if (tried.place < 0) return -1;
+      const int i = neighbours(j, tried.place);
+      if (halves(j, other) || free_between(j, i, other, team)) return i;
+    }
+  }
+  template <class Team>
+  SIM_FN Stranded first_after(const Stranded& tried, int j, int other, Team team) const {
+    const int size = neighbours.size(j);
+    const NeighbourRun run = neighbours.run(j);
+    Stranded best{-1, 0, -1};
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int i = run[k];
+      if (i == other || level[i] >= level[j] || !stranded(i)) continue;
+      if (other >= 0 && level[i] != level[other]) continue;
+      if (other >= 0 && halves(j, other) && !apart(i, other, position[j].w)) continue;
+      const float support = 0.5f * (position[j].w + position[i].w);
+      const Vec3 offset = xyz(position[j]) - xyz(position[i]);
+      const Stranded next{level[i], dot(offset, offset), k};
+      if (next.distance2 < support * support && next.before(best) && tried.before(next)) best = next;
+    }
+    return team.first(best);
+  }
+  /// Does the relay give each of such members a half of itself?
+  SIM_FN bool halves(int j, int member) const { return level[member] + 1 == level[j]; }
   /// A merged particle between them keeps from the relay and from its neighbours what a merge keeps.
-  SIM_FN bool free_between(int j, int a, int b) const {
+  template <class Team>
+  SIM_FN bool free_between(int j, int a, int b, Team team) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
     const float h = supports.h[level[a] + 1];
     return clear_of(position[j], centre, h, rules.stranded_overlap) &&
-           !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap);
-  }
-  SIM_FN float dot_to(int j, int i) const {
-    const Vec3 offset = xyz(position[j]) - xyz(position[i]);
-    return dot(offset, offset);
+           !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap,
+                             team);
   }
   /// The two new particles lie half the distance of the stranded ones from each other.
   SIM_FN bool apart(int a, int b, float h) const {
@@ -75,43 +119,22 @@ struct Bid {
   }
 };
 
-/// A stranded particle takes the bid that comes first by chance, drawn anew each frame.
-struct AcceptBid {
-  const int* id;
-  const int* first;
-  const int* second;
-  ParticleNeighbours neighbours;
-  int* accepted;
-  std::uint32_t frame;
-  SIM_FN void operator()(int i) const {
-    accepted[i] = -1;
-    std::uint64_t best = ~std::uint64_t{0};
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
-      if (first[j] != i && second[j] != i) continue;
-      const std::uint64_t chance =
-          static_cast<std::uint64_t>(random_bits(static_cast<std::uint32_t>(id[j]), frame, 0x3e1u)) << 32 |
-          static_cast<std::uint32_t>(id[j]);
-      if (chance >= best) continue;
-      best = chance;
-      accepted[i] = j;
-    }
-  }
-};
-
 struct JoinHalves {
   Joining joining;
   const int* id;
   const int* first;
   const int* second;
-  const int* accepted;
+  const std::uint64_t* taken;
+  std::uint32_t frame;
 
   SIM_FN void operator()(int j) const {
     const int a = first[j];
     const int b = second[j];
-    if (a < 0 || accepted[a] != j || accepted[b] != j) return;
-    // A relay that has accepted a bid itself may be changed by it at this moment.
-    if (accepted[j] >= 0) return;
+    if (a < 0) return;
+    const std::uint64_t worth = worth_of(id[j], frame);
+    if (taken[a] != worth || taken[b] != worth) return;
+    // A relay that has taken a bid itself may be changed by it at this moment.
+    if (taken[j]) return;
     const int kept = id[a] < id[b] ? a : b;
     const int left = kept == a ? b : a;
     const std::uint8_t* level = joining.level;
@@ -143,24 +166,28 @@ void relay_stranded(LevelState& l, const LevelFluid& fluid) {
   const int n = p.size();
   int* first = l.first_bid().data();
   int* second = l.second_bid().data();
-  int* accepted = l.partner.data();
-  for_each("bid for stranded", n,
-           Bid{.position = p.position(),
-               .level = p.level(),
-               .target = p.target(),
-               .waiting = p.waiting(),
-               .wish = l.wish.data(),
-               .split_code = l.split_code.data(),
-               .gone = l.gone.data(),
-               .age = p.age(),
-               .neighbours = fluid.neighbours,
-               .first = first,
-               .second = second,
-               .walls = fluid.walls,
-               .rules = l.rules,
-               .supports = fluid.supports});
-  for_each("accept bids", n, AcceptBid{p.id(), first, second, fluid.neighbours, accepted, l.frame});
-  for_each("join halves", n, JoinHalves{joining(l, fluid), p.id(), first, second, accepted});
+  auto& taken = l.taken_bids();
+  taken.resize(static_cast<std::size_t>(n));
+  taken.zero();
+  for_each_team("bid for stranded", n,
+                Bid{.position = p.position(),
+                    .level = p.level(),
+                    .target = p.target(),
+                    .waiting = p.waiting(),
+                    .wish = l.wish.data(),
+                    .split_code = l.split_code.data(),
+                    .gone = l.gone.data(),
+                    .age = p.age(),
+                    .id = p.id(),
+                    .neighbours = fluid.neighbours,
+                    .first = first,
+                    .second = second,
+                    .taken = taken.data(),
+                    .walls = fluid.walls,
+                    .rules = l.rules,
+                    .supports = fluid.supports,
+                    .frame = l.frame});
+  for_each("join halves", n, JoinHalves{joining(l, fluid), p.id(), first, second, taken.data(), l.frame});
 }
 
 }  // namespace sim::SIM_BACKEND

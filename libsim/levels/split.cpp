@@ -40,22 +40,30 @@ struct ChooseApart {
   std::uint8_t* out;
   std::uint32_t frame;
 
-  SIM_FN void operator()(int i) const { out[i] = status[i] == wants ? decide(i) : status[i]; }
-  SIM_FN std::uint8_t decide(int i) const {
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    const std::uint8_t decided = status[i] == wants ? decide(i, team) : status[i];
+    if (team.rank() == 0) out[i] = decided;
+  }
+  template <class Team>
+  SIM_FN std::uint8_t decide(int i, Team team) const {
     const Vec4 self = position[i];
     const std::uint64_t own = priority(level[i] - target[i], id[i], frame);
-    std::uint8_t result = splits;
-    for (int k = 0; k < neighbours.size(i); ++k) {
-      const int j = neighbours(i, k);
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    bool taken = false;
+    bool late = false;
+    for (int k = team.rank(); k < size && !taken; k += Team::size) {
+      const int j = run[k];
       if (status[j] < wants) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
       const float spacing = 0.25f * (self.w + other.w);  // h = 2 d
       if (dot(offset, offset) >= spacing * spacing) continue;
-      if (status[j] == splits) return keeps;
-      if (priority(level[j] - target[j], id[j], frame) > own) result = wants;
+      taken = status[j] == splits;
+      late = late || priority(level[j] - target[j], id[j], frame) > own;
     }
-    return result;
+    return team.any(taken) ? keeps : team.any(late) ? wants : splits;
   }
 };
 
@@ -182,15 +190,15 @@ bool choose_splits(LevelState& l, const LevelFluid& fluid) {
   for_each("mark splits", n,
            MarkSplits{p.level(), p.target(), fluid.last_active, l.status.data(), throttled});
   for (int round = 0; round < rounds && throttled; ++round) {
-    for_each("choose splits", n,
-             ChooseApart{.position = p.position(),
-                         .level = p.level(),
-                         .target = p.target(),
-                         .id = p.id(),
-                         .status = l.status.data(),
-                         .neighbours = fluid.neighbours,
-                         .out = l.status_next.data(),
-                         .frame = l.frame});
+    for_each_team("choose splits", n,
+                  ChooseApart{.position = p.position(),
+                              .level = p.level(),
+                              .target = p.target(),
+                              .id = p.id(),
+                              .status = l.status.data(),
+                              .neighbours = fluid.neighbours,
+                              .out = l.status_next.data(),
+                              .frame = l.frame});
     l.status.swap(l.status_next);
   }
   for_each("fit children", n,

@@ -26,17 +26,20 @@ struct LevelFluid {
 
 /// Is the particle surrounded by water, or by water and walls? Counts its neighbours as if all were of its
 /// level: one that is seen from farther away because it is coarser fills more room and counts for less mass.
+template <class Team>
 SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const ParticleNeighbours& neighbours,
-                         int i, float least) {
+                         int i, float least, Team team) {
   const Vec4 self = position[i];
+  const int size = neighbours.size(i);
+  const NeighbourRun run = neighbours.run(i);
   float count = 0;
-  for (int k = 0; k < neighbours.size(i); ++k) {
-    const float other = position[neighbours(i, k)].w;
-    const float ratio = 2 * other / (self.w + other);
+  for (int k = team.rank(); k < size; k += Team::size) {
+    const float other = position[run[k]].w;
+    const float ratio = quotient(2 * other, self.w + other);
     count += ratio * ratio * ratio;
   }
   Vec3 gradient;
-  return count >= least * (1 - walls.missing(xyz(self), self.w, gradient));
+  return team.sum(count) >= least * (1 - walls.missing(xyz(self), self.w, gradient));
 }
 
 /// Fills split_code (0 = stays). False when nobody splits.

@@ -17,8 +17,9 @@ struct GridView {
   Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubes
   int scale;         ///< edge of a cell in finest cells
   CellKind* kind;
-  float* q;
+  float* q;  ///< 0 where there is no fluid
   float* source;
+  float* diagonal;  ///< of a fluid cell's equation: the sum of its conductances
   const OpenFace* open;
   int open_count;
 
@@ -42,28 +43,27 @@ struct GridView {
   }
   /// Share of an open face in that face.
   SIM_FN float share_of(const OpenFace& face, int x, int y, int z) const {
-    const int place[3] = {x, y, z};
-    const int cells[3] = {block.nx, block.ny, block.nz};
-    const int fine[3] = {finest.nx, finest.ny, finest.nz};
-    if (place[face.axis] != (face.at_high ? cells[face.axis] : -1)) return 0;
-    float share = 1;
-    for (int k = 0, along = 0; k < 3; ++k) {
-      if (k == face.axis) continue;
-      if (place[k] < 0 || place[k] >= cells[k]) return 0;
-      const auto low = static_cast<float>(place[k] * scale);
-      const float wide = extent(place[k], fine[k]);
-      share *= fmaxf(fminf(face.high[along], low + wide) - fmaxf(face.low[along], low), 0.0f) / wide;
-      ++along;
-    }
-    return share;
+    const int across = face.axis == 0 ? x : face.axis == 1 ? y : z;
+    const int cells = face.axis == 0 ? block.nx : face.axis == 1 ? block.ny : block.nz;
+    if (across != (face.at_high ? cells : -1)) return 0;
+    const float first =
+        face.axis == 0 ? covered(face, 0, y, block.ny, finest.ny) : covered(face, 0, x, block.nx, finest.nx);
+    const float second =
+        face.axis == 2 ? covered(face, 1, y, block.ny, finest.ny) : covered(face, 1, z, block.nz, finest.nz);
+    return first * second;
+  }
+  /// Share of the face in a cell's extent along one of its two axes.
+  SIM_FN float covered(const OpenFace& face, int along, int cell, int cells, int finest_cells) const {
+    if (cell < 0 || cell >= cells) return 0;
+    const auto low = static_cast<float>(cell * scale);
+    const float wide = extent(cell, finest_cells);
+    return fmaxf(fminf(face.high[along], low + wide) - fmaxf(face.low[along], low), 0.0f) / wide;
   }
   /// 0 in air, walls and outside.
   SIM_FN float q_at(int x, int y, int z) const {
     return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
   }
 };
-
-struct SmallGrids;
 
 class Multigrid {
  public:
@@ -79,22 +79,25 @@ class Multigrid {
   void solve(int cycles);
 
  private:
+  /// Grids below the first small one live in scratch memory and have no columns.
   struct Level {
     CellBlock block;
     Array<CellKind> kind;
-    Array<float> q, source;
+    Array<float> q, source, diagonal;
   };
 
   GridView view(std::size_t level);
-  /// The first of the grids that one block handles together, and these.
+  /// The first of the grids that one block handles together.
   std::size_t first_small() const;
-  SmallGrids small_grids();
 
   void cycle(std::size_t level);
+  /// V-cycles over the small grids, from q = 0.
+  void cycle_small(int cycles);
   void smooth(std::size_t level, int first_colour);
 
   std::vector<Level> levels_;
   Array<OpenFace> open_;
+  Array<unsigned char> room_;
   Vec3 conductance_{1, 1, 1};
 };
 

@@ -73,8 +73,10 @@ struct WithinH {
   SIM_FN void operator()(int i, Team team) const {
     Gradients sum;
     const Vec4 own = quantities(fields, i);
-    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) {
-      const int j = neighbours(i, k);
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int j = run[k];
       sum.add_pair(fields, i, j, pair_support(fields, i, j), own, quantities(fields, j));
     }
     sum.sum_over(team);
@@ -97,7 +99,9 @@ struct AverageFields {
       total += weight;
     };
     if (team.rank() == 0) add(i);
-    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) add(neighbours(i, k));
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size; k += Team::size) add(run[k]);
     sum = {team.sum(sum.x), team.sum(sum.y), team.sum(sum.z), team.sum(sum.w)};
     total = team.sum(total);
     if (team.rank() > 0) return;
@@ -113,8 +117,10 @@ struct GradientsOfAverages {
   template <class Team>
   SIM_FN void operator()(int i, Team team) const {
     Gradients sum;
-    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) {
-      const int j = neighbours(i, k);
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int j = run[k];
       sum.add_pair(fields, i, j, pair_support(fields, i, j), averages[i], averages[j]);
     }
     sum.sum_over(team);
@@ -136,7 +142,9 @@ struct AverageGradients {
       total += weight;
     };
     if (team.rank() == 0) add(i);
-    for (int k = team.rank(); k < neighbours.size(i); k += Team::size) add(neighbours(i, k));
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size; k += Team::size) add(run[k]);
     sum.sum_over(team);
     total = team.sum(total);
     if (team.rank() > 0) return;

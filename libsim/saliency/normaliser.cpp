@@ -8,8 +8,9 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 using Selection = SaliencyNormaliser::Selection;
-constexpr int bins = SaliencyNormaliser::bins;
-constexpr int copies = SaliencyNormaliser::copies;
+constexpr int bits_a_round = 11;
+constexpr int bins = 1 << bits_a_round;
+constexpr int rounds = 3;  // of 31 bits
 constexpr float follow = 0.1f;
 constexpr int trim_low = 1;  // %
 constexpr int trim_high = 2;
@@ -25,64 +26,45 @@ SIM_FN float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// Counts the next eight bits of the values whose higher bits are those of each end.
+/// Counts the next bits of the values whose higher bits are those of each end.
 struct CountBits {
   const float* values;
   const std::uint8_t* level;
   const Selection* selection;
-  int* histograms;
+  Histogram histogram;
   int shift;
   SIM_FN void operator()(int i) const {
     if (!std::isfinite(values[i])) return;
     const std::uint64_t bits = bits_of(values[i]);
-    int* own = histograms + (i / 256 % copies) * 2 * bins;
     for (int end = 0; end < 2; ++end) {
-      if (bits >> (shift + 8) != selection->prefix[end]) continue;
-      atomic_add(&own[end * bins + static_cast<int>(bits >> shift & 255u)], 1 << level[i]);
+      if (bits >> (shift + bits_a_round) != selection->prefix[end]) continue;
+      histogram.add(i, end * bins + static_cast<int>(bits >> shift & (bins - 1u)), 1 << level[i]);
     }
   }
 };
 
-/// Adds the copies and clears them for the next round.
-struct AddCopies {
-  int* histograms;
-  int* totals;
-  SIM_FN void operator()(int b) const {
-    int sum = 0;
-    for (int c = 0; c < copies; ++c) {
-      sum += histograms[c * 2 * bins + b];
-      histograms[c * 2 * bins + b] = 0;
-    }
-    totals[b] = sum;
-  }
-};
-
-/// The bin that holds the wanted rank narrows the search; one of an end's 256 bins does.
-struct SelectBin {
-  const int* totals;
+/// The bin that holds the wanted rank narrows the search; one run of an end's bins has it.
+struct Narrow {
+  BinCounts counts;
   const Selection* selection;
   Selection* next;
   int trim_low, trim_high;  ///< %
   bool first;
-  SIM_FN void operator()(int b) const {
-    const int end = b / bins;
-    const int* counts = totals + end * bins;
-    int before = 0;
-    int all = 0;
-    for (int k = 0; k < bins; ++k) {
-      before += k < b % bins ? counts[k] : 0;
-      all += counts[k];
-    }
-    const int valid = first ? all : selection->valid;
-    if (b == 0) next->valid = valid;
+  SIM_FN void operator()(int at) const {
+    constexpr int runs = bins / BinCounts::run;
+    const int end = at / runs;
+    const int valid = first ? counts.before(runs) : selection->valid;
+    if (at == 0) next->valid = valid;
     int rank = selection->rank[end];
     if (first) {
       const std::int64_t last = valid - 1;
       rank = static_cast<int>(end == 0 ? last * trim_low / 100 : last - last * trim_high / 100);
     }
-    if (rank < before || rank >= before + counts[b % bins]) return;
-    next->prefix[end] = selection->prefix[end] << 8 | static_cast<std::uint32_t>(b % bins);
-    next->rank[end] = rank - before;
+    counts.find(at, end * runs, rank, [&](int bin, int before, int) {
+      const auto digits = static_cast<std::uint32_t>(bin - end * bins);
+      next->prefix[end] = selection->prefix[end] << bits_a_round | digits;
+      next->rank[end] = rank - before;
+    });
   }
 };
 
@@ -103,6 +85,21 @@ struct FollowRange {
   }
 };
 
+/// A round's end, and the search's.
+struct SelectBins {
+  const Selection* selection;
+  Selection* next;
+  SaliencyRange* range;
+  float share, floor;
+  int trim_low, trim_high;
+  bool first, last;
+  template <class Block>
+  SIM_FN void operator()(Block block, const BinCounts& counts) const {
+    block.each(counts.runs(), Narrow{counts, selection, next, trim_low, trim_high, first});
+    if (last) block.each(1, FollowRange{next, range, share, floor});
+  }
+};
+
 }  // namespace
 
 void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* level, int n,
@@ -111,25 +108,25 @@ void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* 
     range_.resize(1);
     range_.zero();
   }
-  if (histograms_.size() == 0) {
-    histograms_.resize(2 * bins * copies);
-    histograms_.zero();
-    totals_.resize(2 * bins);
-    selections_.resize(rounds + 1);
-  }
-  const bool percentile = reading == Normalisation::Percentile;
+  selections_.resize(rounds + 1);
   selections_.zero();
+  const bool percentile = reading == Normalisation::Percentile;
   for (int round = 0; round < rounds; ++round) {
-    const Selection* selection = selections_.data() + round;
+    Selection* selection = selections_.data() + round;
+    const int shift = bits_a_round * (rounds - 1 - round);
     for_each("saliency histogram", n,
-             CountBits{values.data(), level, selection, histograms_.data(), 8 * (rounds - 1 - round)});
-    for_each("saliency histogram sum", 2 * bins, AddCopies{histograms_.data(), totals_.data()});
-    for_each("saliency percentile", 2 * bins,
-             SelectBin{totals_.data(), selection, selections_.data() + round + 1, percentile ? trim_low : 0,
-                       percentile ? trim_high : 0, round == 0});
+             CountBits{values.data(), level, selection, histogram_.view(2 * bins), shift});
+    histogram_.take("saliency percentiles", 2 * bins,
+                    SelectBins{.selection = selection,
+                               .next = selection + 1,
+                               .range = range_.data(),
+                               .share = percentile ? follow : 1.0f,
+                               .floor = floor,
+                               .trim_low = percentile ? trim_low : 0,
+                               .trim_high = percentile ? trim_high : 0,
+                               .first = round == 0,
+                               .last = round == rounds - 1});
   }
-  for_each("saliency range", 1,
-           FollowRange{selections_.data() + rounds, range_.data(), percentile ? follow : 1.0f, floor});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "libsim/exec/space.hpp"
+#include "libsim/exec/histogram.hpp"
 #include "libsim/methods/preset.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -15,8 +15,8 @@ struct SaliencyRange {
   int usable;  ///< 0: this frame has fewer than two finite values, or all are the same
 };
 
-/// Finds exact percentiles of non-negative values by four rounds of 256-bin histograms over their bits: no
-/// sort, no dependence on an outlier, the same result for any order of the values.
+/// Finds exact percentiles of non-negative values by three rounds of histograms over their bits: no sort, no
+/// dependence on an outlier, the same result for any order of the values.
 class SaliencyNormaliser {
  public:
   /// Updates the range from values[0 .. n-1]; those that are not finite are left out. Percentile: the ends
@@ -36,10 +36,6 @@ class SaliencyNormaliser {
     int rank[2];
     int valid;
   };
-  static constexpr int bins = 256;
-  static constexpr int rounds = 4;
-  /// Histograms that share the particles, so that few threads meet at one counter.
-  static constexpr int copies = 32;
 
   /// What outlives a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
@@ -48,7 +44,7 @@ class SaliencyNormaliser {
   }
 
  private:
-  Array<int> histograms_, totals_;
+  HistogramStore histogram_;
   Array<Selection> selections_;
   Array<SaliencyRange> range_;
 };

@@ -13,7 +13,8 @@ struct Ease {
   Neighbours neighbours;
   float* ease;
   LevelRules rules;
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) {
@@ -23,15 +24,18 @@ struct Ease {
     }
     int youngest = age[i];
     const Vec4 self = predicted[i];
-    for (int k = 0; k < neighbours.size(slot); ++k) {
-      const int j = neighbours(slot, k);
+    const int size = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    for (int k = team.rank(); k < size; k += Team::size) {
+      const int j = run[k];
       if (age[j] >= LevelRules::ease_frames || age[j] >= youngest) continue;
       const Vec4 other = predicted[j];
       const Vec3 offset = xyz(self) - xyz(other);
       const float h = 0.5f * (self.w + other.w);
       if (dot(offset, offset) < h * h) youngest = age[j];
     }
-    ease[i] = youngest < LevelRules::ease_frames ? rules.ease[youngest] : 1;
+    youngest = team.min(youngest);
+    if (team.rank() == 0) ease[i] = youngest < LevelRules::ease_frames ? rules.ease[youngest] : 1;
   }
 };
 
@@ -54,13 +58,13 @@ using Columns =
 
 template <class Selection>
 void launch(FluidState& state, Columns p, Selection select) {
-  for_each("ease", p.size(),
-           Ease<Selection>{.select = select,
-                           .predicted = p.predicted(),
-                           .age = p.age(),
-                           .neighbours = state.neighbours.view(),
-                           .ease = p.ease(),
-                           .rules = state.levels.rules});
+  for_each_team("ease", p.size(),
+                Ease<Selection>{.select = select,
+                                .predicted = p.predicted(),
+                                .age = p.age(),
+                                .neighbours = state.neighbours.view(),
+                                .ease = p.ease(),
+                                .rules = state.levels.rules});
 }
 
 void run(FluidState& state, Columns p) {

@@ -23,19 +23,27 @@ struct Grade {
   const std::uint8_t* target;
   ParticleNeighbours neighbours;
   std::uint8_t* out;
-  SIM_FN void operator()(int i) const {
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // 0 and 1 are never too coarse
+    if (team.rank() == 0) out[i] = static_cast<std::uint8_t>(wish);
+  }
+  /// By this lane's neighbours.
+  template <class Team>
+  SIM_FN int graded(int i, Team team) const {
     int wish = target[i];
     const Vec4 self = position[i];
-    const int count = wish > 1 ? neighbours.size(i) : 0;  // 0 and 1 are never too coarse
-    for (int k = 0; k < count; ++k) {
-      const int j = neighbours(i, k);
+    const int size = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
+    for (int k = team.rank(); k < size && wish > 1; k += Team::size) {
+      const int j = run[k];
       if (target[j] + 1 >= wish) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
       const float h = 0.5f * (self.w + other.w);
       if (dot(offset, offset) < h * h) wish = target[j] + 1;
     }
-    out[i] = static_cast<std::uint8_t>(wish);
+    return wish;
   }
 };
 
@@ -60,8 +68,8 @@ void run(FluidState& state, Columns p) {
   graded.reserve(static_cast<std::size_t>(p.capacity()));
   graded.resize(static_cast<std::size_t>(p.size()));
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for_each("grade targets", p.size(),
-             Grade{p.position(), p.target(), state.particle_neighbours(), graded.data()});
+    for_each_team("grade targets", p.size(),
+                  Grade{p.position(), p.target(), state.particle_neighbours(), graded.data()});
     p.swap<Column::Target>(graded);
   }
 }

@@ -8,23 +8,30 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each index adds up every `stride`th particle, so that few meet at one sum.
+/// Particles that a team adds up, so that few meet at one sum.
+constexpr int run_length = 64;
+
 struct SumPush {
   const Vec4* predicted;
   const Vec4* next;
-  int n, stride;
+  int n;
   float finest_support;
   PushBalance* out;
-  SIM_FN void operator()(int first) const {
+  template <class Team>
+  SIM_FN void operator()(int run, Team team) const {
+    const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
     MassWay pushed{};
     std::uint64_t mass = 0;
-    for (int i = first; i < n; i += stride) {
+    for (int i = run * run_length + team.rank(); i < end; i += Team::size) {
       const Vec3 way = xyz(next[i]) - xyz(predicted[i]);
       if (way.x == 0 && way.y == 0 && way.z == 0) continue;
       const float units = rintf(mass_units_of(next[i].w, finest_support));
       pushed.add(units, way);
       mass += static_cast<std::uint64_t>(units);
     }
+    pushed = {team.sum(pushed.x), team.sum(pushed.y), team.sum(pushed.z)};
+    mass = team.sum(mass);
+    if (team.rank() > 0 || mass == 0) return;
     out->pushed.add_at_once(pushed);
     atomic_add(&out->mass, mass);
   }
@@ -75,14 +82,12 @@ void balance_push(FluidState& state, ClampView p) {
   coarse.balance.zero();
   // Where those who are not solved are not pressed, their share of the walls' push reaches nobody.
   if (state.all_active || state.activation.rules.pressed) {
-    const int lookers = (p.size() + 31) / 32;
-    for_each("sum push", lookers,
-             SumPush{.predicted = p.predicted(),
-                     .next = p.predicted_next(),
-                     .n = p.size(),
-                     .stride = lookers,
-                     .finest_support = state.finest_support,
-                     .out = coarse.balance.data()});
+    for_each_team("sum push", (p.size() + run_length - 1) / run_length,
+                  SumPush{.predicted = p.predicted(),
+                          .next = p.predicted_next(),
+                          .n = p.size(),
+                          .finest_support = state.finest_support,
+                          .out = coarse.balance.data()});
     const GridView grid = coarse.multigrid.finest();
     for_each("sum walls", grid.block.size(),
              SumWalls{coarse.frame, grid, mass_of(state.finest_support, 1), coarse.balance.data()});

@@ -1,4 +1,4 @@
-#include "libsim/exec/space.hpp"
+#include "libsim/exec/one_block.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -99,23 +99,88 @@ SIM_TEST(ForEachTeam, SumsAndCountsForEverySizeOfTeam) {
   }
 }
 
+/// Numbers that repeat, k -> k * 7 % 5, with their place.
+struct Ranked {
+  int value, place;
+  SIM_FN bool before(const Ranked& other) const {
+    return value < other.value || (value == other.value && place < other.place);
+  }
+};
+
+/// The least of the first i % 50 numbers, the place of the first that has it, and whether one is 4.
+struct FindLeast {
+  int* least;
+  int* place;
+  int* any;
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
+    int smallest = 5;
+    Ranked first{5, -1};
+    bool four = false;
+    for (int k = team.rank(); k < i % 50; k += Team::size) {
+      const Ranked next{k * 7 % 5, k};
+      smallest = next.value < smallest ? next.value : smallest;
+      if (next.before(first)) first = next;
+      four = four || next.value == 4;
+    }
+    smallest = team.min(smallest);
+    first = team.first(first);
+    four = team.any(four);
+    if (team.rank() > 0) return;
+    least[i] = smallest;
+    place[i] = first.place;
+    any[i] = four;
+  }
+};
+
+SIM_TEST(ForEachTeam, FindsTheLeastAndTheFirstOfEqualsForEverySizeOfTeam) {
+  for (const int n : {1, 1000, 200'001, 700'003}) {
+    const auto size = static_cast<std::size_t>(n);
+    Array<int> least(size);
+    Array<int> place(size);
+    Array<int> any(size);
+    for_each_team("test", n, FindLeast{least.data(), place.data(), any.data()});
+    const auto leasts = least.to_host();
+    const auto places = place.to_host();
+    const auto anys = any.to_host();
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const int count = i % 50;
+      // 0, 2, 4, 1, 3 and again.
+      wrong +=
+          leasts[at] != (count > 0 ? 0 : 5) || places[at] != (count > 0 ? 0 : -1) || anys[at] != count > 2;
+    }
+    EXPECT_EQ(wrong, 0) << n;
+  }
+}
+
 struct Fill {
   int* values;
   int value;
   SIM_FN void operator()(int i) const { values[i] = value + i; }
 };
-/// Each step reads what other threads wrote in the one before.
+/// Each step reads what other threads wrote in the one before; the middle ones are a warp's.
 struct Rotate {
-  int* a;
-  int* b;
+  int* out;
   int n;
   template <class Block>
-  SIM_FN void operator()(Block block) const {
+  SIM_FN void operator()(Block block, unsigned char* room) const {
+    int* const a = reinterpret_cast<int*>(room);
+    int* const b = a + n;
     block.each(n, Fill{a, 0});
-    for (int step = 0; step < 4; ++step) {
-      block.each(n, Shift{a, b, n});
-      block.each(n, Shift{b, a, n});
-    }
+    turn(block, a, b);
+    block.by_one_warp([&](auto warp) {
+      turn(warp, a, b);
+      turn(warp, a, b);
+    });
+    turn(block, a, b);
+    block.spread(n, Shift{a, out, n});
+  }
+  template <class Threads>
+  SIM_FN void turn(Threads threads, int* a, int* b) const {
+    threads.each(n, Shift{a, b, n});
+    threads.each(n, Shift{b, a, n});
   }
   struct Shift {
     const int* from;
@@ -126,13 +191,15 @@ struct Rotate {
 };
 
 SIM_TEST(InOneBlock, StepsWaitForEachOther) {
-  for (const int n : {1, 700, 5000}) {
-    Array<int> a(static_cast<std::size_t>(n));
-    Array<int> b(static_cast<std::size_t>(n));
-    in_one_block("test", Rotate{a.data(), b.data(), n});
-    const auto values = a.to_host();
+  // The last one's room is more than any device has beside its threads.
+  Array<unsigned char> spare;
+  for (const int n : {1, 700, 5000, 100'000}) {
+    const auto size = static_cast<std::size_t>(n);
+    Array<int> out(size);
+    in_one_block("test", n, 2 * size * sizeof(int), spare, Rotate{out.data(), n});
+    const auto values = out.to_host();
     int wrong = 0;
-    for (int i = 0; i < n; ++i) wrong += values[static_cast<std::size_t>(i)] != (i + 8) % n;
+    for (int i = 0; i < n; ++i) wrong += values[static_cast<std::size_t>(i)] != (i + 9) % n;
     EXPECT_EQ(wrong, 0) << n;
   }
 }

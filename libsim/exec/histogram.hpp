@@ -1,0 +1,129 @@
+#pragma once
+/// Counts in bins, and the bin that holds a rank: percentiles without a sort, the same for any order of the
+/// values.
+
+#include "libsim/exec/one_block.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Counters as kernels add to them; several sets side by side, so that few threads meet at one counter.
+struct Histogram {
+  static constexpr int copies = 8;
+  int* counts;
+  int bins;
+
+  /// `i`: of the value, to choose a set.
+  SIM_FN void add(int i, int bin, int amount) const {
+    atomic_add(&counts[i / 32 % copies * bins + bin], amount);
+  }
+};
+
+/// A histogram's counts in a block's room: of bins, of runs of 16 and of 256 bins.
+class BinCounts {
+ public:
+  static constexpr int run = 16;
+  /// `bins`: a multiple of 256.
+  static constexpr std::size_t bytes(int bins) {
+    return sizeof(int) * static_cast<std::size_t>(bins + bins / run + bins / (run * run));
+  }
+  SIM_FN BinCounts(unsigned char* room, int bins)
+      : bins_(bins),
+        count_(reinterpret_cast<int*>(room)),
+        in_run_(count_ + bins),
+        in_long_run_(in_run_ + bins / run) {}
+
+  SIM_FN int runs() const { return bins_ / run; }
+
+  /// Adds the sets up and leaves them at zero.
+  template <class Block>
+  SIM_FN void take(Block block, const Histogram& from) const {
+    block.each(bins_, AddCopies{from, count_});
+    block.each(runs(), AddRun{count_, in_run_});
+    block.each(runs() / run, AddRun{in_run_, in_long_run_});
+  }
+
+  /// Count in the runs before this one.
+  SIM_FN int before(int at) const {
+    int sum = 0;
+    for (int k = 0; k < at / run; ++k) sum += in_long_run_[k];
+    for (int k = at / run * run; k < at; ++k) sum += in_run_[k];
+    return sum;
+  }
+
+  /// found(bin, count before it, its count) if the bin that holds this rank, counted from run `from` on, lies
+  /// in run `at`.
+  template <class Found>
+  SIM_FN void find(int at, int from, int rank, Found found) const {
+    int below = before(at) - before(from);
+    if (rank < below || rank >= below + in_run_[at]) return;
+    int bin = at * run;
+    for (; rank >= below + count_[bin]; ++bin) below += count_[bin];
+    found(bin, below, count_[bin]);
+  }
+
+ private:
+  struct AddCopies {
+    Histogram from;
+    int* to;
+    SIM_FN void operator()(int b) const {
+      int sum = 0;
+      for (int c = 0; c < Histogram::copies; ++c) {
+        int& count = from.counts[c * from.bins + b];
+        sum += count;
+        count = 0;
+      }
+      to[b] = sum;
+    }
+  };
+  struct AddRun {
+    const int* from;
+    int* to;
+    SIM_FN void operator()(int at) const {
+      int sum = 0;
+      for (int k = 0; k < run; ++k) sum += from[at * run + k];
+      to[at] = sum;
+    }
+  };
+
+  int bins_;
+  int* count_;
+  int* in_run_;
+  int* in_long_run_;
+};
+
+/// f(block, counts) over what a histogram has counted.
+template <class F>
+struct TakeCounts {
+  Histogram histogram;
+  F f;
+  template <class Block>
+  SIM_FN void operator()(Block block, unsigned char* room) const {
+    const BinCounts counts(room, histogram.bins);
+    counts.take(block, histogram);
+    f(block, counts);
+  }
+};
+
+/// The counters' memory. They are zero whenever nobody counts.
+class HistogramStore {
+ public:
+  Histogram view(int bins) {
+    const auto size = static_cast<std::size_t>(Histogram::copies * bins);
+    if (counts_.size() != size) {
+      counts_.resize(size);
+      counts_.zero();
+    }
+    return {counts_.data(), bins};
+  }
+  /// f(block, BinCounts) once: the counts in order, taken from the store, which is empty then.
+  template <class F>
+  void take(const char* label, int bins, F f) {
+    in_one_block(label, bins, BinCounts::bytes(bins), room_, TakeCounts<F>{view(bins), f});
+  }
+
+ private:
+  Array<int> counts_;
+  Array<unsigned char> room_;
+};
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,125 @@
+#pragma once
+/// Many small steps in one launch: a block of threads that wait for each other between them.
+
+#include "libsim/exec/space.hpp"
+
+namespace sim::SIM_BACKEND {
+
+#ifdef SIM_CUDA
+
+/// The first warp of a block; the host only names the type.
+struct OneWarp {
+  template <class F>
+  SIM_FN void each(int n, F f) const {
+#ifdef __CUDA_ARCH__
+    for (int i = static_cast<int>(threadIdx.x); i < n; i += 32) f(i);
+    __syncwarp();
+#else
+    for (int i = 0; i < n; ++i) f(i);
+#endif
+  }
+};
+
+/// The threads of one block, which can wait for each other.
+struct OneBlock {
+  static constexpr int most = 1024;
+  /// f(i) for i = 0 ... n-1; all are done when it returns.
+  template <class F>
+  SIM_FN void each(int n, F f) const {
+    spread(n, f);
+    wait();
+  }
+  /// The same, but they are done after the next wait.
+  template <class F>
+  SIM_FN void spread(int n, F f) const {
+#ifdef __CUDA_ARCH__
+    for (int i = static_cast<int>(threadIdx.x); i < n; i += static_cast<int>(blockDim.x)) f(i);
+#else
+    for (int i = 0; i < n; ++i) f(i);
+#endif
+  }
+  SIM_FN void wait() const {
+#ifdef __CUDA_ARCH__
+    __syncthreads();
+#endif
+  }
+  /// f(warp), whose each() waits for a warp alone: for steps over so few indices that most threads would only
+  /// wait.
+  template <class F>
+  SIM_FN void by_one_warp(F f) const {
+#ifdef __CUDA_ARCH__
+    if (threadIdx.x < 32) f(OneWarp{});
+#else
+    f(OneWarp{});
+#endif
+    wait();
+  }
+};
+
+/// Bytes of memory beside its threads that a block can have.
+std::size_t most_block_memory();
+
+template <bool Beside, class F>
+__global__ void __launch_bounds__(OneBlock::most)
+    run_block_kernel(const __grid_constant__ F f, unsigned char* spare) {
+  begin_kernel();
+  extern __shared__ uint4 beside[];
+  f(OneBlock{}, Beside ? reinterpret_cast<unsigned char*>(beside) : spare);
+}
+
+/// f(block, room) once, for passes over so few cells that launching each would cost more than running it.
+/// `width`: indices of its widest steps. `room` is `bytes` of scratch memory, beside the threads where there
+/// is so much, else in `spare`.
+template <class F>
+void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigned char>& spare, F f) {
+  static_assert(std::is_trivially_copyable_v<F>);
+  const LaunchTimer timer(label);
+  const int threads = width < OneBlock::most ? (width + 31) / 32 * 32 : OneBlock::most;
+  if (bytes <= most_block_memory()) {
+    const auto kernel = run_block_kernel<true, F>;
+    check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)),
+          label);
+    launch(label, kernel, 1, static_cast<unsigned>(threads), bytes, f, nullptr);
+  } else {
+    spare.resize(bytes);
+    launch(label, run_block_kernel<false, F>, 1, static_cast<unsigned>(threads), 0, f, spare.data());
+  }
+}
+/// Passes over at most so many cells belong in one block.
+constexpr int one_block_cells = 8192;
+
+#else
+
+struct OneBlock {
+  /// f(i) for i = 0 ... n-1; all are done when it returns.
+  template <class F>
+  void each(int n, F f) const {
+    for (int i = 0; i < n; ++i) f(i);
+  }
+  /// The same, but they are done after the next wait.
+  template <class F>
+  void spread(int n, F f) const {
+    each(n, f);
+  }
+  void wait() const {}
+  /// f(warp), whose each() may wait for fewer threads: for steps over few indices.
+  template <class F>
+  void by_one_warp(F f) const {
+    f(*this);
+  }
+};
+
+/// f(block, room) once, for passes over so few cells that launching each would cost more than running it.
+/// `width`: indices of its widest steps. `room` is `bytes` of scratch memory.
+template <class F>
+void in_one_block(const char* label, int /*width*/, std::size_t bytes, Array<unsigned char>& spare, F f) {
+  const LaunchTimer timer(label);
+  spare.resize(bytes);
+  f(OneBlock{}, spare.data());
+}
+/// Passes over at most so many cells belong in one block.
+constexpr int one_block_cells = 512;
+
+#endif
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,148 @@
+#pragma once
+/// The passes of a V-cycle, a functor of a cell each.
+
+#include "libsim/pressure/multigrid.hpp"
+
+namespace sim::SIM_BACKEND {
+
+struct Place {
+  int x, y, z;
+};
+SIM_FN Place place_of(const CellBlock& block, int i) {
+  return {i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny)};
+}
+
+/// A coarser cell is fluid when no child is air: its surface then lies within half a cell of the true one, on
+/// either side. Counting cells with any fluid as fluid lets a grid overshoot until the cycles diverge.
+struct Coarsen {
+  GridView fine, coarse;
+  SIM_FN void operator()(int i) const {
+    const Place p = place_of(coarse.block, i);
+    bool air = false;
+    bool fluid = false;
+    for (int child = 0; child < 8; ++child) {
+      const CellKind kind =
+          fine.kind_at(2 * p.x + (child & 1), 2 * p.y + (child >> 1 & 1), 2 * p.z + (child >> 2));
+      air = air || kind == CellKind::Air;
+      fluid = fluid || kind == CellKind::Fluid;
+    }
+    coarse.kind[i] = air ? CellKind::Air : fluid ? CellKind::Fluid : CellKind::Solid;
+  }
+};
+
+/// Conductances of a cell's faces across x, y, z: area over way, in finest cells, times theirs.
+SIM_FN Vec3 conductances(const GridView& grid, Place p) {
+  const float x = grid.extent(p.x, grid.finest.nx);
+  const float y = grid.extent(p.y, grid.finest.ny);
+  const float z = grid.extent(p.z, grid.finest.nz);
+  const Vec3 over = (1 / static_cast<float>(grid.scale)) * grid.conductance;
+  return {y * z * over.x, x * z * over.y, x * y * over.z};
+}
+
+struct Weigh {
+  GridView grid;
+  SIM_FN void operator()(int i) const {
+    float sum = 0;
+    if (grid.kind[i] == CellKind::Fluid) {
+      const Place p = place_of(grid.block, i);
+      const Vec3 over = conductances(grid, p);
+      sum += over.x * opening(p.x - 1, p.y, p.z);
+      sum += over.x * opening(p.x + 1, p.y, p.z);
+      sum += over.y * opening(p.x, p.y - 1, p.z);
+      sum += over.y * opening(p.x, p.y + 1, p.z);
+      sum += over.z * opening(p.x, p.y, p.z - 1);
+      sum += over.z * opening(p.x, p.y, p.z + 1);
+    }
+    grid.diagonal[i] = sum;
+  }
+  /// Towards this place.
+  SIM_FN float opening(int x, int y, int z) const {
+    if (grid.kind_at(x, y, z) != CellKind::Solid) return 1;
+    return grid.open_count > 0 ? grid.openness(x, y, z) : 0;
+  }
+};
+
+/// The sum of conductance x q around cell i, which lies at p.
+SIM_FN float around(const GridView& grid, Place p, int i) {
+  const CellBlock& block = grid.block;
+  const Vec3 over = conductances(grid, p);
+  const int row = block.nx;
+  const int layer = block.nx * block.ny;
+  float sum = 0;
+  sum += over.x * (p.x > 0 ? grid.q[i - 1] : 0);
+  sum += over.x * (p.x + 1 < block.nx ? grid.q[i + 1] : 0);
+  sum += over.y * (p.y > 0 ? grid.q[i - row] : 0);
+  sum += over.y * (p.y + 1 < block.ny ? grid.q[i + row] : 0);
+  sum += over.z * (p.z > 0 ? grid.q[i - layer] : 0);
+  sum += over.z * (p.z + 1 < block.nz ? grid.q[i + layer] : 0);
+  return sum;
+}
+
+/// Gauss-Seidel on the cells of one colour; on the finest grid the pressure stays a push. Index: every second
+/// cell of a row, from the first one on.
+struct Smooth {
+  GridView grid;
+  int colour;
+  bool push_only;
+
+  SIM_FN static int size(const CellBlock& block) { return (block.nx + 1) / 2 * block.ny * block.nz; }
+  SIM_FN void operator()(int half) const {
+    const Place pair = place_of({(grid.block.nx + 1) / 2, grid.block.ny, grid.block.nz}, half);
+    const Place p{2 * pair.x + ((pair.y + pair.z + colour) & 1), pair.y, pair.z};
+    if (p.x >= grid.block.nx) return;
+    const int i = grid.block.index(p.x, p.y, p.z);
+    const float diagonal = grid.diagonal[i];
+    if (diagonal <= 0) return;
+    const float q = (grid.source[i] + around(grid, p, i)) / diagonal;
+    grid.q[i] = push_only ? at_least(q, 0.0f) : q;
+  }
+};
+
+/// Source of the coarser grid: the sum of the finer residuals. Where a cell rests at q = 0 and wants to pull,
+/// nothing is left to solve.
+struct Restrict {
+  GridView fine, coarse;
+  bool push_only;
+  SIM_FN void operator()(int i) const {
+    const Place p = place_of(coarse.block, i);
+    float sum = 0;
+    for (int child = 0; child < 8; ++child) {
+      const Place c{2 * p.x + (child & 1), 2 * p.y + (child >> 1 & 1), 2 * p.z + (child >> 2)};
+      if (fine.kind_at(c.x, c.y, c.z) != CellKind::Fluid) continue;
+      const int at = fine.block.index(c.x, c.y, c.z);
+      const float residual = fine.source[at] + around(fine, c, at) - fine.diagonal[at] * fine.q[at];
+      if (push_only && fine.q[at] <= 0 && residual < 0) continue;
+      sum += residual;
+    }
+    coarse.source[i] = sum;
+    coarse.q[i] = 0;
+  }
+};
+
+/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and sloping to zero
+/// outside open faces.
+struct Prolong {
+  GridView fine, coarse;
+  bool push_only;
+  SIM_FN void operator()(int i) const {
+    if (fine.kind[i] != CellKind::Fluid) return;
+    const Place p = place_of(fine.block, i);
+    const Place parent{p.x / 2, p.y / 2, p.z / 2};
+    const Place beside{parent.x + (p.x & 1 ? 1 : -1), parent.y + (p.y & 1 ? 1 : -1),
+                       parent.z + (p.z & 1 ? 1 : -1)};
+    float sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Place c{corner & 1 ? beside.x : parent.x, corner & 2 ? beside.y : parent.y,
+                    corner & 4 ? beside.z : parent.z};
+      const float weight =
+          (corner & 1 ? 0.25f : 0.75f) * (corner & 2 ? 0.25f : 0.75f) * (corner & 4 ? 0.25f : 0.75f);
+      const bool solid = coarse.kind_at(c.x, c.y, c.z) == CellKind::Solid;
+      const float shut = solid && coarse.open_count > 0 ? 1 - coarse.openness(c.x, c.y, c.z) : 1.0f;
+      sum += weight * (solid ? shut * coarse.q_at(parent.x, parent.y, parent.z) : coarse.q_at(c.x, c.y, c.z));
+    }
+    const float q = fine.q[i] + sum;
+    fine.q[i] = push_only ? at_least(q, 0.0f) : q;
+  }
+};
+
+}  // namespace sim::SIM_BACKEND
