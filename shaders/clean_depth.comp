@@ -1,5 +1,6 @@
 // Small two-dimensional narrow-range filter: removes the streaks that a separated filter leaves.
 #include "view.glsl"
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
@@ -14,7 +15,7 @@ const ivec2 half_window[12] =
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
   if (!is_fluid(centre) || front[at] == 0xffffffffu) {

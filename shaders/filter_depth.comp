@@ -1,6 +1,7 @@
 // One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle. A wide
 // filter takes strided samples; a last, dense round smooths what they step over.
 #include "view.glsl"
+#include "wet_tiles.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
@@ -14,7 +15,7 @@ uniform int counts;  // 1: the first time through this direction
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
   if (!is_fluid(centre)) {

@@ -1,5 +1,6 @@
 // Normals from the filtered depth by the smaller of the one-sided differences (van der Laan et al. 2009).
 #include "view.glsl"
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
@@ -25,7 +26,7 @@ vec3 tangent(ivec2 pixel, float depth, ivec2 step) {
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float depth = source[at];
   if (!is_fluid(depth)) {

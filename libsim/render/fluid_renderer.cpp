@@ -57,13 +57,7 @@ void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> 
   for (const View& view : views) check_view(view);
   State& s = *state_;
   s.timer.start();
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  s.counters.fill(0);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    s.targets[i].resize(views[i], s.options.thickness_step);
-    s.draw_view(s.targets[i], particles, framebuffer);
-  }
-  s.views_drawn = views.size();
+  s.draw_views(particles, views, framebuffer);
   s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
   glUseProgram(0);
 }

@@ -20,6 +20,8 @@ struct ViewTargets {
   GlBuffer normals;
   GlBuffer touched;                   ///< a word a particle: what occlusion.glsl remembers of it
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
+  GlBuffer wide_list;                 ///< particles with large footprints, see wide_list.glsl
+  GlBuffer wet;                       ///< which tiles hold water, see wet_tiles.glsl
   GlBuffer thickness;                 ///< fixed point
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
 
