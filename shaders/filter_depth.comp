@@ -4,9 +4,8 @@
 #include "wet_tiles.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
-layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 uniform ivec2 direction;
 uniform int dense;
@@ -18,16 +17,11 @@ void main() {
   if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
-  if (!is_fluid(centre)) {
+  const float radius = radii[at];
+  if (radius == 0.0) {
     target[at] = centre;
     return;
   }
-  if (front[at] == 0xffffffffu) {
-    if (direction.x == 1 && counts == 1) atomicAdd(front_missing, 1u);
-    target[at] = centre;
-    return;
-  }
-  const float radius = particles[front[at]].w;
   float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
   float reach = 3.0 * sigma;
   if (reach > narrow_range.w) {

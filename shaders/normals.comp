@@ -2,9 +2,8 @@
 #include "view.glsl"
 #include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
-layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 // Eye space, z to the viewer; w: radius of the particle in front.
 layout(std430, binding = 3) writeonly buffer Normals { vec4 normals[]; };
 
@@ -34,5 +33,5 @@ void main() {
     return;
   }
   const vec3 normal = cross(tangent(pixel, depth, ivec2(1, 0)), tangent(pixel, depth, ivec2(0, 1)));
-  normals[at] = vec4(normalize(normal), front[at] == 0xffffffffu ? 0.0 : particles[front[at]].w);
+  normals[at] = vec4(normalize(normal), radii[at]);
 }

@@ -175,7 +175,7 @@ void FluidRenderer::State::find_front() {
 void FluidRenderer::State::smooth_depth() {
   wet_tiles.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({0, t.depth.name(), 0, 0, 0, t.wet.name()});
+    bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(), t.wet.name()});
     dispatch_pixels(t.width, t.height);
   });
   timer.mark("wet tiles");
@@ -188,20 +188,20 @@ void FluidRenderer::State::smooth_depth() {
     each_view([&](const ViewTargets& t) {
       const GlBuffer& from = pass == 0 ? t.depth : pass % 2 == 0 ? t.filter_b : t.filter_a;
       const GlBuffer& to = pass % 2 == 0 ? t.filter_a : t.filter_b;
-      bind_storage({particles_, from.name(), t.front.name(), to.name(), counters.name(), t.wet.name()});
+      bind_storage({0, from.name(), t.radii.name(), to.name(), counters.name(), t.wet.name()});
       dispatch_pixels(t.width, t.height);
     });
   }
   timer.mark("filter");
   clean_depth.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.filter_b.name(), t.front.name(), t.filter_a.name(), 0, t.wet.name()});
+    bind_storage({0, t.filter_b.name(), t.radii.name(), t.filter_a.name(), 0, t.wet.name()});
     dispatch_pixels(t.width, t.height);
   });
   timer.mark("clean-up");
   normals.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.filter_a.name(), t.front.name(), t.normals.name(), 0, t.wet.name()});
+    bind_storage({0, t.filter_a.name(), t.radii.name(), t.normals.name(), 0, t.wet.name()});
     dispatch_pixels(t.width, t.height);
   });
   timer.mark("normals");
@@ -211,15 +211,15 @@ void FluidRenderer::State::smooth_thickness() {
   thickness_first.use();
   glUniform2i(thickness_first.uniform("direction"), 1, 0);
   each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.front.name(), t.depth.name(), t.thickness_b.name(), counters.name(),
-                  t.thickness.name()});
+    bind_storage(
+        {0, t.depth.name(), t.radii.name(), t.thickness_b.name(), counters.name(), t.thickness.name()});
     dispatch_pixels(t.cells_x, t.cells_y);
   });
   thickness_second.use();
   glUniform2i(thickness_second.uniform("direction"), 0, 1);
   each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.front.name(), t.depth.name(), t.thickness_a.name(), counters.name(),
-                  t.thickness_b.name()});
+    bind_storage(
+        {0, t.depth.name(), t.radii.name(), t.thickness_a.name(), counters.name(), t.thickness_b.name()});
     dispatch_pixels(t.cells_x, t.cells_y);
   });
   timer.mark("thickness");

@@ -16,6 +16,7 @@ struct ViewTargets {
   int cells_x = 0, cells_y = 0;
   GlBuffer block;               ///< the shaders' ViewBlock
   GlBuffer depth, front;        ///< splatted depth (float bits), particle in front
+  GlBuffer radii;               ///< of the particle in front; 0: none
   GlBuffer filter_a, filter_b;  ///< filtered depth ends in filter_a
   GlBuffer normals;
   GlBuffer touched;                   ///< a word a particle: what occlusion.glsl remembers of it
