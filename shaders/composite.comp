@@ -64,16 +64,20 @@ void main() {
   const vec3 d = normalize(mat3(eye_to_world) * ray);
   const float per_depth = length(ray);
   const float footprint_per_m = rays.z / per_depth;
-  float frame_at, cover;
-  vec3 light = seen(eye, d, footprint_per_m, frame_at, cover);
+  const Crossing crossing = cross_tank(eye, d);
+  float frame_at;
+  float cover = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
   const float z = depth[at];
+  const float water_cover = is_fluid(z) ? outline_cover(pixel) : 0.0;
+  vec3 light = vec3(0.0);
+  if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
   if (is_fluid(z)) {
     const float distance_m = z * per_depth;
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
     const vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
-    light = mix(light, shaded, outline_cover(pixel));
+    light = mix(light, shaded, water_cover);
     // Water that touches the near wall lies behind its frame.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
