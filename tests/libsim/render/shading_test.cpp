@@ -159,6 +159,25 @@ TEST_F(ShadingGl, AFramebufferOfAnotherKindHoldsTheSamePicture) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+TEST_F(ShadingGl, ACoarserThicknessChangesLittle) {
+  const auto view = onto_the_tank(640, 400);
+  auto options = sim::RenderOptions{};
+  sim::FluidRenderer usual(room(), options);
+  const auto expected = draw(usual, pool(), view);
+  for (const int step : {1, 4}) {
+    options.thickness_step = step;
+    sim::FluidRenderer other(room(), options);
+    const auto seen = draw(other, pool(), view);
+    double sum = 0;
+    for (std::size_t k = 0; k < seen.rgba.size(); ++k) {
+      const int difference = seen.rgba[k] - expected.rgba[k];
+      sum += difference * difference;
+    }
+    const double mse = sum / (0.75 * static_cast<double>(seen.rgba.size()));
+    EXPECT_GT(10 * std::log10(255 * 255 / mse), 45) << step;
+  }
+}
+
 TEST_F(ShadingGl, WaterThatLeftATileLeavesNothingThere) {
   const auto view = view_along_z(167, 121), small = view_along_z(90, 70);
   const auto left = ball(-1.2F, -0.5F, 4), right = ball(1, 0.6F, 4);
