@@ -1,18 +1,21 @@
-// The farthest depth of each block of pixels: one invocation a block.
+// The farthest depth of each block of pixels: one work group a block.
 #include "view.glsl"
 #include "occlusion.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 1) readonly buffer Depth { uint depth_bits[]; };
 layout(std430, binding = 7) writeonly buffer Blocks { uint farthest[]; };
+shared uint far;
 
 void main() {
-  const ivec2 blocks = (size.xy + block_px - 1) / block_px;
-  const ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(block, blocks))) return;
-  const ivec2 low = block * block_px, high = min(low + block_px, size.xy);
-  uint far = 0u;
-  for (int y = low.y; y < high.y; ++y) {
-    for (int x = low.x; x < high.x; ++x) far = max(far, depth_bits[y * size.x + x]);
+  if (gl_LocalInvocationIndex == 0u) far = 0u;
+  barrier();
+  const ivec2 first = ivec2(gl_WorkGroupID.xy) * block_px + ivec2(gl_LocalInvocationID.xy);
+  uint own = 0u;
+  for (int y = 0; y < block_px; y += int(gl_WorkGroupSize.y)) {
+    const ivec2 pixel = first + ivec2(0, y);
+    if (all(lessThan(pixel, size.xy))) own = max(own, depth_bits[pixel.y * size.x + pixel.x]);
   }
-  farthest[block.y * blocks.x + block.x] = far;
+  atomicMax(far, own);
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) farthest[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = far;
 }

@@ -1,9 +1,9 @@
 // Small two-dimensional narrow-range filter: removes the streaks that a separated filter leaves.
 #include "view.glsl"
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
-layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 #include "narrow_range.glsl"
 
@@ -14,14 +14,14 @@ const ivec2 half_window[12] =
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
-  if (!is_fluid(centre) || front[at] == 0xffffffffu) {
+  const float radius = radii[at];
+  if (radius == 0.0) {
     target[at] = centre;
     return;
   }
-  const float radius = particles[front[at]].w;
   // Never wider than the particle: droplets of a few px keep their shape.
   const float sigma = min(1.5, 0.5 * radius / (centre * rays.x));
   const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);

@@ -1,11 +1,11 @@
 // One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle. A wide
 // filter takes strided samples; a last, dense round smooths what they step over.
 #include "view.glsl"
+#include "wet_tiles.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
-layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 uniform ivec2 direction;
 uniform int dense;
@@ -14,19 +14,14 @@ uniform int counts;  // 1: the first time through this direction
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
-  if (!is_fluid(centre)) {
+  const float radius = radii[at];
+  if (radius == 0.0) {
     target[at] = centre;
     return;
   }
-  if (front[at] == 0xffffffffu) {
-    if (direction.x == 1 && counts == 1) atomicAdd(front_missing, 1u);
-    target[at] = centre;
-    return;
-  }
-  const float radius = particles[front[at]].w;
   float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
   float reach = 3.0 * sigma;
   if (reach > narrow_range.w) {

@@ -1,9 +1,9 @@
 // Normals from the filtered depth by the smaller of the one-sided differences (van der Laan et al. 2009).
 #include "view.glsl"
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
-layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 // Eye space, z to the viewer; w: radius of the particle in front.
 layout(std430, binding = 3) writeonly buffer Normals { vec4 normals[]; };
 
@@ -25,7 +25,7 @@ vec3 tangent(ivec2 pixel, float depth, ivec2 step) {
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
   const int at = pixel.y * size.x + pixel.x;
   const float depth = source[at];
   if (!is_fluid(depth)) {
@@ -33,5 +33,5 @@ void main() {
     return;
   }
   const vec3 normal = cross(tangent(pixel, depth, ivec2(1, 0)), tangent(pixel, depth, ivec2(0, 1)));
-  normals[at] = vec4(normalize(normal), front[at] == 0xffffffffu ? 0.0 : particles[front[at]].w);
+  normals[at] = vec4(normalize(normal), radii[at]);
 }

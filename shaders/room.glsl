@@ -79,15 +79,17 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
   return mix(glass, frame_colour, frame_cover(p, c.leave_axis, width));
 }
 
-// From anywhere. `frame_at`: distance of the frame on the near side of the tank, with its cover.
-vec3 seen(vec3 o, vec3 d, float footprint_per_m, out float frame_at, out float cover) {
-  const Crossing c = cross_tank(o, d);
-  frame_at = 0.0;
-  cover = 0.0;
+// How much of the pixel the frame on the near side of the tank covers; `at`: its distance, 0 where there is none.
+float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at) {
+  at = 0.0;
+  if (c.leave <= max(c.enter, 0.0) || c.enter <= 0.0) return 0.0;
+  at = c.enter;
+  return frame_cover(o + c.enter * d, c.enter_axis, footprint_per_m * c.enter);
+}
+
+// From anywhere, without that frame.
+vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
   if (c.leave <= max(c.enter, 0.0)) return outdoors(o, d);
   if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0);
-  const vec3 p = o + c.enter * d;
-  frame_at = c.enter;
-  cover = frame_cover(p, c.enter_axis, footprint_per_m * c.enter);
-  return seen_from_inside(p + 1e-4 * d, d, footprint_per_m, c.enter);
+  return seen_from_inside(o + c.enter * d + 1e-4 * d, d, footprint_per_m, c.enter);
 }

@@ -2,9 +2,8 @@
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
-layout(std430, binding = 1) readonly buffer Front { uint front[]; };
-layout(std430, binding = 2) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 #ifdef FIRST
 layout(std430, binding = 5) readonly buffer Source { uint source[]; };
@@ -17,8 +16,8 @@ const int most_taps = 6;
 float sigma_cells(ivec2 cell) {
   const ivec2 pixel = min(cell * int(thickness_rule.z), size.xy - 1);
   const int at = pixel.y * size.x + pixel.x;
-  if (front[at] == 0xffffffffu) return 0.0;
-  return 0.5 * particles[front[at]].w * origin.w / (depth[at] * rays.x * thickness_rule.z);
+  if (radii[at] == 0.0) return 0.0;
+  return 0.5 * radii[at] * origin.w / (depth[at] * rays.x * thickness_rule.z);
 }
 
 void main() {

@@ -109,15 +109,25 @@ vec2 cell_slope(ivec2 cell, vec4 grid) {
 }
 
 // Length of the ray inside the sphere, uncut, in thickness units; below cell size the sphere's volume over the cell.
+// `precise`: whoever splats a sphere adds the same.
 uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per_m) {
-  float entry, leave;
-  Sphere whole = s;
-  whole.cut = false;  // the depth decides where there is water
-  if (!meets(whole, slope, subpixel, entry, leave)) return 0u;
-  float chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
+  precise float chord;
   if (subpixel) {
     const vec2 cell = s.centre.z * grid.xz;
     chord = 4.18879 * s.radius * s.radius * s.radius / (cell.x * cell.y);
+  } else if (crosses_near(s)) {
+    float entry, leave;
+    Sphere whole = s;
+    whole.cut = false;  // the depth decides where there is water
+    if (!meets(whole, slope, false, entry, leave)) return 0u;
+    chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
+  } else {
+    // The centre's distance from the ray by their cross product.
+    precise float x = s.centre.y - s.centre.z * slope.y;
+    precise float y = s.centre.z * slope.x - s.centre.x;
+    precise float z = s.centre.x * slope.y - s.centre.y * slope.x;
+    precise float off = (x * x + y * y + z * z) / (slope.x * slope.x + slope.y * slope.y + 1.0);
+    chord = 2.0 * sqrt(max(s.radius * s.radius - off, 0.0));
   }
   return uint(min(chord * units_per_m + 0.5, 4294967040.0));
 }

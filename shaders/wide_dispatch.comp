@@ -15,8 +15,9 @@ void main() {
     by_group += groups;
     by_tiles += tiles;
   }
-  group_dispatch[0] = min(groups, group_row);
-  group_dispatch[1] = (groups + group_row - 1u) / group_row;
+  const uint work_groups = (groups + group_teams - 1u) / group_teams;
+  group_dispatch[0] = min(work_groups, group_row);
+  group_dispatch[1] = (work_groups + group_row - 1u) / group_row;
   group_dispatch[2] = 1u;
   tile_dispatch[0] = min(tiles, group_row);
   tile_dispatch[1] = (tiles + group_row - 1u) / group_row;

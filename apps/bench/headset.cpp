@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/bench/commands.hpp"
+#include "apps/bench/pass_table.hpp"
 #include "apps/bench/timing.hpp"
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headset/headset_session.hpp"
@@ -32,11 +33,13 @@ struct HeadsetBenchOptions {
   std::string scene = "data/scenes/single_dam.toml";
   std::string json;
   int frames = 300, warm_up = 30;
+  bool passes = false;
 };
 
 /// Milliseconds of each frame; every stage ends with the device idle.
 struct Stages {
   std::vector<double> step, draw, hand_over, whole;
+  PassTable passes = {};
 };
 
 /// A live fluid that is stepped and drawn for both eyes in every slot, one stage after another.
@@ -47,6 +50,7 @@ class HeadsetBench {
     picture_ = std::make_unique<sim::Offscreen>(size.width, size.height);
     StimulusChoice choice = options.fluid;
     choice.scene = base::find_input(options.scene);
+    choice.render.time_passes = options.passes;
     fluid_ = make_live_fluid(choice);
     fluid_->start(0);
     const auto since = std::chrono::steady_clock::now();
@@ -99,6 +103,7 @@ class HeadsetBench {
     stages->draw.push_back(drawn - stepped);
     stages->hand_over.push_back(over - drawn);
     stages->whole.push_back(over - begun);
+    stages->passes.add(fluid_->pass_times());
   }
 
   sim::GlContext gl_;
@@ -131,10 +136,15 @@ void run_headset(const HeadsetBenchOptions& options) {
                       {"draw", figures_of(stages.draw)},
                       {"hand_over", figures_of(stages.hand_over)},
                       {"whole", figures_of(stages.whole)}};
+  if (options.passes) result["passes"] = stages.passes.figures();
   fmt::print("{}\n{}, {} particles, {} frames, ms:\n", result["headset"].get<std::string>(),
              result["fluid"].get<std::string>(), result["particles"].get<std::int64_t>(), options.frames);
   for (const char* stage : {"step", "draw", "hand_over", "whole"})
     print_stage(stage, result["stages"][stage]);
+  if (options.passes) {
+    fmt::print("  passes of both eyes, medians\n");
+    print_passes(result["passes"]);
+  }
   if (!result["refresh_hz"].is_null())
     fmt::print("  period     {:8.3f} at {:.2f} Hz\n", 1e3 / result["refresh_hz"].get<double>(),
                result["refresh_hz"].get<double>());
@@ -153,6 +163,8 @@ void add_headset_command(CLI::App& app) {
   add_backend(*command, options->fluid.backend);
   add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
   add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
+  command->add_flag("--passes", options->passes,
+                    "Also time each pass of the renderer, on the device's clock");
   command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
   command->callback([options] { run_headset(*options); });
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/bench/pass_table.hpp"
 #include "apps/bench/timing.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/offscreen.hpp"
@@ -34,19 +35,6 @@ sim::RenderOptions timed_passes() {
   return options;
 }
 
-/// A pass and its time in every picture.
-struct Pass {
-  std::string name;
-  std::vector<double> ms;
-};
-
-void add(std::vector<Pass>& passes, const sim::PassTime& time) {
-  const auto known =
-      std::find_if(passes.begin(), passes.end(), [&](const Pass& pass) { return pass.name == time.pass; });
-  Pass& pass = known == passes.end() ? passes.emplace_back(Pass{time.pass, {}}) : *known;
-  pass.ms.push_back(time.ms);
-}
-
 }  // namespace
 
 struct RenderTimer::State {
@@ -59,7 +47,7 @@ struct RenderTimer::State {
   std::vector<sim::RenderParticle> particles;
   bool uploaded = false;
   std::vector<double> transfer_ms, render_ms;
-  std::vector<Pass> passes;
+  PassTable passes;
 
   State(sim::GlContext current, const sim::Scene& scene, const PictureSize& chosen, int count)
       : size(chosen),
@@ -104,15 +92,13 @@ RenderTimer::Times RenderTimer::draw(sim::Simulation& fluid) {
   const Times times{moved - start, milliseconds_now() - moved};
   s.transfer_ms.push_back(times.transfer);
   s.render_ms.push_back(times.render);
-  for (const auto& time : s.renderer.times()) add(s.passes, time);
+  s.passes.add(s.renderer.times());
   return times;
 }
 
 nlohmann::json RenderTimer::figures() const {
   const State& s = *state_;
   if (s.render_ms.empty()) return nullptr;
-  nlohmann::json passes = nlohmann::json::object();
-  for (const Pass& pass : s.passes) passes[pass.name] = quantile(pass.ms, 0.5);
   const auto counts = s.renderer.counts();
   return {{"render_ms_median", quantile(s.render_ms, 0.5)},
           {"render_ms_p95", quantile(s.render_ms, 0.95)},
@@ -125,7 +111,7 @@ nlohmann::json RenderTimer::figures() const {
           {"opengl", sim::gl_description()},
           {"render_front_missing", counts.front_missing},
           {"render_beyond_walls", counts.beyond_walls},
-          {"passes", passes}};
+          {"passes", s.passes.figures()}};
 }
 
 void print_render_figures(const nlohmann::json& figures) {
@@ -136,8 +122,7 @@ void print_render_figures(const nlohmann::json& figures) {
               figures["render_ms_median"].get<double>(), figures["render_ms_p95"].get<double>(),
               figures["render_views"].get<int>(), figures["render_width_px"].get<int>(),
               figures["render_height_px"].get<int>(), figures["opengl"].get<std::string>().c_str());
-  for (const auto& [pass, ms] : figures["passes"].items())
-    std::printf("    %-12s %6.3f ms\n", pass.c_str(), ms.get<double>());
+  print_passes(figures["passes"]);
 }
 
 }  // namespace apps

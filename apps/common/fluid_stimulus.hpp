@@ -89,6 +89,10 @@ class LiveFluid final : public study::Stimulus {
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
+  /// Of the last picture; empty unless its options said so (FluidRenderer::times).
+  std::vector<sim::PassTime> pass_times() const {
+    return picture_ ? picture_->renderer().times() : std::vector<sim::PassTime>();
+  }
 
  private:
   void advance();
@@ -122,8 +126,9 @@ struct StimulusChoice {
   /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
   std::optional<sim::FrameRate> fixed_rate;
   stats::PtpeModel model;
-  Viewing viewing;        ///< of a bake with pictures: nothing
-  bool overview = false;  ///< live fluid is watched by the scene's camera for figures
+  Viewing viewing;                 ///< of a bake with pictures: nothing
+  bool overview = false;           ///< live fluid is watched by the scene's camera for figures
+  sim::RenderOptions render = {};  ///< of live fluid
 };
 
 /// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another

@@ -47,7 +47,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
     if (!options.start) options.start = simulation->read_state();
     return simulation;
   };
-  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing);
+  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render);
 }
 
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {

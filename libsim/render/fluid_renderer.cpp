@@ -22,7 +22,8 @@ void check_options(const RenderOptions& o) {
   check(o.filter_max_px >= 1 && o.filter_max_taps >= 1, "the filter needs at least one sample and one px",
         "use about 256 px and 12 samples");
   check(o.filter_rounds >= 1 && o.filter_rounds <= 8, "filter_rounds must be 1 to 8", "use 2");
-  check(o.thickness_step == 1 || o.thickness_step == 2, "thickness_step must be 1 or 2", "use 2");
+  check(o.thickness_step == 1 || o.thickness_step == 2 || o.thickness_step == 4,
+        "thickness_step must be 1, 2 or 4", "use 2");
   check(positive(o.thickness_unit_m) && positive(o.packing), "thickness unit and packing must be positive",
         "use 1/65536 m and pi/6");
   check(o.thread_px >= 0 && o.group_px >= std::max(o.thread_px, 1),
@@ -57,13 +58,7 @@ void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> 
   for (const View& view : views) check_view(view);
   State& s = *state_;
   s.timer.start();
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  s.counters.fill(0);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    s.targets[i].resize(views[i], s.options.thickness_step);
-    s.draw_view(s.targets[i], particles, framebuffer);
-  }
-  s.views_drawn = views.size();
+  s.draw_views(particles, views, framebuffer);
   s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
   glUseProgram(0);
 }

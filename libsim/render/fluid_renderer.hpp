@@ -38,7 +38,7 @@ struct RenderOptions {
   int filter_max_px = 256;
   /// Samples a side and direction; a wider filter takes strided samples.
   int filter_max_taps = 12;
-  /// 1: thickness at every pixel; 2: at every second pixel each way.
+  /// Thickness at every pixel (1), every second (2) or every fourth (4) each way.
   int thickness_step = 2;
   /// Unit of the fixed-point thickness, m; a pixel saturates at 2^32 - 1 units.
   float thickness_unit_m = 1.0F / 65536;

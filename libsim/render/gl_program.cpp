@@ -88,10 +88,12 @@ GlProgram::GlProgram(std::initializer_list<ShaderFile> files, const std::string&
   }
 }
 
-GlProgram::GlProgram(GlProgram&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+GlProgram::GlProgram(GlProgram&& other) noexcept
+    : name_(std::exchange(other.name_, 0)), uniforms_(std::move(other.uniforms_)) {}
 
 GlProgram& GlProgram::operator=(GlProgram&& other) noexcept {
   std::swap(name_, other.name_);
+  std::swap(uniforms_, other.uniforms_);
   return *this;
 }
 
@@ -101,6 +103,11 @@ GlProgram::~GlProgram() {
 
 void GlProgram::use() const { glUseProgram(name_); }
 
-int GlProgram::uniform(const char* name) const { return glGetUniformLocation(name_, name); }
+int GlProgram::uniform(const char* name) const {
+  for (const auto& [known, location] : uniforms_) {
+    if (known == name) return location;
+  }
+  return uniforms_.emplace_back(name, glGetUniformLocation(name_, name)).second;
+}
 
 }  // namespace sim

@@ -3,6 +3,8 @@
 
 #include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace sim {
 
@@ -24,10 +26,12 @@ class GlProgram {
 
   void use() const;
   unsigned name() const { return name_; }
-  int uniform(const char* name) const;  ///< location; -1 when the program has no use for it
+  /// Location; -1 when the program has no use for it. The driver is asked once.
+  int uniform(const char* name) const;
 
  private:
   unsigned name_ = 0;
+  mutable std::vector<std::pair<std::string, int>> uniforms_;
 };
 
 }  // namespace sim

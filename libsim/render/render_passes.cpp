@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t infinity_bits = 0x7f800000u;
 constexpr std::int64_t list_header_words = 12;
 constexpr int block_px = 16;  // of occlusion.glsl
-constexpr GLuint tile_groups = 64;
+constexpr GLuint tile_groups = 64;  // a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
 struct ViewBlock {
@@ -29,24 +29,18 @@ std::array<float, 4> pack(const PixelRays& rays) {
 
 void dispatch_pixels(int width, int height) {
   glDispatchCompute(static_cast<GLuint>(width + 15) / 16, static_cast<GLuint>(height + 7) / 8, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void dispatch_particles(std::int64_t count) {
   const std::int64_t groups = (count + 63) / 64;
   const std::int64_t across = std::min<std::int64_t>(groups, 32768);
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 }  // namespace
 
 void bind_storage(std::initializer_list<unsigned> buffers) {
-  GLuint binding = 0;
-  for (const unsigned buffer : buffers) {
-    if (buffer) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
-    ++binding;
-  }
+  glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizei>(buffers.size()), std::data(buffers));
 }
 
 GlProgram compute_program(const char* file, const char* defines) {
@@ -91,131 +85,178 @@ void FluidRenderer::State::write_block(ViewTargets& t) const {
       {options.absorption_per_m[0], options.absorption_per_m[1], options.absorption_per_m[2], 0},
       tank};
   glNamedBufferSubData(t.block.name(), 0, sizeof block, &block);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, t.block.name());
 }
 
-void FluidRenderer::State::clear(ViewTargets& t, std::int64_t count) {
-  // The passes of the last view wrote these buffers; a clear is no shader access.
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  t.follow(count);
-  wide_list.reserve(4 * (list_header_words + 2 * count));
-  wide_list.fill(0, 4 * list_header_words);
+template <class Dispatch>
+void FluidRenderer::State::each_view(Dispatch dispatch, unsigned more_barriers) {
+  for (ViewTargets& t : std::span(targets).first(views_drawn)) {
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, t.block.name());
+    dispatch(t);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | more_barriers);
+}
+
+void FluidRenderer::State::clear(ViewTargets& t) {
+  t.follow(count_);
+  t.wide_list.reserve(4 * (list_header_words + 2 * count_));
+  t.wide_list.fill(0, 4 * list_header_words);
   t.depth.fill(infinity_bits);
   t.front.fill(GBuffer::no_particle);
   t.thickness.fill(0);
 }
 
+void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
+  bind_storage({particles_, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(),
+                t.wide_list.name(), t.touched.name(), t.blocks.name()});
+}
+
 /// Runs a program on the wide footprints of the last round, or of both.
-void FluidRenderer::State::dispatch_wide(const GlProgram& program, std::int64_t count, int all_items) const {
+void FluidRenderer::State::dispatch_wide(const GlProgram& program, int all_items) {
   wide_dispatch.use();
   glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
   glUniform1i(wide_dispatch.uniform("all_items"), all_items);
-  glDispatchCompute(1, 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  each_view(
+      [&](const ViewTargets& t) {
+        bind_splat(t);
+        glDispatchCompute(1, 1, 1);
+      },
+      GL_COMMAND_BARRIER_BIT);
   program.use();
-  glUniform1ui(program.uniform("particle_count"), static_cast<GLuint>(count));
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, wide_list.name());
-  for (int tiles = 0; tiles < 2; ++tiles) {
-    glUniform1i(program.uniform("tiles"), tiles);
-    glDispatchComputeIndirect(tiles ? 20 : 8);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glUniform1ui(program.uniform("particle_count"), static_cast<GLuint>(count_));
+  each_view([&](const ViewTargets& t) {
+    bind_splat(t);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, t.wide_list.name());
+    for (int tiles = 0; tiles < 2; ++tiles) {
+      glUniform1i(program.uniform("tiles"), tiles);
+      glDispatchComputeIndirect(tiles ? 20 : 8);
+    }
+  });
 }
 
-void FluidRenderer::State::splat_round(int second_round, std::int64_t count) {
+void FluidRenderer::State::splat_round(int second_round) {
   splat.use();
-  glUniform1ui(splat.uniform("particle_count"), static_cast<GLuint>(count));
+  glUniform1ui(splat.uniform("particle_count"), static_cast<GLuint>(count_));
   glUniform1i(splat.uniform("thread_limit"), options.thread_px);
   glUniform1i(splat.uniform("group_limit"), options.group_px);
   glUniform1i(splat.uniform("second_round"), second_round);
-  dispatch_particles(count);
+  each_view([&](const ViewTargets& t) {
+    bind_splat(t);
+    dispatch_particles(count_);
+  });
   timer.mark("splat small");
-  dispatch_wide(splat_wide, count, 0);
+  dispatch_wide(splat_wide, 0);
   timer.mark("splat wide");
 }
 
-void FluidRenderer::State::splat_particles(ViewTargets& t, unsigned particles, std::int64_t count) {
-  bind_storage({particles, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(),
-                wide_list.name(), t.touched.name(), t.blocks.name()});
-  splat_round(0, count);
+void FluidRenderer::State::splat_particles() {
+  splat_round(0);
   block_depth.use();
-  dispatch_pixels((t.width + block_px - 1) / block_px, (t.height + block_px - 1) / block_px);
+  each_view([&](const ViewTargets& t) {
+    bind_splat(t);
+    glDispatchCompute(static_cast<GLuint>(t.width + block_px - 1) / block_px,
+                      static_cast<GLuint>(t.height + block_px - 1) / block_px, 1);
+  });
   timer.mark("occlusion");
-  splat_round(1, count);
+  splat_round(1);
 }
 
-void FluidRenderer::State::find_front(std::int64_t count) {
+void FluidRenderer::State::find_front() {
   front.use();
-  glUniform1ui(front.uniform("particle_count"), static_cast<GLuint>(count));
+  glUniform1ui(front.uniform("particle_count"), static_cast<GLuint>(count_));
   glUniform1i(front.uniform("thread_limit"), options.thread_px);
-  dispatch_particles(count);
-  dispatch_wide(front_wide, count, 1);
+  each_view([&](const ViewTargets& t) {
+    bind_splat(t);
+    dispatch_particles(count_);
+  });
+  dispatch_wide(front_wide, 1);
   timer.mark("front");
 }
 
-void FluidRenderer::State::smooth_depth(ViewTargets& t, unsigned particles) {
+void FluidRenderer::State::smooth_depth() {
+  wet_tiles.use();
+  each_view([&](const ViewTargets& t) {
+    bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(), t.wet.name()});
+    dispatch_pixels(t.width, t.height);
+  });
+  timer.mark("wet tiles");
   filter_depth.use();
-  const GlBuffer* source = &t.depth;
   const int wide_passes = 2 * options.filter_rounds;
   for (int pass = 0; pass < wide_passes + 2; ++pass) {
-    GlBuffer* target = pass % 2 == 0 ? &t.filter_a : &t.filter_b;
-    bind_storage({particles, source->name(), t.front.name(), target->name(), counters.name()});
     glUniform1i(filter_depth.uniform("dense"), pass >= wide_passes);
     glUniform1i(filter_depth.uniform("counts"), pass < 2);
     glUniform2i(filter_depth.uniform("direction"), pass % 2 == 0, pass % 2 == 1);
-    dispatch_pixels(t.width, t.height);
-    source = target;
+    each_view([&](const ViewTargets& t) {
+      const GlBuffer& from = pass == 0 ? t.depth : pass % 2 == 0 ? t.filter_b : t.filter_a;
+      const GlBuffer& to = pass % 2 == 0 ? t.filter_a : t.filter_b;
+      bind_storage({0, from.name(), t.radii.name(), to.name(), counters.name(), t.wet.name()});
+      dispatch_pixels(t.width, t.height);
+    });
   }
   timer.mark("filter");
   clean_depth.use();
-  bind_storage({particles, t.filter_b.name(), t.front.name(), t.filter_a.name()});
-  dispatch_pixels(t.width, t.height);
+  each_view([&](const ViewTargets& t) {
+    bind_storage({0, t.filter_b.name(), t.radii.name(), t.filter_a.name(), 0, t.wet.name()});
+    dispatch_pixels(t.width, t.height);
+  });
   timer.mark("clean-up");
   normals.use();
-  bind_storage({particles, t.filter_a.name(), t.front.name(), t.normals.name()});
-  dispatch_pixels(t.width, t.height);
+  each_view([&](const ViewTargets& t) {
+    bind_storage({0, t.filter_a.name(), t.radii.name(), t.normals.name(), 0, t.wet.name()});
+    dispatch_pixels(t.width, t.height);
+  });
   timer.mark("normals");
 }
 
-void FluidRenderer::State::smooth_thickness(ViewTargets& t, unsigned particles) {
+void FluidRenderer::State::smooth_thickness() {
   thickness_first.use();
-  bind_storage(
-      {particles, t.front.name(), t.depth.name(), t.thickness_b.name(), counters.name(), t.thickness.name()});
   glUniform2i(thickness_first.uniform("direction"), 1, 0);
-  dispatch_pixels(t.cells_x, t.cells_y);
+  each_view([&](const ViewTargets& t) {
+    bind_storage(
+        {0, t.depth.name(), t.radii.name(), t.thickness_b.name(), counters.name(), t.thickness.name()});
+    dispatch_pixels(t.cells_x, t.cells_y);
+  });
   thickness_second.use();
-  bind_storage({particles, t.front.name(), t.depth.name(), t.thickness_a.name(), counters.name(),
-                t.thickness_b.name()});
   glUniform2i(thickness_second.uniform("direction"), 0, 1);
-  dispatch_pixels(t.cells_x, t.cells_y);
+  each_view([&](const ViewTargets& t) {
+    bind_storage(
+        {0, t.depth.name(), t.radii.name(), t.thickness_a.name(), counters.name(), t.thickness_b.name()});
+    dispatch_pixels(t.cells_x, t.cells_y);
+  });
   timer.mark("thickness");
 }
 
-void FluidRenderer::State::shade(const ViewTargets& t, unsigned framebuffer) {
-  const Viewport& v = t.view.viewport;
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glViewport(v.x, v.y, v.width, v.height);
+void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
   composite.use();
-  bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name()});
-  glBindVertexArray(vertex_array);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
+  picture.begin(framebuffer, views);
+  each_view([&](const ViewTargets& t) {
+    bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name()});
+    dispatch_pixels(t.width, t.height);
+  });
+  picture.end(framebuffer, views);
   timer.mark("shade");
 }
 
-void FluidRenderer::State::draw_view(ViewTargets& t, const ParticleBuffer& particles, unsigned framebuffer) {
-  const std::int64_t count = particles.count();
-  const unsigned name = particles.gl_name() ? particles.gl_name() : no_particles.name();
-  write_block(t);
-  clear(t, count);
-  timer.mark("clear");
-  if (count > 0) {
-    splat_particles(t, name, count);
-    find_front(count);
+void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<const View> views,
+                                      unsigned framebuffer) {
+  particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
+  count_ = from.count();
+  views_drawn = views.size();
+  // The passes of the last draw wrote these buffers; a clear is no shader access.
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  counters.fill(0);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    targets[i].resize(views[i], options.thickness_step);
+    write_block(targets[i]);
+    clear(targets[i]);
   }
-  smooth_depth(t, name);
-  smooth_thickness(t, name);
-  shade(t, framebuffer);
+  timer.mark("clear");
+  if (count_ > 0) {
+    splat_particles();
+    find_front();
+  }
+  smooth_depth();
+  smooth_thickness();
+  shade(views, framebuffer);
 }
 
 }  // namespace sim

@@ -6,10 +6,12 @@
 
 #include <array>
 #include <initializer_list>
+#include <span>
 
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
+#include "libsim/render/picture_target.hpp"
 #include "libsim/render/view_targets.hpp"
 
 namespace sim {
@@ -19,7 +21,7 @@ inline constexpr std::size_t most_views = 2;
 /// A program of one compute shader.
 GlProgram compute_program(const char* file, const char* defines = "");
 
-/// The buffers become shader storage 0, 1, ...; 0 leaves one as it is.
+/// The buffers become shader storage 0, 1, ...; 0 is none.
 void bind_storage(std::initializer_list<unsigned> buffers);
 
 struct FluidRenderer::State {
@@ -30,6 +32,7 @@ struct FluidRenderer::State {
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
   GlProgram block_depth = compute_program("block_depth.comp");
   GlProgram splat_wide = compute_program("splat_wide.comp");
+  GlProgram wet_tiles = compute_program("wet_tiles.comp");
   GlProgram front = compute_program("front.comp");
   GlProgram front_wide = compute_program("splat_wide.comp", "#define FRONT\n");
   GlProgram filter_depth = compute_program("filter_depth.comp");
@@ -37,9 +40,10 @@ struct FluidRenderer::State {
   GlProgram normals = compute_program("normals.comp");
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
-  GlProgram composite{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "composite.frag"}};
+  GlProgram composite = compute_program("composite.comp");
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
-  GlBuffer counters, wide_list, no_particles, values;
+  GlBuffer counters, no_particles, values;
+  PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
   std::size_t views_drawn = 0;
@@ -50,16 +54,26 @@ struct FluidRenderer::State {
 
   /// A view of the last draw, ready to be read.
   const ViewTargets& drawn(std::size_t view) const;
+  void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer);
+
+ private:
+  /// A pass: `dispatch` for one view after another with its ViewBlock bound, then the barrier. The device may
+  /// work on both views at once.
+  template <class Dispatch>
+  void each_view(Dispatch dispatch, unsigned more_barriers = 0);
+  void bind_splat(const ViewTargets& t) const;
   void write_block(ViewTargets& t) const;
-  void clear(ViewTargets& t, std::int64_t count);
-  void splat_particles(ViewTargets& t, unsigned particles, std::int64_t count);
-  void splat_round(int second_round, std::int64_t count);
-  void dispatch_wide(const GlProgram& program, std::int64_t count, int all_items) const;
-  void find_front(std::int64_t count);
-  void smooth_depth(ViewTargets& t, unsigned particles);
-  void smooth_thickness(ViewTargets& t, unsigned particles);
-  void shade(const ViewTargets& t, unsigned framebuffer);
-  void draw_view(ViewTargets& t, const ParticleBuffer& particles, unsigned framebuffer);
+  void clear(ViewTargets& t);
+  void splat_particles();
+  void splat_round(int second_round);
+  void dispatch_wide(const GlProgram& program, int all_items);
+  void find_front();
+  void smooth_depth();
+  void smooth_thickness();
+  void shade(std::span<const View> views, unsigned framebuffer);
+
+  GLuint particles_ = 0;  // of this draw
+  std::int64_t count_ = 0;
 };
 
 }  // namespace sim

@@ -6,6 +6,8 @@ namespace sim {
 
 void ViewTargets::resize(const View& new_view, int thickness_step) {
   view = new_view;
+  const bool same_size = width == view.viewport.width && height == view.viewport.height;
+  if (same_size) return;
   width = view.viewport.width;
   height = view.viewport.height;
   cells_x = (width + thickness_step - 1) / thickness_step;
@@ -13,10 +15,12 @@ void ViewTargets::resize(const View& new_view, int thickness_step) {
   const std::int64_t pixels = std::int64_t{width} * height;
   const std::int64_t cells = std::int64_t{cells_x} * cells_y;
   block.reserve(512);
-  for (GlBuffer* buffer : {&depth, &front, &filter_a, &filter_b}) buffer->reserve(4 * pixels);
+  for (GlBuffer* buffer : {&depth, &front, &radii, &filter_a, &filter_b}) buffer->reserve(4 * pixels);
   normals.reserve(16 * pixels);
   blocks.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 15) / 16));
   for (GlBuffer* buffer : {&thickness, &thickness_a, &thickness_b}) buffer->reserve(4 * cells);
+  wet.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 7) / 8));
+  wet.fill(1);  // nothing in the buffers holds for this size
 }
 
 void ViewTargets::follow(std::int64_t count) {

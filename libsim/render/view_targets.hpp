@@ -16,10 +16,13 @@ struct ViewTargets {
   int cells_x = 0, cells_y = 0;
   GlBuffer block;               ///< the shaders' ViewBlock
   GlBuffer depth, front;        ///< splatted depth (float bits), particle in front
+  GlBuffer radii;               ///< of the particle in front; 0: none
   GlBuffer filter_a, filter_b;  ///< filtered depth ends in filter_a
   GlBuffer normals;
   GlBuffer touched;                   ///< a word a particle: what occlusion.glsl remembers of it
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
+  GlBuffer wide_list;                 ///< particles with large footprints, see wide_list.glsl
+  GlBuffer wet;                       ///< which tiles hold water, see wet_tiles.glsl
   GlBuffer thickness;                 ///< fixed point
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
 

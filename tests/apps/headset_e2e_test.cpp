@@ -109,14 +109,18 @@ TEST_F(HeadsetE2e, WithoutARuntimeOrALoaderItSaysWhich) {
 
 TEST_F(HeadsetE2e, TheBenchSplitsAFramesTime) {
   const std::string json = folder_ / "bench.json";
-  const auto ended = run_program_in_headset(
-      {bin + "/vip-bench", "headset", "--n-star", "64", "--frames", "5", "--warm-up", "1", "--json", json},
-      "size=32x32");
+  const auto ended = run_program_in_headset({bin + "/vip-bench", "headset", "--n-star", "64", "--frames", "5",
+                                             "--warm-up", "1", "--passes", "--json", json},
+                                            "size=32x32");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   const auto figures = nlohmann::json::parse(base::read_file(json, 1 << 20));
   const auto mean = [&](const char* stage) { return figures["stages"][stage]["mean_ms"].get<double>(); };
   EXPECT_NEAR(mean("whole"), mean("step") + mean("draw") + mean("hand_over"), 1e-6);
   EXPECT_GT(mean("step"), 0);
+  for (const char* pass : {"splat small", "filter", "shade"}) {
+    EXPECT_GT(figures["passes"][pass].get<double>(), 0) << pass;
+    EXPECT_LT(figures["passes"][pass].get<double>(), figures["stages"]["draw"]["p99_ms"].get<double>());
+  }
   EXPECT_EQ(figures["particles"], 512);
   EXPECT_THAT(ended.out, HasSubstr("512 particles, 5 frames"));
   EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));

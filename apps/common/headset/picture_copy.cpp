@@ -59,7 +59,8 @@ std::string gl_format_name(std::int64_t format) {
 }
 
 PictureCopy::PictureCopy(std::int64_t format)
-    : program_({{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "headset_copy.frag"}},
+    : same_words_(format == GL_SRGB8_ALPHA8),
+      program_({{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "headset_copy.frag"}},
                worth_of(format) == srgb ? "" : "#define TO_LINEAR\n") {
   glCreateVertexArrays(1, &vertices_);
 }
@@ -67,6 +68,11 @@ PictureCopy::PictureCopy(std::int64_t format)
 PictureCopy::~PictureCopy() { glDeleteVertexArrays(1, &vertices_); }
 
 void PictureCopy::copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const {
+  if (same_words_ && part.light == 1) {
+    glCopyImageSubData(picture.texture(), GL_TEXTURE_2D, 0, part.x_px, 0, 0, to.texture, GL_TEXTURE_2D, 0, 0,
+                       0, 0, to.width_px, to.height_px, 1);
+    return;
+  }
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
   glViewport(0, 0, to.width_px, to.height_px);
   for (const GLenum off : {GL_FRAMEBUFFER_SRGB, GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})

@@ -24,11 +24,12 @@ struct PicturePart {
   float light = 1;  ///< its levels are multiplied by it, [0, 1]
 };
 struct CopyTarget {
-  unsigned framebuffer = 0;
+  unsigned texture = 0;
+  unsigned framebuffer = 0;  ///< that has the texture as its colour
   int width_px = 0, height_px = 0;
 };
 
-/// Copies pictures into framebuffers whose colour has one format. Needs a current context always.
+/// Copies pictures into textures of one format. Needs a current context always.
 class PictureCopy {
  public:
   explicit PictureCopy(std::int64_t format);
@@ -40,6 +41,7 @@ class PictureCopy {
   void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:
+  bool same_words_;  ///< the format keeps the pictures' own words, so that nothing need be drawn
   sim::GlProgram program_;
   unsigned vertices_ = 0;
 };

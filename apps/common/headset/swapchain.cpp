@@ -12,14 +12,15 @@ Swapchain::Swapchain(const SessionHandle& session, std::int64_t format, int widt
     : session_(session), format_(format), width_px_(width_px), height_px_(height_px) {
   XrSwapchainCreateInfo info{};
   info.type = XR_TYPE_SWAPCHAIN_CREATE_INFO;
-  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
+  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT |
+                    XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
   info.format = format;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = static_cast<std::uint32_t>(width_px);
   info.height = static_cast<std::uint32_t>(height_px);
   session.call<PFN_xrCreateSwapchain>("xrCreateSwapchain", session.get(), &info, &swapchain_);
   try {
-    make_framebuffers();
+    make_images();
     copy_ = std::make_unique<PictureCopy>(format);
   } catch (...) {
     clear();
@@ -31,11 +32,11 @@ Swapchain::~Swapchain() { clear(); }
 
 void Swapchain::clear() {
   copy_.reset();
-  glDeleteFramebuffers(static_cast<GLsizei>(framebuffers_.size()), framebuffers_.data());
+  for (const CopyTarget& image : images_) glDeleteFramebuffers(1, &image.framebuffer);
   session_.destroy<PFN_xrDestroySwapchain>("xrDestroySwapchain", swapchain_);
 }
 
-void Swapchain::make_framebuffers() {
+void Swapchain::make_images() {
   XrSwapchainImageOpenGLKHR blank{};
   blank.type = XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR;
   constexpr const char* call = "xrEnumerateSwapchainImages";
@@ -44,11 +45,10 @@ void Swapchain::make_framebuffers() {
          return session_.attempt<PFN_xrEnumerateSwapchainImages>(
              call, swapchain_, capacity, count, reinterpret_cast<XrSwapchainImageBaseHeader*>(values));
        })) {
-    unsigned framebuffer = 0;
-    glCreateFramebuffers(1, &framebuffer);
-    framebuffers_.push_back(framebuffer);
-    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, image.image, 0);
-    if (glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) continue;
+    CopyTarget& made = images_.emplace_back(CopyTarget{image.image, 0, width_px_, height_px_});
+    glCreateFramebuffers(1, &made.framebuffer);
+    glNamedFramebufferTexture(made.framebuffer, GL_COLOR_ATTACHMENT0, image.image, 0);
+    if (glCheckNamedFramebufferStatus(made.framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) continue;
     throw base::Error("headset", "OpenGL cannot draw into images of " + gl_format_name(format_),
                       "update the graphics driver");
   }
@@ -75,7 +75,7 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
 
 void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part,
                       std::chrono::nanoseconds limit) {
-  copy_->copy(picture, part, {framebuffers_.at(acquire(limit)), width_px_, height_px_});
+  copy_->copy(picture, part, images_.at(acquire(limit)));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   XrSwapchainImageReleaseInfo release{};
   release.type = XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO;

@@ -28,7 +28,7 @@ class Swapchain {
   XrSwapchainSubImage image() const;
 
  private:
-  void make_framebuffers();
+  void make_images();
   void clear();
   std::uint32_t acquire(std::chrono::nanoseconds limit) const;
 
@@ -36,7 +36,7 @@ class Swapchain {
   std::int64_t format_;
   int width_px_, height_px_;
   XrSwapchain swapchain_ = XR_NULL_HANDLE;
-  std::vector<unsigned> framebuffers_;  ///< one an image
+  std::vector<CopyTarget> images_;
   std::unique_ptr<PictureCopy> copy_;
 };
 

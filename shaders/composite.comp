@@ -1,10 +1,11 @@
 // Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Writes sRGB.
 #include "view.glsl"
 #include "room.glsl"
+layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Depth { float depth[]; };
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
-layout(location = 0) out vec4 colour;
+layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light that deep water sends back
 const float thin_m = 0.03;                          // films thinner than this fade out at their rim
@@ -54,26 +55,31 @@ vec3 encode_srgb(vec3 c) {
 }
 
 void main() {
-  const vec2 xy = gl_FragCoord.xy - origin.xy;
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, size.xy))) return;
+  const vec2 xy = vec2(pixel) + 0.5;
   const vec2 slope = slope_at(xy);
   const vec3 eye = eye_to_world[3].xyz;
   const vec3 ray = vec3(slope, -1.0);
   const vec3 d = normalize(mat3(eye_to_world) * ray);
   const float per_depth = length(ray);
   const float footprint_per_m = rays.z / per_depth;
-  float frame_at, cover;
-  vec3 light = seen(eye, d, footprint_per_m, frame_at, cover);
-  const ivec2 pixel = ivec2(xy);
+  const Crossing crossing = cross_tank(eye, d);
+  float frame_at;
+  float cover = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
   const float z = depth[at];
+  const float water_cover = is_fluid(z) ? outline_cover(pixel) : 0.0;
+  vec3 light = vec3(0.0);
+  if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
   if (is_fluid(z)) {
     const float distance_m = z * per_depth;
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
     const vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
-    light = mix(light, shaded, outline_cover(pixel));
+    light = mix(light, shaded, water_cover);
     // Water that touches the near wall lies behind its frame.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
-  colour = vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0);
+  imageStore(picture, pixel + ivec2(origin.xy), vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0));
 }

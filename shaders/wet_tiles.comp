@@ -1,0 +1,32 @@
+// Which tiles of 16 x 8 px hold water, and the radius of the particle in front of each pixel: one work group a tile.
+// See wet_tiles.glsl.
+#include "view.glsl"
+#include "counters.glsl"
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
+layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 2) readonly buffer Front { uint front[]; };
+layout(std430, binding = 3) writeonly buffer Radius { float radii[]; };  // 0: no water, or no particle in front
+layout(std430, binding = 5) buffer Wet { uint wet[]; };
+shared uint holds_water;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) holds_water = 0u;
+  barrier();
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const bool inside = all(lessThan(pixel, size.xy));
+  const int at = pixel.y * size.x + pixel.x;
+  const bool fluid = inside && is_fluid(depth[at]);
+  if (fluid) holds_water = 1u;
+  barrier();
+  const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  const uint state = (wet[tile] & 1u) << 1 | holds_water;
+  if (inside && state != 0u) {
+    float radius = 0.0;
+    if (fluid && front[at] != 0xffffffffu) radius = particles[front[at]].w;
+    if (fluid && radius == 0.0) atomicAdd(front_missing, 1u);
+    radii[at] = radius;
+  }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) wet[tile] = state;
+}
