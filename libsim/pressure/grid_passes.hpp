@@ -9,7 +9,9 @@ struct Place {
   int x, y, z;
 };
 SIM_FN Place place_of(const CellBlock& block, int i) {
-  return {i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny)};
+  const int row = i / block.nx;
+  const int z = row / block.ny;
+  return {i - row * block.nx, row - z * block.ny, z};
 }
 
 /// A coarser cell is fluid when no child is air: its surface then lies within half a cell of the true one, on
@@ -35,10 +37,11 @@ SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   const float x = grid.extent(p.x, grid.finest.nx);
   const float y = grid.extent(p.y, grid.finest.ny);
   const float z = grid.extent(p.z, grid.finest.nz);
-  const Vec3 over = (1 / static_cast<float>(grid.scale)) * grid.conductance;
+  const Vec3 over = reciprocal(static_cast<float>(grid.scale)) * grid.conductance;
   return {y * z * over.x, x * z * over.y, x * y * over.z};
 }
 
+/// The diagonal of a fluid cell's equation, for all sweeps of a solve.
 struct Weigh {
   GridView grid;
   SIM_FN void operator()(int i) const {
@@ -46,12 +49,13 @@ struct Weigh {
     if (grid.kind[i] == CellKind::Fluid) {
       const Place p = place_of(grid.block, i);
       const Vec3 over = conductances(grid, p);
-      sum += over.x * opening(p.x - 1, p.y, p.z);
-      sum += over.x * opening(p.x + 1, p.y, p.z);
-      sum += over.y * opening(p.x, p.y - 1, p.z);
-      sum += over.y * opening(p.x, p.y + 1, p.z);
-      sum += over.z * opening(p.x, p.y, p.z - 1);
-      sum += over.z * opening(p.x, p.y, p.z + 1);
+      for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        const int step = face % 2 ? 1 : -1;
+        const float weight = axis == 0 ? over.x : axis == 1 ? over.y : over.z;
+        sum += weight * opening(p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
+                                p.z + (axis == 2 ? step : 0));
+      }
     }
     grid.diagonal[i] = sum;
   }

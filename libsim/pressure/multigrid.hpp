@@ -39,7 +39,7 @@ struct GridView {
     for (int o = 0; o < open_count; ++o) share += share_of(open[o], x, y, z);
     if (share <= 0) return 0;
     const auto way = static_cast<float>(scale);
-    return way / (0.5f * (way - 1) + 1 / fminf(share, 1.0f));
+    return quotient(way, 0.5f * (way - 1) + reciprocal(fminf(share, 1.0f)));
   }
   /// Share of an open face in that face.
   SIM_FN float share_of(const OpenFace& face, int x, int y, int z) const {
@@ -57,7 +57,8 @@ struct GridView {
     if (cell < 0 || cell >= cells) return 0;
     const auto low = static_cast<float>(cell * scale);
     const float wide = extent(cell, finest_cells);
-    return fmaxf(fminf(face.high[along], low + wide) - fmaxf(face.low[along], low), 0.0f) / wide;
+    const float both = fminf(face.high[along], low + wide) - fmaxf(face.low[along], low);
+    return quotient(fmaxf(both, 0.0f), wide);
   }
   /// 0 in air, walls and outside.
   SIM_FN float q_at(int x, int y, int z) const {
