@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t infinity_bits = 0x7f800000u;
 constexpr std::int64_t list_header_words = 12;
-constexpr int block_px = 16;  // of occlusion.glsl
+constexpr int block_px = 16;        // of occlusion.glsl
 constexpr GLuint tile_groups = 64;  // a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
