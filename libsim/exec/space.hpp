@@ -140,8 +140,8 @@ struct OneLane {
   SIM_FN T first(T value) const {
     return value;
   }
-  /// Lanes before this one that say yes, and how many of all do.
-  SIM_FN int before(bool mine, int& all) const {
+  /// The sum over the lanes before this one, and over all.
+  SIM_FN int offset(int mine, int& all) const {
     all = mine;
     return 0;
   }
@@ -149,17 +149,13 @@ struct OneLane {
   SIM_FN void wait() const {}
 };
 
-/// What a functor of for_each_team does with its lanes: one long loop, or many short ones with work between
-/// them that every lane does.
-enum class Loop { Long, Short };
-
 #ifdef SIM_CUDA
 
 void check(cudaError_t status, const char* what);
 /// Do launches take their places before the one before them has ended?
 bool launches_overlap();
-/// Lanes that should share each of n indices.
-int team_wish(int n, Loop loop);
+/// Lanes that should share each of n indices, measured on an H200 with the solver's passes over neighbours.
+int team_wish(int n);
 
 /// Launches `kernel` behind what was launched before. Where the device can, its blocks take their places
 /// while the last ones before it end, and wait there: begin_kernel() is the first that each kernel does.
@@ -231,10 +227,15 @@ struct Lanes {
     }
     return value;
   }
-  __device__ int before(bool mine, int& all) const {
-    const unsigned votes = __ballot_sync(mask(), mine) >> first();
-    all = __popc(votes & whole);
-    return __popc(votes & ((1u << rank()) - 1));
+  __device__ int offset(int mine, int& all) const {
+    int sum = mine;
+#pragma unroll
+    for (int step = 1; step < Size; step *= 2) {
+      const int lower = __shfl_up_sync(mask(), sum, step, Size);
+      if (rank() >= step) sum += lower;
+    }
+    all = __shfl_sync(mask(), sum, Size - 1, Size);
+    return sum - mine;
   }
   __device__ void wait() const { __syncwarp(mask()); }
 
@@ -318,11 +319,11 @@ void launch_teams(const char* label, int n, F f) {
 /// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a loop inside: the fewer indices there are,
 /// the more lanes share each, so that the device stays full.
 template <class F>
-void for_each_team(const char* label, int n, F f, Loop loop = Loop::Long) {
+void for_each_team(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  switch (team_wish(n, loop)) {
+  switch (team_wish(n)) {
     case 8:
       return launch_teams<8>(label, n, f);
     case 4:
@@ -429,7 +430,7 @@ struct OnOneLane {
 /// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a long loop inside, which a device may share
 /// between lanes.
 template <class F>
-void for_each_team(const char* label, int n, F f, Loop = Loop::Long) {
+void for_each_team(const char* label, int n, F f) {
   for_each(label, n, OnOneLane<F>{f});
 }
 

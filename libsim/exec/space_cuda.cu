@@ -18,7 +18,6 @@ void check(cudaError_t status, const char* what) {
 
 bool launches_overlap() {
   static const bool can = [] {
-    if (const char* e = getenv("VIP_PDL")) if (*e == '0') return false;
     int device = 0;
     int major = 0;
     return cudaGetDevice(&device) == cudaSuccess &&
@@ -27,13 +26,7 @@ bool launches_overlap() {
   return can;
 }
 
-int team_wish(int n, Loop loop) {
-  static const auto env = [](const char* name, int d) { const char* e = getenv(name); return e ? atoi(e) : d; };
-  static const int e8 = env("VIP_L8", 150000), e4 = env("VIP_L4", 600000), e2 = env("VIP_L2", 600000);
-  static const int s8 = env("VIP_S8", 20000), s4 = env("VIP_S4", 60000), s2 = env("VIP_S2", 140000);
-  if (loop == Loop::Long) return n < e8 ? 8 : n < e4 ? 4 : n < e2 ? 2 : 1;
-  return n < s8 ? 8 : n < s4 ? 4 : n < s2 ? 2 : 1;
-}
+int team_wish(int n) { return n < 50'000 ? 8 : n < 150'000 ? 4 : n < 600'000 ? 2 : 1; }
 
 std::size_t most_block_memory() {
   static const int bytes = [] {

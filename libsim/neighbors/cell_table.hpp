@@ -8,6 +8,11 @@
 
 namespace sim::SIM_BACKEND {
 
+/// Particles i with begin <= i < end.
+struct IndexRange {
+  int begin, end;
+};
+
 /// The grid of one level. Lines of cells along x lie one after another, then along z, then along y.
 struct LevelCells {
   float support;  ///< h of its particles, m
@@ -44,31 +49,53 @@ struct CellTable {
     return grid.first + (y * grid.nz + z) * grid.nx + grid.along(p.x - low.x, grid.nx);
   }
 
+  /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
+  /// (last_y, last_z). `at`: from the low corner.
+  struct Window {
+    Vec3 at;
+    float reach;
+    int first_y, last_y, first_z, last_z;
+  };
+  /// What holds all within margin x (h + h_other) / 2.
+  SIM_FN Window window(const LevelCells& grid, Vec4 self, float margin) const {
+    const Vec3 at = xyz(self) - low;
+    // Beyond what rounding of places, distances and cells can hide.
+    const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
+                        1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
+    return {at,
+            reach,
+            grid.along(at.y - reach, grid.ny),
+            grid.along(at.y + reach, grid.ny),
+            grid.along(at.z - reach, grid.nz),
+            grid.along(at.z + reach, grid.nz)};
+  }
+  SIM_FN bool empty(const LevelCells& grid) const {
+    return read_only(begin + grid.first) == read_only(begin + grid.first + grid.size());
+  }
+  /// The particles of one line that can be within the reach.
+  SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
+    const float dy = grid.gap(look.at.y, y, grid.ny);
+    const float dz = grid.gap(look.at.z, z, grid.nz);
+    const float left = look.reach * look.reach - dy * dy - dz * dz;
+    if (!(left > 0)) return {0, 0};
+    const float half = rough_root(left);
+    const int cell = grid.first + (y * grid.nz + z) * grid.nx;
+    return {read_only(begin + cell + grid.along(look.at.x - half, grid.nx)),
+            read_only(begin + cell + grid.along(look.at.x + half, grid.nx) + 1)};
+  }
+
   /// visit(begin, end) of runs of particles, in ascending order, that hold all within margin x (h + h_other)
   /// / 2 of a particle, and itself.
   template <class Visit>
   SIM_FN void around(Vec4 self, float margin, Visit visit) const {
-    const Vec3 at = xyz(self) - low;
     for (int l = 0; l < levels; ++l) {
       const LevelCells& grid = level[l];
-      if (begin[grid.first] == begin[grid.first + grid.size()]) continue;
-      // Beyond what rounding of places, distances and cells can hide.
-      const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
-                          1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
-      const int last_y = grid.along(at.y + reach, grid.ny);
-      const int first_z = grid.along(at.z - reach, grid.nz);
-      const int last_z = grid.along(at.z + reach, grid.nz);
-      for (int y = grid.along(at.y - reach, grid.ny); y <= last_y; ++y) {
-        const float dy = grid.gap(at.y, y, grid.ny);
-        for (int z = first_z; z <= last_z; ++z) {
-          const float dz = grid.gap(at.z, z, grid.nz);
-          const float left = reach * reach - dy * dy - dz * dz;
-          if (!(left > 0)) continue;
-          const float half = rough_root(left);
-          const int line = grid.first + (y * grid.nz + z) * grid.nx;
-          const int from = begin[line + grid.along(at.x - half, grid.nx)];
-          const int to = begin[line + grid.along(at.x + half, grid.nx) + 1];
-          if (from < to) visit(from, to);
+      if (empty(grid)) continue;
+      const Window look = window(grid, self, margin);
+      for (int y = look.first_y; y <= look.last_y; ++y) {
+        for (int z = look.first_z; z <= look.last_z; ++z) {
+          const IndexRange run = line(grid, look, y, z);
+          if (run.begin < run.end) visit(run.begin, run.end);
         }
       }
     }

@@ -8,6 +8,23 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+#ifdef SIM_CUDA
+SIM_FN int bits_in(unsigned word) {
+#ifdef __CUDA_ARCH__
+  return __popc(word);
+#else
+  return 0;
+#endif
+}
+SIM_FN int lowest_bit(unsigned word) {
+#ifdef __CUDA_ARCH__
+  return __ffs(static_cast<int>(word)) - 1;
+#else
+  return 0;
+#endif
+}
+#endif
+
 struct EmptyStore {
   NeighbourList::Need* need;
   SIM_FN void operator()(int) const { need->stored = 0; }
@@ -27,55 +44,91 @@ struct ListNeighbours {
   Witness witness;
   float margin;
 
-  /// Takes the near ones of a run.
-  template <class Team>
-  struct Take {
-    const ListNeighbours& task;
-    Team team;
-    int slot, i;
-    Vec4 self;
-    int& found;
 #ifdef SIM_CUDA
-    SIM_FN void operator()(int begin, int end) const {
-      for (int first = begin; first < end; first += Team::size) {
-        const int j = first + team.rank();
-        const bool near = task.near(self, task.predicted[j < end ? j : begin]) && j != i && j < end;
-        int all;
-        const int place = found + team.before(near, all);
-        if (near && place < task.list.capacity) task.entry[task.list.place(slot, place)] = j;
-        found += all;
+  /// Lanes take a line of cells each, and note who is near before they agree on places in the list.
+  template <class Team>
+  SIM_FN int look(int slot, int i, Vec4 self, Team team) const {
+    int found = 0;
+    for (int l = 0; l < cells.levels; ++l) {
+      const LevelCells& grid = cells.level[l];
+      if (cells.empty(grid)) continue;
+      const CellTable::Window look = cells.window(grid, self, margin);
+      const int width = look.last_z - look.first_z + 1;
+      const int lines = width * (look.last_y - look.first_y + 1);
+      int y = look.first_y;
+      int z = look.first_z + team.rank();
+      for (int begun = 0; begun < lines; begun += Team::size, z += Team::size) {
+        for (; z > look.last_z; z -= width) ++y;
+        IndexRange run{0, 0};
+        if (y <= look.last_y) run = cells.line(grid, look, y, z);
+        do {
+          take(slot, i, self, team, run, found);
+        } while (team.any(run.begin < run.end));
       }
     }
+    return found;
+  }
+
+  /// Takes the near ones among the run's next few, several loads at once.
+  template <class Team>
+  SIM_FN void take(int slot, int i, Vec4 self, Team team, IndexRange& run, int& found) const {
+    constexpr int at_once = 4;
+    constexpr int most = 32;
+    const int size = run.end - run.begin < most ? run.end - run.begin : most;
+    unsigned near_ones = 0;
+    for (int first = 0; first < size; first += at_once) {
+      Vec4 other[at_once];
+#pragma unroll
+      for (int k = 0; k < at_once; ++k) {
+        const int j = run.begin + first + k;
+        other[k] = read_only(predicted + (j < run.end ? j : run.end - 1));
+      }
+#pragma unroll
+      for (int k = 0; k < at_once; ++k) {
+        const bool here = first + k < size && run.begin + first + k != i && near(self, other[k]);
+        near_ones |= static_cast<unsigned>(here) << (first + k);
+      }
+    }
+    int all;
+    int place = found + team.offset(bits_in(near_ones), all);
+    for (; near_ones != 0; near_ones &= near_ones - 1, ++place) {
+      if (place < list.capacity) entry[list.place(slot, place)] = run.begin + lowest_bit(near_ones);
+    }
+    found += all;
+    run.begin += size > 0 ? size : 0;
+  }
 #else
-    /// First who is near, several at once; then the list, one by one.
-    void operator()(int begin, int end) const {
-      constexpr int most = 32;
-      int near[most];
-      int* const entry = task.entry + task.list.place(slot, 0);
-      const int last = task.list.capacity - 1;
-      int place = found;
+  /// First who is near, several at once; then the list, one by one.
+  template <class Team>
+  int look(int slot, int i, Vec4 self, Team) const {
+    constexpr int most = 32;
+    int near_ones[most];
+    int* const own = entry + list.place(slot, 0);
+    const int last = list.capacity - 1;
+    int place = 0;
+    cells.around(self, margin, [&](int begin, int end) {
       for (int first = begin; first < end; first += most) {
         const int size = end - first < most ? end - first : most;
-        const Vec4* const other = task.predicted + first;
-        const float half = 0.5f * task.margin;
+        const Vec4* const other = predicted + first;
+        const float half = 0.5f * margin;
 #pragma omp simd
         for (int k = 0; k < size; ++k) {
           const float dx = self.x - other[k].x;
           const float dy = self.y - other[k].y;
           const float dz = self.z - other[k].z;
           const float radius = half * (self.w + other[k].w);
-          near[k] = dx * dx + dy * dy + dz * dz < radius * radius;
+          near_ones[k] = dx * dx + dy * dy + dz * dz < radius * radius;
         }
         for (int k = 0; k < size; ++k) {
           // Stored in any case and kept by the count: a branch here is mispredicted every third time.
-          entry[place < last ? place : last] = first + k;
-          place += near[k] & (first + k != i);
+          own[place < last ? place : last] = first + k;
+          place += near_ones[k] & (first + k != i);
         }
       }
-      found = place;
-    }
+    });
+    return place;
+  }
 #endif
-  };
 
   template <class Team>
   SIM_FN void operator()(int slot, Team team) const {
@@ -83,9 +136,8 @@ struct ListNeighbours {
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
     }
-    int found = 0;
     const Vec4 self = predicted[i];
-    cells.around(self, margin, Take<Team>{*this, team, slot, i, self, found});
+    const int found = look(slot, i, self, team);
     team.wait();
     if (team.rank() > 0) return;
     count[slot] = found;

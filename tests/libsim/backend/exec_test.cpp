@@ -67,7 +67,7 @@ struct SumOdd {
       const bool odd = k <= steps && k % 2 == 1;
       if (k <= steps) sum += k;
       int all;
-      const int place = found + team.before(odd, all);
+      const int place = found + team.offset(odd, all);
       if (odd) own_place = place;
       found += all;
     }
@@ -82,8 +82,8 @@ struct SumOdd {
 };
 
 SIM_TEST(ForEachTeam, SumsAndCountsForEverySizeOfTeam) {
-  // On a device these run with eight lanes, four and one.
-  for (const int n : {1, 1000, 200'001, 700'003}) {
+  // On a device these run with eight lanes, four, two and one.
+  for (const int n : {1, 1000, 100'003, 200'001, 700'003}) {
     Array<int> sums(static_cast<std::size_t>(n));
     Array<int> places(static_cast<std::size_t>(n));
     for_each_team("test", n, SumOdd{sums.data(), places.data()});
@@ -134,7 +134,7 @@ struct FindLeast {
 };
 
 SIM_TEST(ForEachTeam, FindsTheLeastAndTheFirstOfEqualsForEverySizeOfTeam) {
-  for (const int n : {1, 1000, 200'001, 700'003}) {
+  for (const int n : {1, 1000, 100'003, 200'001, 700'003}) {
     const auto size = static_cast<std::size_t>(n);
     Array<int> least(size);
     Array<int> place(size);
@@ -149,7 +149,7 @@ SIM_TEST(ForEachTeam, FindsTheLeastAndTheFirstOfEqualsForEverySizeOfTeam) {
       const int count = i % 50;
       // 0, 2, 4, 1, 3 and again.
       wrong +=
-          leasts[at] != (count > 0 ? 0 : 5) || places[at] != (count > 0 ? 0 : -1) || anys[at] != count > 2;
+          leasts[at] != (count > 0 ? 0 : 5) || places[at] != (count > 0 ? 0 : -1) || anys[at] != (count > 2);
     }
     EXPECT_EQ(wrong, 0) << n;
   }
