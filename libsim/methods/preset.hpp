@@ -78,7 +78,7 @@ struct Readings {
   bool merge_keeps_steps = true;
   /// Who would become coarser must lie this far, in levels, beyond the border that Eq. 9 draws with s: what
   /// hovers about a border neither splits nor merges. [0, 1)
-  double merge_dead_band = 0.5;
+  double merge_dead_band = 0.7;
   /// Share of the differences between neighbours' velocity changes that is evened out in a substep round
   /// fresh particles of water at rest, whose overlap would otherwise set energy free. [0, 1]; 0 = no filter.
   double kick_filter = 0.9;
