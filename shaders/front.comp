@@ -8,7 +8,7 @@ uniform int thread_limit;
 
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-  if (i >= particle_count || (touched[i] & was_in_front) == 0u) return;
+  if (i >= particle_count || (touched[i] & may_be_in_front) == 0u) return;
   const Sphere s = sphere_of(particles[i]);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;
@@ -16,7 +16,12 @@ void main() {
   const vec4 grid = rays;
   const int row = size.x;
   const bool subpixel = is_subpixel(s, grid);
+  bool in_front = false;
   for (int y = box.y; y < box.w; ++y) {
-    for (int x = box.x; x < box.z; ++x) splat_front(s, ivec2(x, y), subpixel, grid, row, i);
+    for (int x = box.x; x < box.z; ++x) {
+      const int at = y * row + x;
+      if (splat_front(s, ivec2(x, y), subpixel, grid, at, depth_bits[at], i)) in_front = true;
+    }
   }
+  if (in_front) touched[i] |= was_in_front;
 }

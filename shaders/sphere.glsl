@@ -11,6 +11,7 @@ struct Sphere {
   vec3 inward;
   mat3 to_world;
   float near;
+  uint nearest;  // bits of a depth that no sample of it comes below
 };
 
 bool is_usable(vec4 particle) {
@@ -27,7 +28,9 @@ Sphere sphere_of(vec4 particle) {
   const vec3 wall = mix(mix(vec3(-1e6), tank.xyz, high), vec3(0), low);
   const bool cut = tank.w > 0.0 && any(greaterThanEqual(wall, vec3(0)));
   const vec3 inward = mix(vec3(1), vec3(-1), greaterThan(wall, vec3(0)));
-  return Sphere(vec3(eye.xy, -eye.z), radius, cut, wall - eye_to_world[3].xyz, inward, mat3(eye_to_world), origin.z);
+  const uint nearest = floatBitsToUint(max(-0.99999 * eye.z - radius, origin.z));
+  return Sphere(vec3(eye.xy, -eye.z), radius, cut, wall - eye_to_world[3].xyz, inward, mat3(eye_to_world), origin.z,
+                nearest);
 }
 
 bool beyond_walls(vec4 particle) {
@@ -45,9 +48,8 @@ float radius_in_cells(Sphere s, vec4 grid) {
 }
 bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
 
-// Depths of a ray's way in and out, between the walls; a sphere below pixel size is met as if the ray went
-// through its centre.
-bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave) {
+// Depths of a ray's way in and out; a sphere below pixel size is met as if the ray went through its centre.
+bool meets_whole(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave) {
   precise float inverse = 1.0 / (slope.x * slope.x + slope.y * slope.y + 1.0);
   precise float middle = (s.centre.x * slope.x + s.centre.y * slope.y + s.centre.z) * inverse;
   precise float off_x = s.centre.x - middle * slope.x;
@@ -59,8 +61,11 @@ bool meets(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave
   precise float first = middle - reach;
   entry = max(first, s.near);
   leave = middle + reach;
-  if (square <= 0.0 || leave <= s.near) return false;
-  if (!s.cut || subpixel) return true;
+  return square > 0.0 && leave > s.near;
+}
+
+// Moves the way in back and the way out forth, to the walls.
+bool between_walls(Sphere s, vec2 slope, inout float entry, inout float leave) {
   precise vec3 ray = world_ray(slope, s.to_world);
   precise vec3 at = s.wall / ray;
   const bvec3 enters = greaterThan(ray * s.inward, vec3(0));
@@ -117,9 +122,7 @@ uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per
     chord = 4.18879 * s.radius * s.radius * s.radius / (cell.x * cell.y);
   } else if (crosses_near(s)) {
     float entry, leave;
-    Sphere whole = s;
-    whole.cut = false;  // the depth decides where there is water
-    if (!meets(whole, slope, false, entry, leave)) return 0u;
+    if (!meets_whole(s, slope, false, entry, leave)) return 0u;  // the depth decides where there is water
     chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
   } else {
     // The centre's distance from the ray by their cross product.

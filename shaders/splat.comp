@@ -13,12 +13,11 @@ uniform int second_round;
 
 // True when every pixel of the footprint already holds something nearer than the sphere's nearest point.
 bool hidden(Sphere s, ivec4 box) {
-  const uint nearest = floatBitsToUint(max(s.centre.z - s.radius, origin.z) * 0.99999);
   const int blocks_x = (size.x + block_px - 1) / block_px;
   const ivec2 low = box.xy / block_px, high = (box.zw - 1) / block_px;
   for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x; x <= high.x; ++x) {
-      if (farthest[y * blocks_x + x] >= nearest) return false;
+      if (farthest[y * blocks_x + x] >= s.nearest) return false;
     }
   }
   return true;
@@ -31,7 +30,8 @@ bool splat_small(Sphere s, ivec4 box) {
   bool in_front = false;
   for (int y = box.y; y < box.w; ++y) {
     for (int x = box.x; x < box.z; ++x) {
-      if (splat_depth(s, ivec2(x, y), subpixel, grid, row)) in_front = true;
+      const int at = y * row + x;
+      if (splat_depth(s, ivec2(x, y), subpixel, grid, at, depth_bits[at])) in_front = true;
     }
   }
   return in_front;
@@ -89,6 +89,6 @@ void main() {
     }
     return;
   }
-  if (!unseen && splat_small(s, box)) touched[i] |= was_in_front;
+  if (!unseen && splat_small(s, box)) touched[i] |= may_be_in_front;
   splat_small_thickness(s);
 }

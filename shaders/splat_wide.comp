@@ -1,88 +1,83 @@
-// Listed particles. A row of eight invocations takes one with a footprint of up to team_px a side, a whole work group
-// takes a larger one, and those of the tile items are split among 8 by gl_NumWorkGroups.z / 8 work groups.
+// Listed particles. A team of 8 x 4 invocations takes one; those of the tile items are split among
+// 8 by gl_NumWorkGroups.z / 8 work groups.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
 #include "wide_list.glsl"
 #include "occlusion.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 16) in;
 uniform int tiles;  // 0: the group items, 1: the tile items
-const int team_px = 48;
-shared uint too_large;  // a bit for each of the work group's items
+const ivec2 team = ivec2(8, 4);
+const int ahead = 4;  // pixels of an invocation whose depths are read before the first is compared
 
-struct Job {
-  Sphere s;
-  ivec4 pixels, cells;  // empty: nothing to do there
-};
-
-Job job_of(uint i) {
-  Job job;
-  job.s = sphere_of(particles[i]);
-  job.pixels = job.cells = ivec4(0);
 #ifdef FRONT
-  if ((touched[i] & was_in_front) != 0u) job.pixels = footprint(job.s, rays, size.xy);
+const uint finds = was_in_front;
+bool takes_part(uint known) { return (known & may_be_in_front) != 0u; }
 #else
-  if ((touched[i] & is_hidden) == 0u) job.pixels = footprint(job.s, rays, size.xy);
-  job.cells = footprint(job.s, thickness_rays(), size.zw);
+const uint finds = may_be_in_front;
+bool takes_part(uint known) { return (known & is_hidden) == 0u; }
 #endif
-  return job;
+
+bool splat_pixel(Sphere s, ivec2 pixel, int at, uint held, uint i) {
+#ifdef FRONT
+  return splat_front(s, pixel, false, rays, at, held, i);
+#else
+  return splat_depth(s, pixel, false, rays, at, held);
+#endif
 }
 
-bool fits_team(Job job) {
-  const ivec2 pixels = job.pixels.zw - job.pixels.xy, cells = job.cells.zw - job.cells.xy;
-  return max(max(pixels.x, pixels.y), max(cells.x, cells.y)) <= team_px;
-}
-
-// Every step-th cell each way, from `first` on.
-void splat(Job job, uint i, ivec2 first, ivec2 step) {
-  bool in_front = false;
-  for (int y = job.pixels.y + first.y; y < job.pixels.w; y += step.y) {
-    for (int x = job.pixels.x + first.x; x < job.pixels.z; x += step.x) {
-#ifdef FRONT
-      splat_front(job.s, ivec2(x, y), false, rays, size.x, i);
-#else
-      if (splat_depth(job.s, ivec2(x, y), false, rays, size.x)) in_front = true;
-#endif
+// Every step-th pixel each way, from `first` on; columns are counted from a whole sector of memory.
+void splat_pixels(Sphere s, uint i, ivec2 first, ivec2 step) {
+  const ivec4 box = footprint(s, rays, size.xy);
+  const int down = step.y * size.x;
+  bool found = false;
+  for (int x = (box.x & ~7) + first.x; x < box.z; x += step.x) {
+    if (x < box.x) continue;
+    for (int y = box.y + first.y; y < box.w; y += ahead * step.y) {
+      const int at = y * size.x + x;
+      uint held[ahead];
+      for (int k = 0; k < ahead; ++k) held[k] = y + k * step.y < box.w ? depth_bits[at + k * down] : 0u;
+      for (int k = 0; k < ahead; ++k) {
+        if (splat_pixel(s, ivec2(x, y + k * step.y), at + k * down, held[k], i)) found = true;
+      }
     }
   }
-#ifndef FRONT
-  if (in_front) atomicOr(touched[i], was_in_front);
+  if (found) touched[i] |= finds;  // whoever else writes there writes the same
+}
+
+void splat_cells(Sphere s, ivec2 first, ivec2 step) {
   const vec4 grid = thickness_rays();
-  const bool subpixel = is_subpixel(job.s, grid);
-  for (int y = job.cells.y + first.y; y < job.cells.w; y += step.y) {
-    for (int x = job.cells.x + first.x; x < job.cells.z; x += step.x)
-      splat_thickness(job.s, ivec2(x, y), subpixel, grid, size.z, thickness_rule.x);
+  const ivec4 box = footprint(s, grid, size.zw);
+  const bool subpixel = is_subpixel(s, grid);
+  for (int x = (box.x & ~7) + first.x; x < box.z; x += step.x) {
+    if (x < box.x) continue;
+    for (int y = box.y + first.y; y < box.w; y += step.y)
+      splat_thickness(s, ivec2(x, y), subpixel, grid, size.z, thickness_rule.x);
   }
+}
+
+void splat(uint i, ivec2 first, ivec2 step) {
+  const bool in_depth = takes_part(touched[i]);
+#ifdef FRONT
+  if (!in_depth) return;
+#endif
+  const Sphere s = sphere_of(particles[i]);
+  if (in_depth) splat_pixels(s, i, first, step);
+#ifndef FRONT
+  splat_cells(s, first, step);
 #endif
 }
 
 void main() {
-  const ivec2 within = ivec2(gl_LocalInvocationID.xy);
+  const ivec2 within = ivec2(gl_LocalInvocationID.xy), whole = ivec2(gl_WorkGroupSize.xy);
   const uint group = gl_WorkGroupID.y * group_row + gl_WorkGroupID.x;
   if (tiles == 1) {
     if (tile_start + group >= tile_items) return;
-    const uint i = items[particle_count + tile_start + group];
     const int share = int(gl_WorkGroupID.z), rows = int(gl_NumWorkGroups.z) / 8;
-    splat(job_of(i), i, within + 8 * ivec2(share % 8, share / 8), 8 * ivec2(8, rows));
+    splat(items[particle_count + tile_start + group], within + whole * ivec2(share % 8, share / 8),
+          whole * ivec2(8, rows));
     return;
   }
-  const uint first = group_start + group_teams * group;
-  if (gl_LocalInvocationIndex == 0u) too_large = 0u;
-  barrier();
-  const uint own = first + gl_LocalInvocationID.y;
-  if (own < group_items) {
-    const uint i = items[own];
-    const Job job = job_of(i);
-    if (fits_team(job)) {
-      splat(job, i, ivec2(within.x, 0), ivec2(8, 1));
-    } else if (within.x == 0) {
-      atomicOr(too_large, 1u << within.y);
-    }
-  }
-  barrier();
-  for (uint k = 0u; k < group_teams; ++k) {
-    if ((too_large & 1u << k) == 0u) continue;
-    const uint i = items[first + k];
-    splat(job_of(i), i, within, ivec2(8));
-  }
+  const uint own = group_start + group_teams * group + uint(within.y / team.y);
+  if (own < group_items) splat(items[own], ivec2(within.x, within.y % team.y), team);
 }

@@ -3,22 +3,32 @@ layout(std430, binding = 2) buffer Front { uint front[]; };
 layout(std430, binding = 3) buffer Thickness { uint thickness[]; };
 layout(std430, binding = 6) buffer Touched { uint touched[]; };  // per particle: see occlusion.glsl
 
-// True when this depth was in front, or level with the front, at this moment.
-bool splat_depth(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int row) {
+// Bits of the sphere's depth at a pixel, or the largest word where it lies behind `held` or is not met.
+uint depth_up_to(uint held, Sphere s, ivec2 pixel, bool subpixel, vec4 grid) {
+  const uint behind = 0xffffffffu;
+  if (s.nearest > held) return behind;
+  const vec2 slope = cell_slope(pixel, grid);
   float entry, leave;
-  if (!meets(s, cell_slope(pixel, grid), subpixel, entry, leave)) return false;
-  const uint bits = floatBitsToUint(entry);
-  const int at = pixel.y * row + pixel.x;
-  // A stale value can only be too far: the plain read is a safe way round most atomics.
-  if (bits > depth_bits[at]) return false;
-  return bits <= atomicMin(depth_bits[at], bits);
+  if (!meets_whole(s, slope, subpixel, entry, leave)) return behind;
+  if (s.cut && !subpixel) {
+    // Walls only move it back.
+    if (floatBitsToUint(entry) > held || !between_walls(s, slope, entry, leave)) return behind;
+  }
+  return floatBitsToUint(entry);
 }
 
-void splat_front(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int row, uint particle) {
-  float entry, leave;
-  if (!meets(s, cell_slope(pixel, grid), subpixel, entry, leave)) return;
-  const int at = pixel.y * row + pixel.x;
-  if (floatBitsToUint(entry) == depth_bits[at]) atomicMin(front[at], particle);
+// True when this depth was in front, or level with the front, at this moment. `held` was read there before: a stale
+// value can only be too far, and is a safe way round most atomics.
+bool splat_depth(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int at, uint held) {
+  const uint bits = depth_up_to(held, s, pixel, subpixel, grid);
+  return bits <= held && bits <= atomicMin(depth_bits[at], bits);
+}
+
+// True when this depth is the pixel's, `held`.
+bool splat_front(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int at, uint held, uint particle) {
+  if (depth_up_to(held, s, pixel, subpixel, grid) != held) return false;
+  atomicMin(front[at], particle);
+  return true;
 }
 
 void splat_thickness(Sphere s, ivec2 cell, bool subpixel, vec4 grid, int row, float units_per_m) {

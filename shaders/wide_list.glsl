@@ -1,7 +1,7 @@
 // Particles whose footprints are too large for one invocation, and the work groups that take them. The list grows
 // in two rounds; a round's own part begins at *_start.
 const uint group_row = 32768u;  // work groups in x; the rest goes into y
-const uint group_teams = 8u;    // group items that a work group takes
+const uint group_teams = 4u;    // group items that a work group takes
 layout(std430, binding = 5) buffer WideList {
   uint group_items;
   uint tile_items;

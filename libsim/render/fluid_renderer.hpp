@@ -49,7 +49,7 @@ struct RenderOptions {
   std::array<float, 3> absorption_per_m{0.45F, 0.14F, 0.10F};
   /// Footprints up to this many px a side are splatted by one invocation; 0: 16 on a GPU, 64 on software GL.
   int thread_px = 0;
-  /// Larger ones up to this by one work group of 8 x 8; beyond it they are split among many.
+  /// Larger ones up to this by a team of 8 x 4; beyond it they are split among many work groups.
   int group_px = 128;
   bool time_passes = false;  ///< see FluidRenderer::times(); costs waits on software GL
 };
@@ -62,7 +62,7 @@ struct RenderCounts {
   std::uint32_t near_crossing = 0;   ///< particles cut by the near plane
   std::uint32_t subpixel = 0;        ///< particles too small to be sure of a pixel centre; drawn as one pixel
   std::uint32_t by_thread = 0;       ///< footprints splatted by one invocation
-  std::uint32_t by_group = 0;        ///< footprints splatted by one work group
+  std::uint32_t by_group = 0;        ///< footprints splatted by one team of invocations
   std::uint32_t by_tiles = 0;        ///< footprints split among many work groups
   std::uint32_t filter_capped = 0;   ///< pixels whose depth filter stopped at filter_max_px
   std::uint32_t thickness_full = 0;  ///< thickness pixels that saturated

@@ -10,8 +10,6 @@ namespace sim {
 
 namespace {
 
-constexpr std::uint32_t infinity_bits = 0x7f800000u;
-constexpr std::int64_t list_header_words = 12;
 constexpr int block_px = 16;        // of occlusion.glsl
 constexpr GLuint tile_groups = 64;  // a multiple of 8
 
@@ -96,13 +94,14 @@ void FluidRenderer::State::each_view(Dispatch dispatch, unsigned more_barriers) 
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | more_barriers);
 }
 
-void FluidRenderer::State::clear(ViewTargets& t) {
-  t.follow(count_);
-  t.wide_list.reserve(4 * (list_header_words + 2 * count_));
-  t.wide_list.fill(0, 4 * list_header_words);
-  t.depth.fill(infinity_bits);
-  t.front.fill(GBuffer::no_particle);
-  t.thickness.fill(0);
+void FluidRenderer::State::clear() {
+  clear_targets.use();
+  each_view([&](const ViewTargets& t) {
+    bind_storage({0, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(), t.wide_list.name(),
+                  t.wet.name()});
+    dispatch_pixels(t.width, t.height);
+  });
+  timer.mark("clear");
 }
 
 void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
@@ -241,15 +240,14 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
   count_ = from.count();
   views_drawn = views.size();
-  // The passes of the last draw wrote these buffers; a clear is no shader access.
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  counters.fill(0);
+  // The passes of the last draw wrote these buffers; what a resize fills is no shader access.
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   for (std::size_t i = 0; i < views.size(); ++i) {
     targets[i].resize(views[i], options.thickness_step);
+    targets[i].follow(count_);
     write_block(targets[i]);
-    clear(targets[i]);
   }
-  timer.mark("clear");
+  clear();
   if (count_ > 0) {
     splat_particles();
     find_front();

@@ -28,6 +28,7 @@ struct FluidRenderer::State {
   RenderOptions options;
   std::array<float, 4> tank;
   PassTimer timer;
+  GlProgram clear_targets = compute_program("clear.comp");
   GlProgram splat = compute_program("splat.comp");
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
   GlProgram block_depth = compute_program("block_depth.comp");
@@ -63,7 +64,7 @@ struct FluidRenderer::State {
   void each_view(Dispatch dispatch, unsigned more_barriers = 0);
   void bind_splat(const ViewTargets& t) const;
   void write_block(ViewTargets& t) const;
-  void clear(ViewTargets& t);
+  void clear();
   void splat_particles();
   void splat_round(int second_round);
   void dispatch_wide(const GlProgram& program, int all_items);

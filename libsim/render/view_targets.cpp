@@ -4,6 +4,12 @@
 
 namespace sim {
 
+namespace {
+
+constexpr std::int64_t list_header_words = 12;  // of wide_list.glsl
+
+}  // namespace
+
 void ViewTargets::resize(const View& new_view, int thickness_step) {
   view = new_view;
   const bool same_size = width == view.viewport.width && height == view.viewport.height;
@@ -24,10 +30,11 @@ void ViewTargets::resize(const View& new_view, int thickness_step) {
 }
 
 void ViewTargets::follow(std::int64_t count) {
-  if (count == followed_) return;
-  touched.reserve(4 * count);
+  if (count <= room_) return;
+  room_ = count + count / 4;
+  touched.reserve(4 * room_);
   touched.fill(0);
-  followed_ = count;
+  wide_list.reserve(4 * (list_header_words + 2 * room_));
 }
 
 void ViewTargets::read_depth(std::vector<float>& out) const {

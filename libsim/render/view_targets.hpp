@@ -27,7 +27,8 @@ struct ViewTargets {
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
 
   void resize(const View& new_view, int thickness_step);
-  /// Makes room for what is remembered of `count` particles; forgets it when their number changed.
+  /// Makes room for what is remembered of `count` particles; forgets it when they need more. What is
+  /// remembered of a particle that is another one now costs time and changes nothing.
   void follow(std::int64_t count);
 
   // See FluidRenderer; a barrier must lie between the passes and these.
@@ -38,7 +39,7 @@ struct ViewTargets {
  private:
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
-  std::int64_t followed_ = -1;
+  std::int64_t room_ = -1;  // particles
 };
 
 }  // namespace sim

@@ -1,0 +1,28 @@
+// Empties what the splats fill: one work group a tile of 16 x 8 px. A tile without water in the last picture was
+// left empty by it (wet_tiles.glsl); thickness, which walls do not cut, reaches beyond those with water.
+#include "view.glsl"
+#include "counters.glsl"
+#include "wide_list.glsl"
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(std430, binding = 1) writeonly buffer Depth { float depth[]; };
+layout(std430, binding = 2) writeonly buffer Front { uint front[]; };
+layout(std430, binding = 3) writeonly buffer Thickness { uint thickness[]; };
+layout(std430, binding = 6) readonly buffer Wet { uint wet[]; };
+
+void start_counting() {
+  not_finite = outside = beyond = near_crossing = subpixel_count = 0u;
+  by_thread = by_group = by_tiles = 0u;
+  filter_capped = thickness_full = front_missing = 0u;
+  group_items = tile_items = group_next = tile_next = 0u;
+}
+
+void main() {
+  if (gl_GlobalInvocationID.xy == uvec2(0)) start_counting();
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (all(lessThan(pixel, size.zw))) thickness[pixel.y * size.z + pixel.x] = 0u;
+  if (any(greaterThanEqual(pixel, size.xy))) return;
+  if ((wet[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] & 1u) == 0u) return;
+  const int at = pixel.y * size.x + pixel.x;
+  depth[at] = no_depth;
+  front[at] = 0xffffffffu;
+}
