@@ -60,25 +60,48 @@ Stir stir(Backend backend, MethodKind method, const std::vector<ParticleState>& 
   return out;
 }
 
-void still_water_stays_calm(Backend backend) {
+/// Mean and standard deviation of single runs.
+struct Spread {
+  double mean = 0, deviation = 0;
+  explicit Spread(const std::vector<double>& values) {
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values)
+      deviation += (value - mean) * (value - mean) / static_cast<double>(values.size());
+    deviation = std::sqrt(deviation);
+  }
+};
+
+/// From `first` on, in `steps` steps.
+std::vector<double> steps_from(double first, double step, int steps) {
+  std::vector<double> out;
+  for (int k = 0; k < steps; ++k) out.push_back(first + k * step);
+  return out;
+}
+const std::vector<double> all_gazes = steps_from(0.8, 0.4, 9);   // m along the pool
+const std::vector<double> all_depths = steps_from(2.0, 0.1, 9);  // of dams, m
+
+void still_water_stays_calm(Backend backend, const std::vector<double>& gazes) {
   const auto water = start(backend, seen(4.8, 1.2), MethodKind::HiRes)->read_state();
   for (const auto method : {MethodKind::FovFluid, MethodKind::Ours}) {
-    double rms = 0;
-    for (const double x : {1.2, 1.7}) {
+    std::vector<double> rms;
+    for (const double x : gazes) {
       const Stir one = stir(backend, method, water, x);
       EXPECT_LT(one.jumps, 0.02);
-      rms += one.rms / 2;
+      rms.push_back(one.rms);
     }
-    // The aim is 0.08. Before, FovFluid had 0.22 and Ours 0.27.
-    EXPECT_LT(rms, method == MethodKind::Ours ? 0.08 : 0.11) << sim::method_name(method);
+    const Spread stirred(rms);
+    std::printf("%s: %.3f m/s (%.3f)\n", sim::method_name(method).c_str(), stirred.mean, stirred.deviation);
+    // Asked is 0.08. FovFluid has 0.06 on a CPU and 0.07 on a GPU with a spread of 0.013.
+    EXPECT_LT(stirred.mean, method == MethodKind::Ours ? 0.08 : 0.11) << sim::method_name(method);
   }
 }
-TEST(StillWater, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu); }
-TEST(StillWaterGpu, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cuda); }
+TEST(StillWater, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu, {1.2, 1.7}); }
+TEST(StillWaterSlow, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu, all_gazes); }
+TEST(StillWaterGpu, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cuda, all_gazes); }
 
-void a_dam_keeps_its_energy(Backend backend) {
-  double mean = 0;
-  for (const double depth : {2.2, 2.4, 2.6}) {
+void dams_keep_their_energy(Backend backend, const std::vector<double>& depths) {
+  std::vector<double> shares;
+  for (const double depth : depths) {
     const auto scene = seen(1.6, depth);
     const auto fine = start(backend, scene, MethodKind::HiRes);
     const auto ours = start(backend, scene, MethodKind::Ours, fine->read_state());
@@ -93,13 +116,15 @@ void a_dam_keeps_its_energy(Backend backend) {
     }
     std::printf("dam of %.1f m: Ours has %.3f of HiRes' kinetic energy over two seconds\n", depth,
                 ours_sum / fine_sum);
-    mean += ours_sum / fine_sum / 3;
+    shares.push_back(ours_sum / fine_sum);
   }
-  // Over nine dams it was 0.988 on the CPU and 0.989 on a GPU; single dams scatter by 0.012.
-  EXPECT_GT(mean, 0.97);
-  EXPECT_LT(mean, 1.03);
+  const Spread kept(shares);
+  std::printf("dams: %.3f (%.3f)\n", kept.mean, kept.deviation);
+  EXPECT_GT(kept.mean, 0.97);
+  EXPECT_LT(kept.mean, 1.03);
 }
-TEST(StillWater, ADamKeepsItsEnergyUnderLevels) { a_dam_keeps_its_energy(Backend::Cpu); }
-TEST(StillWaterGpu, ADamKeepsItsEnergyUnderLevels) { a_dam_keeps_its_energy(Backend::Cuda); }
+TEST(StillWater, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend::Cpu, {2.2, 2.4, 2.6}); }
+TEST(StillWaterSlow, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend::Cpu, all_depths); }
+TEST(StillWaterGpu, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend::Cuda, all_depths); }
 
 }  // namespace
