@@ -2,6 +2,7 @@
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
+#include "front.glsl"
 #include "occlusion.glsl"
 layout(local_size_x = 64) in;
 uniform int thread_limit;
@@ -16,12 +17,10 @@ void main() {
   const vec4 grid = rays;
   const int row = size.x;
   const bool subpixel = is_subpixel(s, grid);
-  bool in_front = false;
   for (int y = box.y; y < box.w; ++y) {
     for (int x = box.x; x < box.z; ++x) {
       const int at = y * row + x;
-      if (splat_front(s, ivec2(x, y), subpixel, grid, at, depth_bits[at], i)) in_front = true;
+      splat_front(s, ivec2(x, y), subpixel, grid, at, depth_bits[at], i);
     }
   }
-  if (in_front) touched[i] |= was_in_front;
 }

@@ -5,6 +5,7 @@
 #include "counters.glsl"
 #include "wide_list.glsl"
 #include "occlusion.glsl"
+layout(std430, binding = 2) readonly buffer Last { float last_depth[]; };  // of the last picture, smoothed
 layout(std430, binding = 7) readonly buffer Blocks { uint farthest[]; };
 layout(local_size_x = 64) in;
 uniform int thread_limit;  // px a side that one invocation splats
@@ -48,11 +49,20 @@ void splat_small_thickness(Sphere s) {
   }
 }
 
+// Whatever the last picture holds, and wherever the eye was. Three radii are the particles in front and one more:
+// with fewer, blocks keep holes through which the next layers seem to be seen.
+bool goes_first(Sphere s) {
+  if (crosses_near(s)) return true;
+  const vec2 xy = (s.centre.xy / s.centre.z - rays.yw) / rays.xz;
+  const ivec2 pixel = ivec2(clamp(xy, vec2(0), vec2(size.xy - 1)));
+  return s.centre.z - 3.0 * s.radius <= last_depth[pixel.y * size.x + pixel.x];
+}
+
 // False when this round has nothing to do with particle i.
 bool take_turn(uint i) {
-  const uint last = touched[i];
-  if (second_round == 1) return (last & in_first_round) == 0u;
-  const bool first = goes_first(i, last);
+  if (second_round == 1) return (touched[i] & in_first_round) == 0u;
+  const vec4 particle = particles[i];
+  const bool first = !is_usable(particle) || goes_first(sphere_of(particle));
   touched[i] = first ? in_first_round : 0u;
   return first;
 }

@@ -11,16 +11,17 @@ const ivec2 team = ivec2(8, 4);
 const int ahead = 4;  // pixels of an invocation whose depths are read before the first is compared
 
 #ifdef FRONT
-const uint finds = was_in_front;
+#include "front.glsl"
 bool takes_part(uint known) { return (known & may_be_in_front) != 0u; }
 #else
-const uint finds = may_be_in_front;
 bool takes_part(uint known) { return (known & is_hidden) == 0u; }
 #endif
 
+// True when this tells of a particle that may be in front.
 bool splat_pixel(Sphere s, ivec2 pixel, int at, uint held, uint i) {
 #ifdef FRONT
-  return splat_front(s, pixel, false, rays, at, held, i);
+  splat_front(s, pixel, false, rays, at, held, i);
+  return false;
 #else
   return splat_depth(s, pixel, false, rays, at, held);
 #endif
@@ -30,7 +31,7 @@ bool splat_pixel(Sphere s, ivec2 pixel, int at, uint held, uint i) {
 void splat_pixels(Sphere s, uint i, ivec2 first, ivec2 step) {
   const ivec4 box = footprint(s, rays, size.xy);
   const int down = step.y * size.x;
-  bool found = false;
+  bool in_front = false;
   for (int x = (box.x & ~7) + first.x; x < box.z; x += step.x) {
     if (x < box.x) continue;
     for (int y = box.y + first.y; y < box.w; y += ahead * step.y) {
@@ -38,11 +39,11 @@ void splat_pixels(Sphere s, uint i, ivec2 first, ivec2 step) {
       uint held[ahead];
       for (int k = 0; k < ahead; ++k) held[k] = y + k * step.y < box.w ? depth_bits[at + k * down] : 0u;
       for (int k = 0; k < ahead; ++k) {
-        if (splat_pixel(s, ivec2(x, y + k * step.y), at + k * down, held[k], i)) found = true;
+        if (splat_pixel(s, ivec2(x, y + k * step.y), at + k * down, held[k], i)) in_front = true;
       }
     }
   }
-  if (found) touched[i] |= finds;  // whoever else writes there writes the same
+  if (in_front) touched[i] |= may_be_in_front;  // whoever else writes there writes the same
 }
 
 void splat_cells(Sphere s, ivec2 first, ivec2 step) {

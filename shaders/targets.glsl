@@ -1,5 +1,4 @@
 layout(std430, binding = 1) buffer Depth { uint depth_bits[]; };  // of a positive float: ordered like it
-layout(std430, binding = 2) buffer Front { uint front[]; };
 layout(std430, binding = 3) buffer Thickness { uint thickness[]; };
 layout(std430, binding = 6) buffer Touched { uint touched[]; };  // per particle: see occlusion.glsl
 
@@ -22,13 +21,6 @@ uint depth_up_to(uint held, Sphere s, ivec2 pixel, bool subpixel, vec4 grid) {
 bool splat_depth(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int at, uint held) {
   const uint bits = depth_up_to(held, s, pixel, subpixel, grid);
   return bits <= held && bits <= atomicMin(depth_bits[at], bits);
-}
-
-// True when this depth is the pixel's, `held`.
-bool splat_front(Sphere s, ivec2 pixel, bool subpixel, vec4 grid, int at, uint held, uint particle) {
-  if (depth_up_to(held, s, pixel, subpixel, grid) != held) return false;
-  atomicMin(front[at], particle);
-  return true;
 }
 
 void splat_thickness(Sphere s, ivec2 cell, bool subpixel, vec4 grid, int row, float units_per_m) {

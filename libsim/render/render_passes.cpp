@@ -140,6 +140,7 @@ void FluidRenderer::State::splat_round(int second_round) {
   glUniform1i(splat.uniform("second_round"), second_round);
   each_view([&](const ViewTargets& t) {
     bind_splat(t);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, t.filter_a.name());  // of the last picture
     dispatch_particles(count_);
   });
   timer.mark("splat small");

@@ -33,7 +33,6 @@ void ViewTargets::follow(std::int64_t count) {
   if (count <= room_) return;
   room_ = count + count / 4;
   touched.reserve(4 * room_);
-  touched.fill(0);
   wide_list.reserve(4 * (list_header_words + 2 * room_));
 }
 

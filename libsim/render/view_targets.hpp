@@ -27,8 +27,7 @@ struct ViewTargets {
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
 
   void resize(const View& new_view, int thickness_step);
-  /// Makes room for what is remembered of `count` particles; forgets it when they need more. What is
-  /// remembered of a particle that is another one now costs time and changes nothing.
+  /// Makes room for `count` particles.
   void follow(std::int64_t count);
 
   // See FluidRenderer; a barrier must lie between the passes and these.
