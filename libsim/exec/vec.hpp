@@ -17,23 +17,6 @@ struct alignas(16) Vec4 {
   float x, y, z, w;
 };
 
-/// *place, which nobody writes while the kernel runs.
-SIM_FN Vec4 read_only(const Vec4* place) {
-#ifdef __CUDA_ARCH__
-  const float4 v = __ldg(reinterpret_cast<const float4*>(place));
-  return {v.x, v.y, v.z, v.w};
-#else
-  return *place;
-#endif
-}
-SIM_FN int read_only(const int* place) {
-#ifdef __CUDA_ARCH__
-  return __ldg(place);
-#else
-  return *place;
-#endif
-}
-
 /// max(a, b) and min(a, b) for a bound b that is a number: an a that is none gives way to it, as in fmaxf and
 /// fminf. Those are a call on the CPU, and a call in a loop over lanes leaves one lane.
 SIM_FN float at_least(float a, float b) {

@@ -70,7 +70,7 @@ struct CellTable {
             grid.along(at.z + reach, grid.nz)};
   }
   SIM_FN bool empty(const LevelCells& grid) const {
-    return read_only(begin + grid.first) == read_only(begin + grid.first + grid.size());
+    return begin[grid.first] == begin[grid.first + grid.size()];
   }
   /// The particles of one line that can be within the reach.
   SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
@@ -80,8 +80,8 @@ struct CellTable {
     if (!(left > 0)) return {0, 0};
     const float half = rough_root(left);
     const int cell = grid.first + (y * grid.nz + z) * grid.nx;
-    return {read_only(begin + cell + grid.along(look.at.x - half, grid.nx)),
-            read_only(begin + cell + grid.along(look.at.x + half, grid.nx) + 1)};
+    return {begin[cell + grid.along(look.at.x - half, grid.nx)],
+            begin[cell + grid.along(look.at.x + half, grid.nx) + 1]};
   }
 
   /// visit(begin, end) of runs of particles, in ascending order, that hold all within margin x (h + h_other)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/base/error.hpp"
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -91,7 +93,7 @@ LevelCells cells_of(Vec3 size, double edge, float support) {
 }
 
 /// Water splashes above the rim; what is higher shares the uppermost cells.
-constexpr float headroom = 1.25f;
+constexpr float headroom = 1.5f;
 
 }  // namespace
 
@@ -100,6 +102,11 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
   size.y *= headroom;
   shape_.low = domain.low;
   const std::int64_t most = std::max(always, most_per_particle * capacity);
+  for (int l = 0; l < shape_.levels; ++l) {
+    if (!(shape_.level[l].support > 0))
+      throw base::Error("grid", "level " + std::to_string(l) + " has no support radius",
+                        "give the state its supports first");
+  }
   const double reach = static_cast<double>(margin) / static_cast<double>(cells_per_reach);
   for (double wider = 1;; wider *= 1.1) {
     double sum = 0;

@@ -81,7 +81,7 @@ struct ListNeighbours {
 #pragma unroll
       for (int k = 0; k < at_once; ++k) {
         const int j = run.begin + first + k;
-        other[k] = read_only(predicted + (j < run.end ? j : run.end - 1));
+        other[k] = predicted[j < run.end ? j : run.end - 1];
       }
 #pragma unroll
       for (int k = 0; k < at_once; ++k) {

@@ -177,6 +177,8 @@ inline Fluid fluid_of(const std::vector<Vec4>& points, const std::vector<Vec4>& 
   auto& state = out.state;
   state.walls = walls;
   state.finest_support = finest_support;
+  state.lightest_support = finest_support;
+  state.supports = level_supports(static_cast<double>(finest_support));
   state.one_level =
       std::all_of(points.begin(), points.end(), [&](const Vec4& p) { return p.w == finest_support; });
   state.guards.resize(1);

@@ -45,6 +45,7 @@ FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
 /// A state of one level with the grid's lists.
 FluidState listed(const std::vector<Vec4>& points) {
   FluidState state = resting(points);
+  state.lightest_support = points.empty() ? 1 : points[0].w;
   do {
     find_neighbours(state, NeighboursView(state.particles));
   } while (state.neighbours.grow());
