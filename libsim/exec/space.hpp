@@ -4,23 +4,17 @@
 /// from one text. Kernels are trivially copyable functors `void operator()(int i) const`; all work is in
 /// order on one stream.
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "libsim/exec/atomics.hpp"
+#include "libsim/exec/lanes.hpp"
 #include "libsim/exec/launch_timer.hpp"
-
-#ifdef SIM_CUDA
-#include <cuda_runtime.h>
-#define SIM_FN __host__ __device__ __forceinline__
-#else
-#define SIM_FN inline
-#endif
+#include "libsim/exec/rough.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -121,34 +115,6 @@ class Scanner {
   Array<unsigned char> scratch_;
 };
 
-/// A functor of for_each_team is given the lanes that share its index: lane k takes a loop's steps k, k +
-/// size, ... and the parts are summed. Here it is one, and everything folds away.
-struct OneLane {
-  static constexpr int size = 1;
-  SIM_FN int rank() const { return 0; }
-  template <class T>
-  SIM_FN T sum(T value) const {
-    return value;
-  }
-  template <class T>
-  SIM_FN T min(T value) const {
-    return value;
-  }
-  SIM_FN bool any(bool mine) const { return mine; }
-  /// The lanes' value that comes before all others by T::before, which tells all but equal values apart.
-  template <class T>
-  SIM_FN T first(T value) const {
-    return value;
-  }
-  /// The sum over the lanes before this one, and over all.
-  SIM_FN int offset(int mine, int& all) const {
-    all = mine;
-    return 0;
-  }
-  /// What any lane has written is there for all.
-  SIM_FN void wait() const {}
-};
-
 #ifdef SIM_CUDA
 
 void check(cudaError_t status, const char* what);
@@ -196,108 +162,6 @@ void for_each(const char* label, int n, F f) {
   launch(label, run_kernel<F>, static_cast<unsigned>((n + 255) / 256), 256, 0, n, f);
 }
 
-/// Lanes of a warp; the size is a power of two above one. The host only names the type.
-#ifdef __CUDA_ARCH__
-template <int Size>
-struct Lanes {
-  static constexpr int size = Size;
-  __device__ int rank() const { return static_cast<int>(threadIdx.x) & (Size - 1); }
-  template <class T>
-  __device__ T sum(T value) const {
-#pragma unroll
-    for (int step = Size / 2; step > 0; step /= 2) value += __shfl_xor_sync(mask(), value, step, Size);
-    return value;
-  }
-  template <class T>
-  __device__ T min(T value) const {
-#pragma unroll
-    for (int step = Size / 2; step > 0; step /= 2) {
-      const T other = __shfl_xor_sync(mask(), value, step, Size);
-      value = other < value ? other : value;
-    }
-    return value;
-  }
-  __device__ bool any(bool mine) const { return __any_sync(mask(), mine); }
-  template <class T>
-  __device__ T first(T value) const {
-#pragma unroll
-    for (int step = Size / 2; step > 0; step /= 2) {
-      const T other = across(value, step);
-      if (other.before(value)) value = other;
-    }
-    return value;
-  }
-  __device__ int offset(int mine, int& all) const {
-    int sum = mine;
-#pragma unroll
-    for (int step = 1; step < Size; step *= 2) {
-      const int lower = __shfl_up_sync(mask(), sum, step, Size);
-      if (rank() >= step) sum += lower;
-    }
-    all = __shfl_sync(mask(), sum, Size - 1, Size);
-    return sum - mine;
-  }
-  __device__ void wait() const { __syncwarp(mask()); }
-
- private:
-  /// The value of the lane whose rank differs in the bit `step`, word by word.
-  template <class T>
-  __device__ T across(T value, int step) const {
-    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(unsigned) == 0);
-    unsigned words[sizeof(T) / sizeof(unsigned)];
-    memcpy(words, &value, sizeof value);
-#pragma unroll
-    for (unsigned& word : words) word = __shfl_xor_sync(mask(), word, step, Size);
-    memcpy(&value, words, sizeof value);
-    return value;
-  }
-
-  static constexpr unsigned whole = (1u << Size) - 1;
-  __device__ unsigned first() const { return threadIdx.x & 31u & ~static_cast<unsigned>(Size - 1); }
-  __device__ unsigned mask() const { return whole << first(); }
-};
-#else
-template <int Size>
-struct Lanes : OneLane {};
-#endif
-
-/// a / b to about one unit in the last place, for b up to 2^126.
-SIM_FN float quotient(float a, float b) {
-#ifdef __CUDA_ARCH__
-  return __fdividef(a, b);
-#else
-  return a / b;
-#endif
-}
-SIM_FN float reciprocal(float x) { return quotient(1, x); }
-
-/// sqrt(x), the same.
-SIM_FN float rough_root(float x) {
-#ifdef __CUDA_ARCH__
-  float root;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(x));
-  return root;
-#else
-  return sqrtf(x);
-#endif
-}
-
-/// A distance r > 0 from its square, and quotients by it: on the GPU both come from one reciprocal root.
-struct Root {
-#ifdef __CUDA_ARCH__
-  float r, inverse;
-  __device__ explicit Root(float square) {
-    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(square));
-    r = square * inverse;
-  }
-  __device__ float under(float value) const { return value * inverse; }
-#else
-  float r;
-  SIM_FN explicit Root(float square) : r(sqrtf(square)) {}
-  SIM_FN float under(float value) const { return value / r; }
-#endif
-};
-
 template <int Size, class F>
 __global__ void __launch_bounds__(256) run_team_kernel(int n, const __grid_constant__ F f) {
   begin_kernel();
@@ -335,60 +199,6 @@ void for_each_team(const char* label, int n, F f) {
   }
 }
 
-template <class T>
-SIM_FN void atomic_add(T* target, T value) {
-#ifdef __CUDA_ARCH__
-  atomicAdd(target, value);
-#else
-  *target += value;
-#endif
-}
-
-SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
-#ifdef __CUDA_ARCH__
-  atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
-#else
-  *target += value;
-#endif
-}
-
-/// *target += amount; gives what it was.
-SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
-#ifdef __CUDA_ARCH__
-  return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
-#else
-  const std::uint64_t was = *target;
-  *target += amount;
-  return was;
-#endif
-}
-
-SIM_FN int atomic_take(int* target, int amount) {
-#ifdef __CUDA_ARCH__
-  return atomicAdd(target, amount);
-#else
-  const int was = *target;
-  *target += amount;
-  return was;
-#endif
-}
-
-SIM_FN void atomic_max(int* target, int value) {
-#ifdef __CUDA_ARCH__
-  atomicMax(target, value);
-#else
-  if (value > *target) *target = value;
-#endif
-}
-
-SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
-#ifdef __CUDA_ARCH__
-  atomicMax(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
-#else
-  if (value > *target) *target = value;
-#endif
-}
-
 #else
 
 /// Indices that a thread takes at once: enough to hide what taking costs, and several turns for each thread,
@@ -410,17 +220,6 @@ void for_each(const char* label, int n, F f) {
   for (int i = 0; i < n; ++i) f(i);
 }
 
-inline float quotient(float a, float b) { return a / b; }
-inline float reciprocal(float x) { return 1 / x; }
-inline float rough_root(float x) { return std::sqrt(x); }
-
-/// A distance r > 0 from its square, and quotients by it.
-struct Root {
-  float r;
-  explicit Root(float square) : r(std::sqrt(square)) {}
-  float under(float value) const { return value / r; }
-};
-
 template <class F>
 struct OnOneLane {
   F f;
@@ -432,30 +231,6 @@ struct OnOneLane {
 template <class F>
 void for_each_team(const char* label, int n, F f) {
   for_each(label, n, OnOneLane<F>{f});
-}
-
-template <class T>
-void atomic_add(T* target, T value) {
-#pragma omp atomic
-  *target += value;
-}
-
-/// *target += amount; gives what it was.
-template <class T>
-T atomic_take(T* target, T amount) {
-  T was;
-#pragma omp atomic capture
-  {
-    was = *target;
-    *target += amount;
-  }
-  return was;
-}
-
-template <class T>
-void atomic_max(T* target, T value) {
-#pragma omp critical(sim_atomic_max)
-  if (value > *target) *target = value;
 }
 
 #endif

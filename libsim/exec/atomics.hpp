@@ -1,0 +1,94 @@
+#pragma once
+/// Additions and maxima that threads make to one place at once.
+
+#include <cstdint>
+
+#include "libsim/exec/function.hpp"
+
+namespace sim::SIM_BACKEND {
+
+#ifdef SIM_CUDA
+
+template <class T>
+SIM_FN void atomic_add(T* target, T value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(target, value);
+#else
+  *target += value;
+#endif
+}
+
+SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
+#else
+  *target += value;
+#endif
+}
+
+/// *target += amount; gives what it was.
+SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
+#else
+  const std::uint64_t was = *target;
+  *target += amount;
+  return was;
+#endif
+}
+
+SIM_FN int atomic_take(int* target, int amount) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(target, amount);
+#else
+  const int was = *target;
+  *target += amount;
+  return was;
+#endif
+}
+
+SIM_FN void atomic_max(int* target, int value) {
+#ifdef __CUDA_ARCH__
+  atomicMax(target, value);
+#else
+  if (value > *target) *target = value;
+#endif
+}
+
+SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicMax(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
+#else
+  if (value > *target) *target = value;
+#endif
+}
+
+#else
+
+template <class T>
+void atomic_add(T* target, T value) {
+#pragma omp atomic
+  *target += value;
+}
+
+/// *target += amount; gives what it was.
+template <class T>
+T atomic_take(T* target, T amount) {
+  T was;
+#pragma omp atomic capture
+  {
+    was = *target;
+    *target += amount;
+  }
+  return was;
+}
+
+template <class T>
+void atomic_max(T* target, T value) {
+#pragma omp critical(sim_atomic_max)
+  if (value > *target) *target = value;
+}
+
+#endif
+
+}  // namespace sim::SIM_BACKEND
