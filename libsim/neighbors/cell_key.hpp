@@ -1,5 +1,5 @@
 #pragma once
-/// Cells of the sorted grid as 64-bit keys.
+/// Cells as 64-bit keys, for the gradients of two supports (saliency/gradients.hpp).
 
 #include <cstdint>
 

@@ -173,11 +173,4 @@ int Grid::count_cells() const {
   return out;
 }
 
-std::size_t Grid::bytes() const {
-  std::size_t sum = 0;
-  for (const auto* column : {&begin_, &counts_, &cell_of_, &arrival_, &placed_, &order_})
-    sum += column->bytes();
-  return sum;
-}
-
 }  // namespace sim::SIM_BACKEND

@@ -22,7 +22,6 @@ class Grid {
   int count_cells() const;
   /// Cells in the table.
   int size() const;
-  std::size_t bytes() const;
 
   /// Cells along the reach of a pair, margin x h: the finer they are, the fewer particles beyond it are
   /// looked at, and the more lines of cells. The GPU reads short lines side by side, the CPU long ones in
