@@ -29,7 +29,7 @@ defect relaxation-unscaled "one relaxation for particles of any size" $stages/de
   'relaxation / (spacing * spacing);' 'relaxation / (0.15f * 0.15f + 0 * spacing);'
 defect no-nan-guard "what is not finite is not quarantined" $stages/predict.cpp stability_test 'Divergence.*Lost*:Divergence.TheLowest*' \
   'if (!place_lost && all_finite(v)) return;' 'return;'
-defect eased-impact "the constraint stays weakened in what strikes a wall" $stages/ease.cpp sim_test 'Ease.*' \
+defect eased-impact "the constraint stays weakened in what strikes a wall" libsim/levels/easing.hpp sim_test 'Ease.*' \
   'impact = 0.1f' 'impact = 1e9f'
 defect merged-mass "a merged particle is 1 % too heavy" libsim/levels/joining.hpp sim_test 'Account.CountsWhatIsThere' \
   'mean(velocity, kept, left), supports.h[coarser],' 'mean(velocity, kept, left), 1.00332f * supports.h[coarser],'

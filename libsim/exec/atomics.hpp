@@ -47,6 +47,20 @@ SIM_FN int atomic_take(int* target, int amount) {
 #endif
 }
 
+/// A number that nobody else gets: how many had asked before. Threads of a warp ask together.
+SIM_FN int atomic_next(int* target) {
+#ifdef __CUDA_ARCH__
+  const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(target));
+  const unsigned before = together & ((1u << (threadIdx.x & 31u)) - 1);
+  const int leader = __ffs(static_cast<int>(together)) - 1;
+  int first = 0;
+  if (before == 0) first = atomicAdd(target, __popc(together));
+  return __shfl_sync(together, first, leader) + __popc(before);
+#else
+  return atomic_take(target, 1);
+#endif
+}
+
 SIM_FN void atomic_max(int* target, int value) {
 #ifdef __CUDA_ARCH__
   atomicMax(target, value);
@@ -82,6 +96,9 @@ T atomic_take(T* target, T amount) {
   }
   return was;
 }
+
+/// A number that nobody else gets: how many had asked before.
+inline int atomic_next(int* target) { return atomic_take(target, 1); }
 
 template <class T>
 void atomic_max(T* target, T value) {

@@ -107,6 +107,7 @@ struct LevelState {
   Array<int> flags, sums;     ///< who splits, and how many up to there
   Array<std::uint64_t> keys;  ///< of splits by priority
   Array<int> free_ids;        ///< ascending
+  Array<int> beside, beside_count;  ///< slots of those near fresh particles, and how many there are
   // The two whom a relay bids for stand where counts of births come later in the frame, and what the best bid
   // is worth where the frame's splits were.
   Array<int>& first_bid() { return births; }

@@ -44,6 +44,9 @@ struct Readings {
   /// Eq. 6: share of the way to the new value that the temporal feature goes in a frame; 1 = all of it. In
   /// still water 0.3 makes a third fewer splits than 1, and 0.1 less than half as many.
   double temporal_follow = 0.2;
+  /// The temporal feature and the range of Eq. 9 are measured anew every so many frames, and followed as far
+  /// as in each of them; acuity and manifold are of every frame, so that a saccade tells at once. >= 1
+  int temporal_period_frames = 2;
   /// Eq. 6: differences times h_i, without unit; false leaves 1/m.
   bool dimensionless = true;
   /// Eq. 6: epsilon_v as a share of sqrt(g d_*), epsilon_rho as a share of rho_0; without this floor the

@@ -9,6 +9,18 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// The columns of one type that a method has besides.
+template <class T>
+struct Extras {
+  static constexpr int most = 8;
+  const T* in[most];
+  T* out[most];
+  int count;
+  SIM_FN void gather(int i, int from) const {
+    for (int k = 0; k < count; ++k) out[k][i] = in[k][from];
+  }
+};
+
 struct Gather {
   const int* order;
   const Vec4* position_in;
@@ -21,6 +33,10 @@ struct Gather {
   Vec4* velocity;
   int* id;
   std::uint8_t* level;
+  Extras<std::uint8_t> bytes;
+  Extras<float> floats;
+  Extras<int> ints;
+  Extras<SaliencyParts> parts;
   SIM_FN void operator()(int i) const {
     const int from = order[i];
     position[i] = position_in[from];
@@ -28,20 +44,10 @@ struct Gather {
     velocity[i] = velocity_in[from];
     id[i] = id_in[from];
     level[i] = level_in[from];
-  }
-};
-
-/// The columns of one type that a method has besides, all in one launch.
-template <class T>
-struct GatherExtras {
-  static constexpr int most = 8;
-  const int* order;
-  const T* in[most];
-  T* out[most];
-  int count;
-  SIM_FN void operator()(int i) const {
-    const int from = order[i];
-    for (int k = 0; k < count; ++k) out[k][i] = in[k][from];
+    bytes.gather(i, from);
+    floats.gather(i, from);
+    ints.gather(i, from);
+    parts.gather(i, from);
   }
 };
 
@@ -75,26 +81,14 @@ void Particles::for_each_column(Self& self, Visit visit) {
 }
 
 template <class T>
-void Particles::reorder_extras(const Array<int>& order, std::vector<Array<T>>& spares) {
-  GatherExtras<T> gather{order.data(), {}, {}, 0};
-  std::vector<Array<T>*> moved;
+std::vector<Array<T>*> Particles::kept_columns() {
+  std::vector<Array<T>*> out;
   for_each_column(*this, [&](auto& column, bool declared, Life life) {
     if constexpr (std::is_same_v<decltype(column), Array<T>&>) {
-      if (declared && life == Life::Kept) moved.push_back(&column);
+      if (declared && life == Life::Kept) out.push_back(&column);
     }
   });
-  spares.resize(std::max(spares.size(), moved.size()));
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    Array<T>& spare = spares[k];
-    spare.reserve(static_cast<std::size_t>(capacity_));
-    spare.resize(order.size());
-    gather.in[k] = moved[k]->data();
-    gather.out[k] = spare.data();
-  }
-  gather.count = static_cast<int>(moved.size());
-  if (gather.count == 0) return;
-  for_each("reorder", static_cast<int>(order.size()), gather);
-  for (std::size_t k = 0; k < moved.size(); ++k) moved[k]->swap(spares[k]);
+  return out;
 }
 
 void Particles::allocate(ColumnSet set, int n, int capacity) {
@@ -138,6 +132,22 @@ void Particles::reorder(const Array<int>& order) {
     spare.resize(order.size());
     return spare.data();
   };
+  const auto extras = [&]<class T>(const std::vector<Array<T>*>& kept, std::vector<Array<T>>& spares) {
+    Extras<T> out{{}, {}, static_cast<int>(kept.size())};
+    spares.resize(kept.size());
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      out.in[k] = kept[k]->data();
+      out.out[k] = room(spares[k]);
+    }
+    return out;
+  };
+  const auto swap_extras = [](const auto& kept, auto& spares) {
+    for (std::size_t k = 0; k < kept.size(); ++k) kept[k]->swap(spares[k]);
+  };
+  const auto bytes = kept_columns<std::uint8_t>();
+  const auto floats = kept_columns<float>();
+  const auto ints = kept_columns<int>();
+  const auto parts = kept_columns<SaliencyParts>();
   auto& c = columns_;
   for_each("reorder", n,
            Gather{.order = order.data(),
@@ -150,16 +160,20 @@ void Particles::reorder(const Array<int>& order) {
                   .predicted = room(spare_b_),
                   .velocity = room(spare_c_),
                   .id = room(spare_id_),
-                  .level = room(spare_level_)});
+                  .level = room(spare_level_),
+                  .bytes = extras(bytes, spare_bytes_),
+                  .floats = extras(floats, spare_floats_),
+                  .ints = extras(ints, spare_ints_),
+                  .parts = extras(parts, spare_parts_)});
   c.position.swap(spare_a_);
   c.predicted.swap(spare_b_);
   c.velocity.swap(spare_c_);
   c.id.swap(spare_id_);
   c.level.swap(spare_level_);
-  reorder_extras(order, spare_bytes_);
-  reorder_extras(order, spare_floats_);
-  reorder_extras(order, spare_ints_);
-  reorder_extras(order, spare_parts_);
+  swap_extras(bytes, spare_bytes_);
+  swap_extras(floats, spare_floats_);
+  swap_extras(ints, spare_ints_);
+  swap_extras(parts, spare_parts_);
   if (n != n_) resize(n);
 }
 

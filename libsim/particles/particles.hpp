@@ -89,9 +89,9 @@ class Particles {
   /// Gives each column to visit(column, declared, life), in the table's order.
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit visit);
-  /// Permutes the kept columns of one type that are declared, in one launch.
+  /// The columns of one type that are declared and live with their particle.
   template <class T>
-  void reorder_extras(const Array<int>& order, std::vector<Array<T>>& spares);
+  std::vector<Array<T>*> kept_columns();
 
   int n_ = 0;
   int capacity_ = 0;

@@ -11,6 +11,8 @@ namespace sim::SIM_BACKEND {
 /// Slot = particle. Everything here folds away.
 struct AllParticles {
   static constexpr bool everyone = true;
+  /// The k-th slot that a pass has to look at, -1 = none.
+  SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slot; }
   SIM_FN float moves(int) const { return 1; }
 };
@@ -22,6 +24,7 @@ struct ActiveParticles {
   const int* slots;
   const std::uint8_t* active;
   bool others_pressed;  ///< gravity and the coarse pressure move the others too
+  SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slots[slot]; }
   /// 1 for a particle that is solved, 0 for one that only its grid moves.
   SIM_FN float moves(int i) const { return active[i] ? 1.0f : 0.0f; }
@@ -33,6 +36,7 @@ struct ActiveParticles {
 struct EverySlot {
   static constexpr bool everyone = true;
   const int* slots;
+  SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const {
     const int i = slots[slot];
     return i < 0 ? ~i : i;
@@ -40,18 +44,15 @@ struct EverySlot {
   SIM_FN float moves(int) const { return 1; }
 };
 
-/// Those of another selection within the support of a particle that split or merged this frame, themselves
-/// included: the share of the constraint round them is the least.
+/// Those of another selection that a pass before has listed, in any order: they are few.
 template <class Selection>
-struct BesideFresh {
+struct Listed {
   static constexpr bool everyone = false;
   Selection select;
-  const float* ease;
-  float least;
-  SIM_FN int operator()(int slot) const {
-    const int i = select(slot);
-    return i >= 0 && ease[i] <= least ? i : -1;
-  }
+  const int* slots;
+  const int* count;
+  SIM_FN int slot(int k) const { return k < *count ? slots[k] : -1; }
+  SIM_FN int operator()(int slot) const { return slot < 0 ? -1 : select(slot); }
 };
 
 }  // namespace sim::SIM_BACKEND

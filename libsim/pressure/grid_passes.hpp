@@ -1,5 +1,6 @@
 #pragma once
-/// The passes of a V-cycle, a functor of a cell each.
+/// The passes of a V-cycle, a functor of a cell each. cell(place, index) does the work where the place is
+/// known.
 
 #include "libsim/pressure/multigrid.hpp"
 
@@ -34,6 +35,7 @@ struct Coarsen {
 
 /// Conductances of a cell's faces across x, y, z: area over way, in finest cells, times theirs.
 SIM_FN Vec3 conductances(const GridView& grid, Place p) {
+  if (grid.scale == 1) return grid.conductance;
   const float x = grid.extent(p.x, grid.finest.nx);
   const float y = grid.extent(p.y, grid.finest.ny);
   const float z = grid.extent(p.z, grid.finest.nz);
@@ -45,17 +47,21 @@ SIM_FN Vec3 conductances(const GridView& grid, Place p) {
 struct Weigh {
   GridView grid;
   SIM_FN void operator()(int i) const {
-    float sum = 0;
     if (grid.kind[i] == CellKind::Fluid) {
-      const Place p = place_of(grid.block, i);
-      const Vec3 over = conductances(grid, p);
-      for (int face = 0; face < 6; ++face) {
-        const int axis = face / 2;
-        const int step = face % 2 ? 1 : -1;
-        const float weight = axis == 0 ? over.x : axis == 1 ? over.y : over.z;
-        sum += weight * opening(p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
-                                p.z + (axis == 2 ? step : 0));
-      }
+      cell(place_of(grid.block, i), i);
+    } else {
+      grid.diagonal[i] = 0;
+    }
+  }
+  SIM_FN void cell(Place p, int i) const {
+    float sum = 0;
+    const Vec3 over = conductances(grid, p);
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2;
+      const int step = face % 2 ? 1 : -1;
+      const float weight = axis == 0 ? over.x : axis == 1 ? over.y : over.z;
+      sum += weight * opening(p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
+                              p.z + (axis == 2 ? step : 0));
     }
     grid.diagonal[i] = sum;
   }
@@ -93,8 +99,9 @@ struct Smooth {
   SIM_FN void operator()(int half) const {
     const Place pair = place_of({(grid.block.nx + 1) / 2, grid.block.ny, grid.block.nz}, half);
     const Place p{2 * pair.x + ((pair.y + pair.z + colour) & 1), pair.y, pair.z};
-    if (p.x >= grid.block.nx) return;
-    const int i = grid.block.index(p.x, p.y, p.z);
+    if (p.x < grid.block.nx) cell(p, grid.block.index(p.x, p.y, p.z));
+  }
+  SIM_FN void cell(Place p, int i) const {
     const float diagonal = grid.diagonal[i];
     if (diagonal <= 0) return;
     const float q = (grid.source[i] + around(grid, p, i)) / diagonal;
@@ -107,8 +114,8 @@ struct Smooth {
 struct Restrict {
   GridView fine, coarse;
   bool push_only;
-  SIM_FN void operator()(int i) const {
-    const Place p = place_of(coarse.block, i);
+  SIM_FN void operator()(int i) const { cell(place_of(coarse.block, i), i); }
+  SIM_FN void cell(Place p, int i) const {
     float sum = 0;
     for (int child = 0; child < 8; ++child) {
       const Place c{2 * p.x + (child & 1), 2 * p.y + (child >> 1 & 1), 2 * p.z + (child >> 2)};
@@ -129,8 +136,9 @@ struct Prolong {
   GridView fine, coarse;
   bool push_only;
   SIM_FN void operator()(int i) const {
-    if (fine.kind[i] != CellKind::Fluid) return;
-    const Place p = place_of(fine.block, i);
+    if (fine.kind[i] == CellKind::Fluid) cell(place_of(fine.block, i), i);
+  }
+  SIM_FN void cell(Place p, int i) const {
     const Place parent{p.x / 2, p.y / 2, p.z / 2};
     const Place beside{parent.x + (p.x & 1 ? 1 : -1), parent.y + (p.y & 1 ? 1 : -1),
                        parent.z + (p.z & 1 ? 1 : -1)};

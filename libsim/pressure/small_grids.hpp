@@ -10,19 +10,75 @@ constexpr int coarsest_sweeps = 4;
 /// A grid of at most so many cells is left to one warp.
 constexpr int one_warp_cells = 64;
 
-/// Takes what the first of the small grids is given, with q = 0,
+/// A fluid cell's place, in the room.
+struct CellPlace {
+  std::uint16_t x, y, z;
+};
+
+/// The fluid cells of one grid, which are few: passes go over them and need not look at the others. Those of
+/// the first colour lie at the front, those of the second at the back.
+struct FluidCells {
+  CellBlock block;
+  CellPlace* place;
+  int* count;  ///< by colour
+
+  SIM_FN int size() const { return count[0] + count[1]; }
+  SIM_FN int nth(int colour, int k) const { return colour == 0 ? k : block.size() - 1 - k; }
+  template <class F>
+  SIM_FN void visit(int at, const F& f) const {
+    const Place p{place[at].x, place[at].y, place[at].z};
+    f.cell(p, block.index(p.x, p.y, p.z));
+  }
+};
+
+/// f.cell for the fluid cells of one colour, or for all.
+template <class F>
+struct OfColour {
+  FluidCells cells;
+  int colour;
+  F f;
+  SIM_FN void operator()(int k) const { cells.visit(cells.nth(colour, k), f); }
+};
+template <class F>
+struct OfBoth {
+  FluidCells cells;
+  F f;
+  SIM_FN void operator()(int k) const {
+    const int first = cells.count[0];
+    cells.visit(k < first ? k : cells.nth(1, k - first), f);
+  }
+};
+
+/// Lists a grid's fluid cells, in any order, with q = 0 everywhere.
+struct ListFluid {
+  GridView grid;
+  FluidCells to;
+  SIM_FN void operator()(int i) const {
+    grid.q[i] = 0;
+    if (grid.kind[i] != CellKind::Fluid) return;
+    const auto [x, y, z] = place_of(grid.block, i);
+    const int colour = (x + y + z) & 1;
+    to.place[to.nth(colour, atomic_next(to.count + colour))] = {
+        static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
+  }
+};
+
+/// Takes what the first of the small grids is given,
 struct Load {
   GridView from, to;
   SIM_FN void operator()(int i) const {
     to.kind[i] = from.kind[i];
     to.source[i] = from.source[i];
-    to.q[i] = 0;
   }
 };
 /// and gives its q back.
 struct Store {
   GridView from, to;
   SIM_FN void operator()(int i) const { to.q[i] = from.q[i]; }
+};
+struct Nothing {
+  int* count;
+  SIM_FN void operator()(int i) const { count[i] = 0; }
 };
 
 /// The grids from the first one that is small enough for one block down to the coarsest: V-cycles over them.
@@ -40,35 +96,42 @@ struct SmallGrids {
   int few;    ///< the first grid for one warp; the last one at most
   int cycles;
 
-  std::size_t bytes() const {
-    return static_cast<std::size_t>(cells) * (3 * sizeof(float) + sizeof(CellKind));
-  }
+  static constexpr std::size_t cell_bytes = 3 * sizeof(float) + sizeof(CellPlace) + sizeof(CellKind);
+  std::size_t bytes() const { return counts_bytes + static_cast<std::size_t>(cells) * cell_bytes; }
+  static constexpr std::size_t counts_bytes = 2 * most * sizeof(int);
 
-  /// The steps of a V-cycle over the grids in a room.
+  /// The steps of a V-cycle over the grids in a room: counts, then q, sources and diagonals, then places,
+  /// then kinds.
   struct InRoom {
     const SmallGrids& grids;
     unsigned char* room;
 
+    SIM_FN int* counts() const { return reinterpret_cast<int*>(room); }
+    SIM_FN float* values() const { return reinterpret_cast<float*>(room + counts_bytes); }
+    SIM_FN CellPlace* places() const { return reinterpret_cast<CellPlace*>(values() + 3 * grids.cells); }
     SIM_FN GridView view(int level) const {
       const Grid& at = grids.grid[level];
-      auto* values = reinterpret_cast<float*>(room) + at.begin;
-      auto* kinds =
-          reinterpret_cast<CellKind*>(room + 3 * sizeof(float) * static_cast<unsigned>(grids.cells));
       GridView out = grids.outside;
       out.block = at.block;
       out.scale = at.scale;
-      out.kind = kinds + at.begin;
-      out.q = values;
-      out.source = values + grids.cells;
-      out.diagonal = values + 2 * grids.cells;
+      out.kind = reinterpret_cast<CellKind*>(places() + grids.cells) + at.begin;
+      out.q = values() + at.begin;
+      out.source = out.q + grids.cells;
+      out.diagonal = out.source + grids.cells;
       return out;
+    }
+    SIM_FN FluidCells fluid(int level) const {
+      const Grid& at = grids.grid[level];
+      return {at.block, places() + at.begin, counts() + 2 * level};
     }
     template <class Threads>
     SIM_FN void smooth(Threads threads, int level, int first_colour) const {
       const GridView at = view(level);
+      const FluidCells cells = fluid(level);
       for (int half = 0; half < 2; ++half) {
         const int colour = half == 0 ? first_colour : 1 - first_colour;
-        threads.each(Smooth::size(at.block), Smooth{at, colour, at.scale == 1});
+        const Smooth pass{at, colour, at.scale == 1};
+        threads.each(cells.count[colour], OfColour<Smooth>{cells, colour, pass});
       }
     }
     template <class Threads>
@@ -76,15 +139,18 @@ struct SmallGrids {
       for (int level = from; level < to; ++level) {
         smooth(threads, level, 0);
         const GridView fine = view(level);
-        const GridView coarse = view(level + 1);
-        threads.each(coarse.block.size(), Restrict{fine, coarse, fine.scale == 1});
+        const FluidCells cells = fluid(level + 1);
+        const Restrict pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Restrict>{cells, pass});
       }
     }
     template <class Threads>
     SIM_FN void ascend(Threads threads, int from, int to) const {
       for (int level = from - 1; level >= to; --level) {
         const GridView fine = view(level);
-        threads.each(fine.block.size(), Prolong{fine, view(level + 1), fine.scale == 1});
+        const FluidCells cells = fluid(level);
+        const Prolong pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Prolong>{cells, pass});
         smooth(threads, level, 1);
       }
     }
@@ -97,11 +163,15 @@ struct SmallGrids {
     }
     template <class Block>
     SIM_FN void prepare(Block block) const {
+      block.spread(2 * grids.count, Nothing{counts()});
       block.each(view(0).block.size(), Load{grids.outside, view(0)});
       for (int level = 1; level < grids.count; ++level)
         block.each(view(level).block.size(), Coarsen{view(level - 1), view(level)});
       for (int level = 0; level < grids.count; ++level)
-        block.spread(view(level).block.size(), Weigh{view(level)});
+        block.spread(view(level).block.size(), ListFluid{view(level), fluid(level)});
+      block.wait();
+      for (int level = 0; level < grids.count; ++level)
+        block.spread(fluid(level).size(), OfBoth<Weigh>{fluid(level), {view(level)}});
       block.wait();
     }
   };

@@ -10,8 +10,7 @@ namespace {
 using Selection = SaliencyNormaliser::Selection;
 constexpr int bits_a_round = 11;
 constexpr int bins = 1 << bits_a_round;
-constexpr int rounds = 3;  // of 31 bits
-constexpr float follow = 0.1f;
+constexpr int rounds = 3;    // of 31 bits
 constexpr int trim_low = 1;  // %
 constexpr int trim_high = 2;
 
@@ -103,7 +102,7 @@ struct SelectBins {
 }  // namespace
 
 void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* level, int n,
-                                Normalisation reading, float floor) {
+                                Normalisation reading, float share, float floor) {
   if (range_.size() == 0) {
     range_.resize(1);
     range_.zero();
@@ -120,7 +119,7 @@ void SaliencyNormaliser::update(const Array<float>& values, const std::uint8_t* 
                     SelectBins{.selection = selection,
                                .next = selection + 1,
                                .range = range_.data(),
-                               .share = percentile ? follow : 1.0f,
+                               .share = percentile ? share : 1.0f,
                                .floor = floor,
                                .trim_low = percentile ? trim_low : 0,
                                .trim_high = percentile ? trim_high : 0,

@@ -19,13 +19,15 @@ struct SaliencyRange {
 /// dependence on an outlier, the same result for any order of the values.
 class SaliencyNormaliser {
  public:
+  /// Share of the way to a frame's percentiles that the range goes in a frame.
+  static constexpr double follow = 0.1;
   /// Updates the range from values[0 .. n-1]; those that are not finite are left out. Percentile: the ends
-  /// follow the 1st and 98th percentile by 0.1 a frame (the first frame sets them); value i counts 2^level[i]
+  /// follow the 1st and 98th percentile by `share` (the first frame sets them); value i counts 2^level[i]
   /// times, so that it is a share of the water and does not depend on how finely it is divided. MinMax: the
   /// frame's own ends. The upper end is never below `floor`: where nothing stands out, nothing becomes s = 1.
   /// Nothing is read back.
   void update(const Array<float>& values, const std::uint8_t* level, int n, Normalisation reading,
-              float floor = 0);
+              float share = static_cast<float>(follow), float floor = 0);
   /// In the back end's memory; valid after the first update.
   const SaliencyRange* range() const { return range_.data(); }
   void forget() { range_ = Array<SaliencyRange>(); }

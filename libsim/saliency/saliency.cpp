@@ -36,14 +36,13 @@ struct FollowUnrest {
   }
 };
 
-}  // namespace
+/// The share of the way that one step goes instead of as many of `share` each.
+float in_one_step(double share, int steps) { return static_cast<float>(1 - std::pow(1 - share, steps)); }
 
-void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
+/// f_T gamma_t of this frame, and what has been followed of it.
+void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
-  const auto size = static_cast<std::size_t>(fluid.n);
-  state.temporal.resize(size);
-  state.combined.resize(size);
-  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
+  state.temporal.resize(static_cast<std::size_t>(fluid.n));
   const GradientFields fields = gradient_fields(p, fluid, state.temporal.data());
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
   if (fluid.unrest) {
@@ -53,14 +52,28 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
                           .velocity = fluid.velocity,
                           .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
                                                static_cast<double>(fluid.finest_support) / 2),
-                          .share = static_cast<float>(p.temporal_follow),
+                          .share = in_one_step(p.temporal_follow, p.temporal_period_frames),
                           .floor = static_cast<float>(p.calm_floor)});
   }
+}
+
+}  // namespace
+
+void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
+  const Readings& p = state.readings;
+  state.combined.resize(static_cast<std::size_t>(fluid.n));
+  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
+  const bool anew = !fluid.unrest || state.due();
+  if (anew) measure_unrest(state, fluid);
   const float* unrest = fluid.unrest ? fluid.unrest : state.temporal.data();
   combine_features(feature_numbers(p), state.eyes, fluid.position, unrest, state.combined.data(), fluid.parts,
                    fluid.n);
-  state.normaliser.update(state.combined, fluid.level, fluid.n, p.normalisation,
-                          static_cast<float>(p.saliency_floor));
+  if (anew) {
+    state.normaliser.update(state.combined, fluid.level, fluid.n, p.normalisation,
+                            in_one_step(SaliencyNormaliser::follow, p.temporal_period_frames),
+                            static_cast<float>(p.saliency_floor));
+  }
+  state.frames_since = anew ? 1 : state.frames_since + 1;
   saliency_to_levels(state.combined.data(), state.normaliser.range(), state.levels, fluid.saliency,
                      fluid.target, fluid.guards, fluid.n);
 }

@@ -16,8 +16,11 @@ struct SaliencyState {
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
   Eyes eyes;                        ///< of the last evaluation
+  int frames_since = 0;             ///< the temporal feature was measured; 0 = it never was
   Array<float> temporal, combined;  ///< f_T gamma_t of this frame alone, and F
 
+  /// Does the coming evaluation measure the temporal feature?
+  bool due() const { return frames_since == 0 || frames_since >= readings.temporal_period_frames; }
   std::size_t bytes() const {
     return input.bytes() + gradients.bytes() + temporal.bytes() + combined.bytes();
   }
@@ -27,7 +30,7 @@ struct SaliencyState {
 struct SaliencyFluid {
   const Vec4* position = nullptr;
   const Vec4* velocity = nullptr;
-  const float* density = nullptr;  ///< rho / rho_0
+  const float* density = nullptr;  ///< rho / rho_0, where the temporal feature is due
   const std::uint8_t* level = nullptr;
   ParticleNeighbours neighbours{};
   int n = 0;
@@ -42,7 +45,7 @@ struct SaliencyFluid {
   Guards* guards = nullptr;
 };
 
-/// Eq. 1-9.
+/// Eq. 1-9. Without `unrest` in `fluid` the temporal feature is measured whether it is due or not.
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid);
 /// The gaze alone (FovFluid-like), from positions: the band is one support radius of the coarsest level wide.
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid);

@@ -29,7 +29,8 @@ void keep_fluid(Archive& archive, FluidState& state) {
   keep_columns(archive, state.particles);
   keep_jets(archive, state.jets);
   archive(state.levels.forced, state.levels.frame, state.levels.counts);
-  archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser);
+  archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser,
+          state.saliency.frames_since);
   keep_activation(archive, state.activation);
   // Only methods with levels look at neighbours before anything moves.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);

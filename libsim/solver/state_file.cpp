@@ -27,12 +27,12 @@ void add(std::ostream& text, const Readings& r) {
        << r.calm_out_of_view << r.hide_manifold_behind << r.dimensionless << r.graded_targets
        << r.merge_same_target << r.merge_keeps_steps << r.dimensionless_levels << r.inherit_change
        << r.inactive_pressed << r.inactive_yield << r.keep_fragile_active << ' ' << r.manifold_window_px
-       << ' ' << static_cast<int>(r.gradient) << ' ' << r.temporal_follow << ' ' << r.speed_floor << ' '
-       << r.density_floor << ' ' << static_cast<int>(r.normalisation) << ' ' << r.saliency_floor << ' '
-       << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1] << ' ' << r.split_offset[2]
-       << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap << ' ' << r.merge_dead_band
-       << ' ' << r.kick_filter << ' ' << r.longest_rest_frames << ' ' << r.least_work_frames << ' '
-       << r.inherit_cell_spacings << ' ' << r.inactive_damping << '\n';
+       << ' ' << static_cast<int>(r.gradient) << ' ' << r.temporal_follow << ' ' << r.temporal_period_frames
+       << ' ' << r.speed_floor << ' ' << r.density_floor << ' ' << static_cast<int>(r.normalisation) << ' '
+       << r.saliency_floor << ' ' << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1]
+       << ' ' << r.split_offset[2] << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap
+       << ' ' << r.merge_dead_band << ' ' << r.kick_filter << ' ' << r.longest_rest_frames << ' '
+       << r.least_work_frames << ' ' << r.inherit_cell_spacings << ' ' << r.inactive_damping << '\n';
 }
 
 /// A scene that no file describes has no hash: what shapes a run stands here too.

@@ -21,7 +21,6 @@ std::vector<Stage> all_stages() {
           coarse_pressure_stage(),
           wall_cells_stage(),
           density_stage(),
-          eased_constraint_stage(),
           missing_density_stage(),
           displacement_stage(),
           velocity_stage(),

@@ -1,3 +1,4 @@
+#include "libsim/levels/easing.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -15,13 +16,15 @@ struct Density {
   const Vec4* predicted;
   Neighbours neighbours;
   Walls walls;
+  const float* ease;  ///< of its constraint; nullptr where all have the whole
   float* lambda;
   float* density;
   Guards* guards;
   float rest_density, relaxation;
 
   template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
+  SIM_FN void operator()(int turn, Team team) const {
+    const int slot = select.slot(turn);
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
@@ -78,18 +81,20 @@ struct Density {
     const float spacing = 0.5f * self.w;
     const float softness = relaxation / (spacing * spacing);
     const float stiffness = dot(gradient, gradient) + volume * volume * squares + softness;
-    lambda[i] = at_most(-mass * (filled - 1) / stiffness, 0.0f);
+    const float whole = at_most(-mass * (filled - 1) / stiffness, 0.0f);
+    lambda[i] = ease ? whole * Easing::share(ease[i], filled) : whole;
     density[i] = filled;
   }
 };
 
 template <bool OneLevel, bool OthersYield, class Selection>
-void launch(FluidState& state, DensityView p, Selection select) {
+void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
   for_each_team("density", p.size(),
                 Density<OneLevel, OthersYield, Selection>{.select = select,
                                                           .predicted = p.predicted(),
                                                           .neighbours = state.neighbours.view(),
                                                           .walls = state.walls,
+                                                          .ease = ease,
                                                           .lambda = p.lambda(),
                                                           .density = p.density(),
                                                           .guards = state.guard(),
@@ -98,34 +103,39 @@ void launch(FluidState& state, DensityView p, Selection select) {
 }
 
 template <bool OthersYield, class Selection>
-void launch(FluidState& state, DensityView p, Selection select) {
-  state.one_level ? launch<true, OthersYield>(state, p, select)
-                  : launch<false, OthersYield>(state, p, select);
+void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
+  state.one_level ? launch<true, OthersYield>(state, p, ease, select)
+                  : launch<false, OthersYield>(state, p, ease, select);
 }
 
-void run(FluidState& state, DensityView p) { constrain_density(state, p); }
-
-}  // namespace
-
-void constrain_density(FluidState& state, DensityView p) {
+void constrain(FluidState& state, DensityView p, const float* ease) {
   if (state.all_active) {
-    launch<true>(state, p, AllParticles{});
+    launch<true>(state, p, ease, AllParticles{});
   } else if (state.activation.rules.others_yield) {
-    launch<true>(state, p, state.active());
+    launch<true>(state, p, ease, state.active());
   } else {
-    launch<false>(state, p, state.active());
+    launch<false>(state, p, ease, state.active());
   }
 }
 
+using EasedView = ColumnView<DensityView::reads, DensityView::writes, columns(Column::Ease)>;
+
+/// While the water settles at one level, nobody has written the shares.
+void run(FluidState& state, EasedView p) { constrain(state, p, state.one_level ? nullptr : p.ease()); }
+
+}  // namespace
+
+void constrain_density(FluidState& state, DensityView p) { constrain(state, p, nullptr); }
+
 void constrain_density(FluidState& state, DensityView p, EverySlot everyone) {
-  launch<true>(state, p, everyone);
+  launch<true>(state, p, nullptr, everyone);
 }
 
-void constrain_density(FluidState& state, DensityView p, BesideFresh<AllParticles> fresh) {
-  launch<true>(state, p, fresh);
+void constrain_density(FluidState& state, DensityView p, Listed<AllParticles> few) {
+  launch<true>(state, p, nullptr, few);
 }
-void constrain_density(FluidState& state, DensityView p, BesideFresh<ActiveParticles> fresh) {
-  launch<true>(state, p, fresh);
+void constrain_density(FluidState& state, DensityView p, Listed<ActiveParticles> few) {
+  launch<true>(state, p, nullptr, few);
 }
 
 Stage density_stage() {

@@ -20,7 +20,8 @@ struct Displace {
   float rest_density, tensile, wall_gap, momentum;
 
   template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
+  SIM_FN void operator()(int turn, Team team) const {
+    const int slot = select.slot(turn);
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) return;
@@ -143,11 +144,11 @@ void run(FluidState& state, DisplacementView p) { displace(state, p); }
 void displace(FluidState& state, DisplacementView p) {
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
-void displace(FluidState& state, DisplacementView p, BesideFresh<AllParticles> fresh) {
-  launch<false>(state, p, fresh);
+void displace(FluidState& state, DisplacementView p, Listed<AllParticles> few) {
+  launch<false>(state, p, few);
 }
-void displace(FluidState& state, DisplacementView p, BesideFresh<ActiveParticles> fresh) {
-  launch<false>(state, p, fresh);
+void displace(FluidState& state, DisplacementView p, Listed<ActiveParticles> few) {
+  launch<false>(state, p, few);
 }
 
 Stage displacement_stage() {

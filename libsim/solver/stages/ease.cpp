@@ -39,20 +39,6 @@ struct Ease {
   }
 };
 
-/// Weakens the constraint, but where the water is denser than splits and merges leave it: what is pressed so
-/// strikes a wall or other water, and has the whole constraint.
-struct Apply {
-  float* lambda;
-  const float* ease;
-  const float* density;
-  /// rho / rho_0 - 1 up to which the constraint is weakened, and from which on it is whole.
-  static constexpr float overlap = 0.02f;
-  static constexpr float impact = 0.1f;
-  SIM_FN void operator()(int i) const {
-    lambda[i] *= at_least(ease[i], at_most((density[i] - 1 - overlap) / (impact - overlap), 1.0f));
-  }
-};
-
 using Columns =
     ColumnView<columns(Column::Predicted, Column::Age, Column::Neighbours), columns(Column::Ease)>;
 
@@ -71,24 +57,13 @@ void run(FluidState& state, Columns p) {
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
 
-using ConstraintView =
-    ColumnView<columns(Column::Lambda, Column::Ease, Column::Density), columns(Column::Lambda)>;
-
-void ease_constraint(FluidState&, ConstraintView p) {
-  for_each("ease constraint", p.size(), Apply{p.lambda(), p.ease(), p.density()});
-}
-
-constexpr const char* source = "blending of the constraint, after Orthmann and Kolb 2012";
-
 }  // namespace
 
 Stage ease_stage() {
-  return stage_of<run>({.name = "ease", .source = source, .phase = Phase::Substep, .called_for = if_levels});
-}
-
-Stage eased_constraint_stage() {
-  return stage_of<ease_constraint>(
-      {.name = "eased constraint", .source = source, .phase = Phase::Iteration, .called_for = if_levels});
+  return stage_of<run>({.name = "ease",
+                        .source = "blending of the constraint, after Orthmann and Kolb 2012",
+                        .phase = Phase::Substep,
+                        .called_for = if_levels});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -24,6 +24,21 @@ struct Follow {
   }
 };
 
+/// Lists those within the support of a particle that split or merged this frame, themselves included: the
+/// share of the constraint round them is the least.
+template <class Selection>
+struct ListBesideFresh {
+  Selection select;
+  const float* ease;
+  float least;
+  int* slots;
+  int* count;
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if (i >= 0 && ease[i] <= least) slots[atomic_next(count)] = slot;
+  }
+};
+
 using Places = ColumnView<columns(Column::Predicted), columns(Column::Predicted, Column::PredictedNext,
                                                               Column::Position, Column::VelocityNext)>;
 
@@ -56,13 +71,19 @@ using Columns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neig
 /// too.
 template <class Selection>
 void launch(FluidState& state, Columns p, Selection select) {
-  const auto& rules = state.levels.rules;
+  auto& levels = state.levels;
+  levels.beside.resize(static_cast<std::size_t>(p.size()));
+  levels.beside_count.resize(1);
+  levels.beside_count.zero();
+  for_each("list beside fresh", p.size(),
+           ListBesideFresh<Selection>{select, p.ease(), levels.rules.ease[0], levels.beside.data(),
+                                      levels.beside_count.data()});
+  const Listed<Selection> few{select, levels.beside.data(), levels.beside_count.data()};
   go_back(state, p);
   p.zero<Column::Lambda>();
-  const BesideFresh<Selection> fresh{select, p.ease(), rules.ease[0]};
-  for (int k = 0; k < rules.partings; ++k) {
-    constrain_density(state, p, fresh);
-    displace(state, p, fresh);
+  for (int k = 0; k < levels.rules.partings; ++k) {
+    constrain_density(state, p, few);
+    displace(state, p, few);
   }
   go_on(state, p);
 }

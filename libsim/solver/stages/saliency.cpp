@@ -23,19 +23,19 @@ SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
           .guards = state.guard()};
 }
 
-/// Neighbours and densities where the particles are now.
-void find_surroundings(FluidState& state, SurroundingsView p) {
+/// Neighbours where the particles are now, and densities where they are asked for.
+void find_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   p.copy<Column::Predicted, Column::Position>();
   find_neighbours(state, p);
-  constrain_density(state, p);
+  if (densities) constrain_density(state, p);
 }
 
 /// The same from the last substep, as far as it holds: nobody was listed before the first frame, nor what a
 /// nozzle has just moved, and who was not solved has no density of the last frame.
-void recall_surroundings(FluidState& state, SurroundingsView p) {
+void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   if (!state.lists_hold) {
-    find_surroundings(state, p);
-  } else if (state.lists_by_slot) {
+    find_surroundings(state, p, densities);
+  } else if (state.lists_by_slot && densities) {
     p.copy<Column::Predicted, Column::Position>();
     constrain_density(state, p, EverySlot{state.activation.slots.data()});
   }
@@ -46,7 +46,7 @@ using Columns =
                SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target)>;
 
 void run(FluidState& state, Columns p) {
-  recall_surroundings(state, p);
+  recall_surroundings(state, p, state.saliency.due());
   SaliencyFluid fluid = fluid_of(state, p);
   fluid.unrest = p.unrest();
   fluid.saliency = p.saliency();
@@ -73,7 +73,7 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
   target.resize(size);
   target.zero();
   parts.resize(size);
-  find_surroundings(state, p);
+  find_surroundings(state, p, true);
   SaliencyFluid fluid = fluid_of(state, p);
   fluid.saliency = saliency.data();
   fluid.target = target.data();

@@ -35,10 +35,8 @@ Stage coarse_pressure_stage();
 Stage pre_stabilisation_stage();
 /// Parts what overlaps after a split or a merge, without giving it speed.
 Stage parting_stage();
-/// Density, unilateral constraint and its multiplier lambda.
+/// Density, unilateral constraint and its multiplier lambda, times these shares.
 Stage density_stage();
-/// The constraint's multipliers times these shares.
-Stage eased_constraint_stage();
 /// Position correction, momentum-exact, and wall projection.
 Stage displacement_stage();
 /// Accounts of what the walls give: holding back, missing density, pressure of cells.
@@ -108,12 +106,12 @@ void balance_push(FluidState& state, ClampView particles);
 /// again.
 float times_taken(const SolverParameters& parameters, int iteration);
 
-/// The two halves of one projection of those beside fresh particles. The others need lambda = 0 and the same
+/// The two halves of one projection of a few. The others need lambda = 0 and the same
 /// place in both buffers.
-void constrain_density(FluidState& state, DensityView particles, BesideFresh<AllParticles> fresh);
-void constrain_density(FluidState& state, DensityView particles, BesideFresh<ActiveParticles> fresh);
-void displace(FluidState& state, DisplacementView particles, BesideFresh<AllParticles> fresh);
-void displace(FluidState& state, DisplacementView particles, BesideFresh<ActiveParticles> fresh);
+void constrain_density(FluidState& state, DensityView particles, Listed<AllParticles> few);
+void constrain_density(FluidState& state, DensityView particles, Listed<ActiveParticles> few);
+void displace(FluidState& state, DisplacementView particles, Listed<AllParticles> few);
+void displace(FluidState& state, DisplacementView particles, Listed<ActiveParticles> few);
 
 /// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
 /// columns and fills the given ones in the new order.

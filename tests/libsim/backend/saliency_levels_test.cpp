@@ -103,7 +103,8 @@ SIM_TEST(SaliencyLevels, WhereNothingStandsOutNothingIsFullySalient) {
   values.from_host(calm);
   levels.from_host(std::vector<std::uint8_t>(calm.size(), 0));
   SaliencyNormaliser normaliser;
-  normaliser.update(values, levels.data(), static_cast<int>(calm.size()), Normalisation::Percentile, 0.1f);
+  normaliser.update(values, levels.data(), static_cast<int>(calm.size()), Normalisation::Percentile, 0.1f,
+                    0.1f);
   SaliencyRange range;
   copy_to_host(&range, normaliser.range(), sizeof range);
   EXPECT_EQ(range.high, 0.1f);

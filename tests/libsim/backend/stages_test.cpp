@@ -18,6 +18,7 @@ FluidState resting(const std::vector<Vec4>& points) {
   state.guards.zero();
   auto& p = state.particles;
   p.allocate(all_columns(), static_cast<int>(points.size()));
+  p.all().ease.from_host(std::vector<float>(points.size(), 1));
   p.all().position.from_host(points);
   p.all().predicted.from_host(points);
   std::vector<int> id(points.size());
