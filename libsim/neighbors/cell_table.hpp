@@ -41,19 +41,13 @@ struct CellTable {
   int levels;        ///< in use
   Vec3 low;          ///< corner of the domain
   const int* begin;  ///< of each cell's particles, and after the last cell the number of particles
-  /// Cells as wide as the farthest reach, and for each of them a bit for every level that has particles in it
-  /// or beside it; nullptr where there is one level.
-  LevelCells map;
-  const std::uint8_t* levels_near;
 
-  SIM_FN int cell(int l, Vec4 p) const { return cell(level[l], p); }
-  SIM_FN int cell(const LevelCells& grid, Vec4 p) const {
+  SIM_FN int cell(int l, Vec4 p) const {
+    const LevelCells& grid = level[l];
     const int y = grid.along(p.y - low.y, grid.ny);
     const int z = grid.along(p.z - low.z, grid.nz);
     return grid.first + (y * grid.nz + z) * grid.nx + grid.along(p.x - low.x, grid.nx);
   }
-  /// The levels that a particle there can have neighbours of, a bit each.
-  SIM_FN unsigned near_levels(Vec4 p) const { return levels_near ? levels_near[cell(map, p)] : 1u; }
 
   /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
   /// (last_y, last_z). `at`: from the low corner.
@@ -75,10 +69,8 @@ struct CellTable {
             grid.along(at.z - reach, grid.nz),
             grid.along(at.z + reach, grid.nz)};
   }
-  /// Are there particles in these lines of cells, which lie one after another?
-  SIM_FN bool any(const LevelCells& grid, int y, int first_z, int last_z) const {
-    const int cell = grid.first + (y * grid.nz + first_z) * grid.nx;
-    return begin[cell] < begin[cell + (last_z - first_z + 1) * grid.nx];
+  SIM_FN bool empty(const LevelCells& grid) const {
+    return begin[grid.first] == begin[grid.first + grid.size()];
   }
   /// The particles of one line that can be within the reach.
   SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
@@ -96,10 +88,9 @@ struct CellTable {
   /// / 2 of a particle, and itself.
   template <class Visit>
   SIM_FN void around(Vec4 self, float margin, Visit visit) const {
-    const unsigned present = near_levels(self);
     for (int l = 0; l < levels; ++l) {
-      if (!(present >> l & 1u)) continue;
       const LevelCells& grid = level[l];
+      if (empty(grid)) continue;
       const Window look = window(grid, self, margin);
       for (int y = look.first_y; y <= look.last_y; ++y) {
         for (int z = look.first_z; z <= look.last_z; ++z) {

@@ -82,53 +82,6 @@ struct OrderWithinCells {
   }
 };
 
-/// Finds the levels in a cell of the map and in those beside it. The outermost ones have no outer side.
-struct FindLevels {
-  CellTable cells;
-  std::uint8_t* levels_near;
-
-  struct Span {
-    float low, high;
-  };
-  SIM_FN Span span(int cell, int count) const {
-    const float edge = cells.map.edge;
-    const float low = static_cast<float>(cell - 2) * edge;
-    return {cell > 1 ? low : -1e30f, cell < count - 2 ? low + 3 * edge : 1e30f};
-  }
-
-  template <class Team>
-  SIM_FN void operator()(int c, Team team) const {
-    const LevelCells& map = cells.map;
-    const int line = c / map.nx;
-    const Span x = span(c - line * map.nx, map.nx);
-    const Span y = span(line / map.nz, map.ny);
-    const Span z = span(line % map.nz, map.nz);
-    unsigned found = 0;
-    for (int l = 0; l < cells.levels; ++l) {
-      if (team.any(holds(cells.level[l], x, y, z, team))) found |= 1u << l;
-    }
-    if (team.rank() == 0) levels_near[c] = static_cast<std::uint8_t>(found);
-  }
-
-  /// Of this lane's lines.
-  template <class Team>
-  SIM_FN bool holds(const LevelCells& grid, Span x, Span y, Span z, Team team) const {
-    const int first_x = grid.along(x.low, grid.nx);
-    const int last_x = grid.along(x.high, grid.nx);
-    const int first_z = grid.along(z.low, grid.nz);
-    const int last_z = grid.along(z.high, grid.nz);
-    const int last_y = grid.along(y.high, grid.ny);
-    for (int at = grid.along(y.low, grid.ny) + team.rank(); at <= last_y; at += Team::size) {
-      if (!cells.any(grid, at, first_z, last_z)) continue;
-      for (int k = first_z; k <= last_z; ++k) {
-        const int cell = grid.first + (at * grid.nz + k) * grid.nx;
-        if (cells.begin[cell + first_x] < cells.begin[cell + last_x + 1]) return true;
-      }
-    }
-    return false;
-  }
-};
-
 /// Cells of `edge` over the domain, with the outermost ones.
 LevelCells cells_of(Vec3 size, double edge, float support) {
   const auto count = [edge](float length) {
@@ -155,11 +108,7 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
                         "give the state its supports first");
   }
   const double reach = static_cast<double>(margin) / static_cast<double>(cells_per_reach);
-  float largest = 0;
-  for (int l = 0; l < shape_.levels; ++l) largest = std::max(largest, shape_.level[l].support);
   for (double wider = 1;; wider *= 1.1) {
-    // Wider by more than what rounding can hide.
-    shape_.map = cells_of(size, 1.001 * wider * static_cast<double>(margin * largest), largest);
     double sum = 0;
     int first = 0;
     for (int l = 0; l < shape_.levels; ++l) {
@@ -192,13 +141,7 @@ void Grid::sort(Particles& particles, bool by_level) {
   for_each("place by cell", n, Place{begin_.data(), cell_of_.data(), arrival_.data(), placed_.data()});
   for_each("order within cells", n,
            OrderWithinCells{begin_.data(), cell_of_.data(), placed_.data(), p.id(), order_.data()});
-  if (by_level) map_levels();
   particles.reorder(order_);
-}
-
-void Grid::map_levels() {
-  levels_near_.resize(static_cast<std::size_t>(shape_.map.size()));
-  for_each_team("map levels", shape_.map.size(), FindLevels{cells(), levels_near_.data()});
 }
 
 void Grid::build(Particles& particles, float margin, const Domain& domain, float support) {

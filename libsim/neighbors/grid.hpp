@@ -16,7 +16,6 @@ class Grid {
   CellTable cells() const {
     CellTable out = shape_;
     out.begin = begin_.data();
-    out.levels_near = shape_.levels > 1 ? levels_near_.data() : nullptr;
     return out;
   }
   /// Cells that hold particles, read back from the device (a synchronisation; for tests).
@@ -40,12 +39,10 @@ class Grid {
  private:
   void shape(const Domain& domain, float margin, int capacity);
   void sort(Particles& particles, bool by_level);
-  void map_levels();
 
   Scanner scanner_;
-  CellTable shape_{};  ///< but for `begin` and `levels_near`
+  CellTable shape_{};  ///< but for `begin`
   Array<int> begin_, counts_, cell_of_, arrival_, placed_, order_;
-  Array<std::uint8_t> levels_near_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -49,10 +49,9 @@ struct ListNeighbours {
   template <class Team>
   SIM_FN int look(int slot, int i, Vec4 self, Team team) const {
     int found = 0;
-    const unsigned present = cells.near_levels(self);
     for (int l = 0; l < cells.levels; ++l) {
-      if (!(present >> l & 1u)) continue;
       const LevelCells& grid = cells.level[l];
+      if (cells.empty(grid)) continue;
       const CellTable::Window look = cells.window(grid, self, margin);
       const int width = look.last_z - look.first_z + 1;
       const int lines = width * (look.last_y - look.first_y + 1);
