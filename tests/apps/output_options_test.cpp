@@ -55,6 +55,8 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --csv ",
             "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --svg ",
             bench + " --json ",
+            growth_ + " --csv ",
+            growth_ + " --svg ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
             table2_ + " --csv ",
@@ -90,6 +92,8 @@ class OutputOptionsE2e : public ::testing::Test {
       "--cumul-frames 2 --projections 1 --size 64x36";
   inline static const std::string table2_ =
       "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
+  inline static const std::string growth_ =
+      "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
   const TemporaryFolder folder_;
   const std::string database_ = folder_ / "s.db", page_ = folder_ / "page.html";
 };
