@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -115,6 +116,13 @@ std::string number(double value, int digits) {
 }
 
 std::string shortest(double value) { return fmt::format("{:.4g}", value); }
+
+std::string in_a_cell(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ';');
+  std::replace(text.begin(), text.end(), '|', '/');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
 
 std::string to_csv(const TextTable& table) {
   std::string out;

@@ -54,6 +54,9 @@ std::string number(double value, int digits);
 /// With as many digits as tell it from others, at most four: "0.01667", "4".
 std::string shortest(double value);
 
+/// Free text as one cell of either kind of table.
+std::string in_a_cell(std::string text);
+
 /// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
 struct TextTable {
   std::vector<std::string> head;

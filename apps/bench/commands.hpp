@@ -9,6 +9,9 @@ namespace apps {
 /// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
 void add_frame_command(CLI::App& app);
 
+/// vip-bench growth: how the milliseconds of a substep grow with the particles.
+void add_growth_command(CLI::App& app);
+
 /// vip-bench headset: milliseconds by stage of frames of live fluid in a headset.
 void add_headset_command(CLI::App& app);
 

@@ -11,6 +11,7 @@
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/render_timer.hpp"
+#include "apps/bench/timed_run.hpp"
 #include "apps/bench/timing.hpp"
 #include "apps/bench/watcher.hpp"
 #include "apps/common/finite_water.hpp"
@@ -19,7 +20,6 @@
 #include "apps/common/program.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/simulation.hpp"
-#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -50,15 +50,12 @@ struct FrameOptions {
 
 std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
   sim::SimulationOptions out = options.fluid;
-  out.cache = sim::default_cache_folder();
   out.method = sim::parse_method(options.method);
   out.n_star = sim::parse_n_star(options.n_star);
   out.backend = sim::choose_backend(options.backend);
   out.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (!options.rate.empty()) out.temporal.fixed_rate = sim::parse_frame_rate(options.rate);
-  Progress progress("settling", static_cast<std::size_t>(std::max(1, scene.settle_frames)));
-  out.settling = [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
-  return sim::make_simulation(scene, out);
+  return make_settled(scene, std::move(out));
 }
 
 /// Support radius (4 r) over rest spacing of the first particle.
@@ -67,20 +64,6 @@ double h_over_d(const sim::Simulation& fluid) {
   fluid.read_particles(particles);
   return particles.empty() ? 0 : 4 * static_cast<double>(particles.front().radius_m) / fluid.spacing_m();
 }
-
-/// Density error averaged over states spread over the run, so that one calm or wild moment does not decide.
-struct Accuracy {
-  double error_mean = 0;
-  double density_max = 0;
-  double neighbours_mean = 0;
-  int samples = 0;
-  void add(const sim::FrameReport& report) {
-    ++samples;
-    error_mean += (report.density_error_mean - error_mean) / samples;
-    neighbours_mean += (report.neighbours_mean - neighbours_mean) / samples;
-    density_max = std::max(density_max, report.density_max);
-  }
-};
 
 /// The pictures beside the solver, or why there are none.
 struct Pictures {
@@ -103,18 +86,6 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
   if (options.look) out.watcher = std::make_unique<Watcher>(scene, size);
   return out;
 }
-
-/// Substeps over all frames.
-struct Substeps {
-  int taken = 0, most = 0;
-  int bound = 0;  ///< frames whose fastest particle asked for more than were allowed
-  void add(sim::SubstepCount count) {
-    taken += count.taken;
-    most = std::max(most, count.taken);
-    bound += count.wished > count.taken;
-  }
-  double mean(int frames) const { return static_cast<double>(taken) / frames; }
-};
 
 /// What each frame's account says, and the share of particles solved over all of them.
 struct Accounts {
@@ -142,7 +113,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
   Accuracy accuracy;
   Accounts accounts;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
-  const int stride = options.measure_every > 0 ? options.measure_every : std::max(1, options.frames / 10);
+  const int stride = options.measure_every > 0 ? options.measure_every : tenth_of(options.frames);
   Substeps substeps;
   for (int frame = 0; frame < options.frames; ++frame) {
     if (pictures.watcher) pictures.watcher->look(*fluid);

@@ -18,14 +18,6 @@ const char* reach_name(Reach reach) {
   return "";
 }
 
-/// As one cell of a CSV file or a Markdown table.
-std::string in_a_cell(std::string text) {
-  std::replace(text.begin(), text.end(), ',', ';');
-  std::replace(text.begin(), text.end(), '|', '/');
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 /// "0.0167 to 0.0334 (x 2.0)"
 std::string in_markdown(const MapCell& cell) {
   if (cell.reach == Reach::UsualFails) return "**fails at " + shortest(cell.usual) + "**";

@@ -47,6 +47,14 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
     const bool looks = method == "Ours" || method == "Ours-TSp";
     EXPECT_EQ(row.at("picture_by"), looks ? "host" : "none") << method;
   }
+  // The speed-up is that of a step's wall time, of which the table holds three digits behind the point.
+  const double hires_ms = std::stod(by_method["HiRes"]["ms_step_mean"]);
+  for (const auto& row : table) {
+    const double ms = std::stod(row.at("ms_step_mean")), speedup = std::stod(row.at("speedup"));
+    EXPECT_NEAR(speedup, hires_ms / ms, 1e-3 + speedup * (6e-4 / ms + 6e-4 / hires_ms)) << row.at("method");
+    EXPECT_GE(std::stod(row.at("ms_step_p99")), ms) << "the longest of three";
+    EXPECT_GT(ms, std::stod(row.at("ms_read_back"))) << "the picture's way is part of a step";
+  }
   EXPECT_NE(base::read_file(path("figures/table2_speedup.svg"), 1 << 20).find("Ours-TSp"), std::string::npos);
   EXPECT_NE(base::read_file(path("t2.md"), 1 << 20).find("| SingleDam |"), std::string::npos);
 }

@@ -1,0 +1,43 @@
+#pragma once
+/// What the commands that time one fluid share.
+
+#include <algorithm>
+#include <memory>
+
+#include "libsim/simulation.hpp"
+
+namespace apps {
+
+/// The scene at frame 0, from the kept state where there is one; a progress line shows the settling.
+std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
+
+/// Density error averaged over states spread over the run, so that one calm or wild moment does not decide.
+struct Accuracy {
+  double error_mean = 0;
+  double density_max = 0;
+  double neighbours_mean = 0;
+  int samples = 0;
+  void add(const sim::FrameReport& report) {
+    ++samples;
+    error_mean += (report.density_error_mean - error_mean) / samples;
+    neighbours_mean += (report.neighbours_mean - neighbours_mean) / samples;
+    density_max = std::max(density_max, report.density_max);
+  }
+};
+
+/// Every so many frames, ten states of a run are measured.
+inline int tenth_of(int frames) { return std::max(1, frames / 10); }
+
+/// Substeps over all frames.
+struct Substeps {
+  int taken = 0, most = 0;
+  int bound = 0;  ///< frames whose fastest particle asked for more than were allowed
+  void add(sim::SubstepCount count) {
+    taken += count.taken;
+    most = std::max(most, count.taken);
+    bound += count.wished > count.taken;
+  }
+  double mean(int frames) const { return static_cast<double>(taken) / frames; }
+};
+
+}  // namespace apps
