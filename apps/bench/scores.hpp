@@ -39,6 +39,9 @@ struct ScoreBlock {
   std::string scene, n_star;
   sim::Preset preset{};
   std::vector<MethodScores> methods;
+  std::vector<int> checkpoints = {};     ///< frames
+  std::vector<std::string> starts = {};  ///< what checkpoint_digest says of each, once they are known
+  int gazes = 0;                         ///< points at each
 };
 
 /// scene, n_star, method, preset, metric, mean, ci_low, ci_high (95 %, Student's t over groups), groups

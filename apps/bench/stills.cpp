@@ -3,7 +3,8 @@
 #include <fmt/core.h>
 #include <algorithm>
 
-#include "apps/bench/checkpoint.hpp"
+#include "apps/bench/checkpoint_file.hpp"
+#include "apps/bench/checkpoint_source.hpp"
 #include "apps/bench/masks.hpp"
 #include "apps/bench/onlooker.hpp"
 #include "libsim/levels/coarsen.hpp"
@@ -32,11 +33,6 @@ struct Reference {
   std::vector<Mask> fovea, salient;  ///< one a gaze point
 };
 
-std::size_t checkpoints_of(const CellScene& scene, const Table1Options& options) {
-  const std::size_t all = scene.scene.checkpoints.size();
-  return options.checkpoints > 0 ? std::min(all, static_cast<std::size_t>(options.checkpoints)) : all;
-}
-
 stats::ImageScore masked_psnr(const Picture& a, const Picture& b, const Mask& mask) {
   const std::size_t pixels = pixels_of(mask);
   if (pixels < least_mask_pixels) return {std::numeric_limits<double>::quiet_NaN(), pixels};
@@ -56,17 +52,12 @@ class Stills {
         eye_(scene.scene, options.size) {}
 
   StillResult run() {
-    for (const auto preset : presets_) {
-      ScoreBlock block{scene_.name, size_.word, preset, {}};
-      for (const auto& traits : sim::all_methods()) {
-        MethodScores scores;
-        scores.method = traits.kind;
-        for (auto& series : scores.series) series.repeats = static_cast<std::size_t>(options_.repeats);
-        block.methods.push_back(scores);
-      }
-      result_.blocks.push_back(block);
+    for (const auto preset : presets_) result_.blocks.push_back(empty_block(scene_, size_, preset, options_));
+    const auto checkpoints = take_checkpoints(scene_, size_, options_, eye_);
+    for (auto& block : result_.blocks) {
+      for (const auto& checkpoint : checkpoints) block.starts.push_back(checkpoint_digest(checkpoint));
     }
-    for (const auto& checkpoint : take_checkpoints()) compare_all(checkpoint);
+    for (const auto& checkpoint : checkpoints) compare_all(checkpoint);
     for (auto& start : result_.starts) start.particles_share /= start.starts;
     return std::move(result_);
   }
@@ -74,21 +65,6 @@ class Stills {
  private:
   sim::SimulationOptions choose(Method method, sim::Preset preset) const {
     return run_options(options_, scene_, size_, preset, method);
-  }
-
-  std::vector<Checkpoint> take_checkpoints() {
-    auto frames = scene_.scene.checkpoints;
-    frames.resize(checkpoints_of(scene_, options_));
-    const auto hires = sim::make_simulation(scene_.scene, choose(Method::HiRes, presets_.front()));
-    std::vector<Checkpoint> out;
-    for (int frame = 1; !frames.empty() && frame <= frames.back(); ++frame) {
-      hires->step_frame();
-      if (std::find(frames.begin(), frames.end(), frame) == frames.end()) continue;
-      eye_.begin(nullptr);
-      eye_.draw(*hires);
-      out.push_back({frame, hires->read_state(), eye_.gbuffer()});
-    }
-    return out;
   }
 
   void compare_all(const Checkpoint& checkpoint) {
@@ -270,10 +246,24 @@ class Stills {
 
 }  // namespace
 
+ScoreBlock empty_block(const CellScene& scene, const CellSize& size, sim::Preset preset,
+                       const Table1Options& options) {
+  ScoreBlock out{scene.name, size.word, preset, {}};
+  out.checkpoints = checkpoint_frames(scene, options);
+  out.gazes = options.gazes;
+  for (const auto& traits : sim::all_methods()) {
+    MethodScores scores;
+    scores.method = traits.kind;
+    for (auto& series : scores.series) series.repeats = static_cast<std::size_t>(options.repeats);
+    out.methods.push_back(scores);
+  }
+  return out;
+}
+
 std::size_t still_runs(const CellScene& scene, const Table1Options& options, std::size_t presets) {
   const auto gazes = static_cast<std::size_t>(options.gazes);
   const auto repeats = static_cast<std::size_t>(options.repeats);
-  return checkpoints_of(scene, options) * (1 + 2 * repeats + presets * gazes * 3 * repeats);
+  return checkpoint_frames(scene, options).size() * (1 + 2 * repeats + presets * gazes * 3 * repeats);
 }
 
 StillResult run_stills(const CellScene& scene, const CellSize& size, const Table1Options& options,

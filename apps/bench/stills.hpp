@@ -24,6 +24,10 @@ struct StillResult {
   std::vector<StartQuality> starts;
 };
 
+/// A block without values: who is compared, at which checkpoints and from how many starts.
+ScoreBlock empty_block(const CellScene& scene, const CellSize& size, sim::Preset preset,
+                       const Table1Options& options);
+
 /// Runs that run_stills makes, for a progress line.
 std::size_t still_runs(const CellScene& scene, const Table1Options& options, std::size_t presets);
 

@@ -5,8 +5,10 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
-#include "apps/bench/checkpoint.hpp"
+#include "apps/bench/cell_scores.hpp"
+#include "apps/bench/checkpoint_source.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/film.hpp"
 #include "apps/bench/stills.hpp"
@@ -48,22 +50,31 @@ std::string started(const std::vector<StartQuality>& starts, const std::string& 
 struct Table1 {
   std::vector<ScoreBlock> blocks;
   std::string notes;
+  std::string then_path;                ///< of an earlier run; empty = none
+  std::optional<CellScores> then = {};  ///< its pictures
 
   std::string text() const {
-    return to_markdown(score_table(blocks)) + "\n" + to_markdown(paired_rows(blocks)) + "\n" + notes;
+    const std::string change =
+        then ? "now - " + then_path + ":\n\n" + to_markdown(change_rows(blocks, *then)) + "\n" : "";
+    return to_markdown(score_table(blocks)) + "\n" + to_markdown(paired_rows(blocks)) + "\n" + change + notes;
   }
 };
 
-/// rows.csv -> rows_paired.csv
-std::filesystem::path paired_path(const std::filesystem::path& csv) {
-  return csv.parent_path() / (csv.stem().string() + "_paired" + csv.extension().string());
+/// rows.csv -> rows_WORD.csv
+std::filesystem::path beside(const std::filesystem::path& csv, const std::string& word) {
+  return csv.parent_path() / (csv.stem().string() + "_" + word + csv.extension().string());
 }
 
 void write_outputs(const Table1Options& options, const Table1& table) {
   if (!options.csv.empty()) {
     base::write_file_atomically(options.csv, to_csv(score_rows(table.blocks)));
-    base::write_file_atomically(paired_path(options.csv), to_csv(paired_rows(table.blocks)));
+    base::write_file_atomically(beside(options.csv, "paired"), to_csv(paired_rows(table.blocks)));
+    if (table.then) {
+      const TextTable change = change_rows(table.blocks, *table.then);
+      base::write_file_atomically(beside(options.csv, "change"), to_csv(change));
+    }
   }
+  if (!options.cells.empty()) base::write_file_atomically(options.cells, to_csv(cell_rows(table.blocks)));
   if (!options.markdown.empty()) base::write_file_atomically(options.markdown, table.text());
   if (options.svg_folder.empty()) return;
   make_folder(options.svg_folder);
@@ -80,15 +91,21 @@ struct Plan {
   std::vector<CellScene> scenes;
   std::vector<CellSize> sizes;
   std::vector<sim::Preset> presets;
+  std::vector<ScoreBlock> blocks;  ///< still without values
   std::size_t runs = 0;
 };
 
 Plan plan_of(const Table1Options& options) {
-  Plan out{scenes_of(options.scene), sizes_of(options.n_star), presets_of(options.preset)};
+  Plan out{scenes_of(options.scene), sizes_of(options.n_star), presets_of(options.preset), {}};
   for (const auto& scene : out.scenes) {
     gaze_points(scene.scene, 0, options.gazes);
     for (const auto& size : out.sizes) {
       run_options(options, scene, size, out.presets.front(), sim::MethodKind::OursTsp);
+      const auto starts = stored_digests(scene, size, options);
+      for (const auto preset : out.presets) {
+        out.blocks.push_back(empty_block(scene, size, preset, options));
+        out.blocks.back().starts = starts;
+      }
       out.runs += still_runs(scene, options, out.presets.size());
     }
   }
@@ -98,10 +115,19 @@ Plan plan_of(const Table1Options& options) {
 /// Files are written anew after each scene and size, and before its film: a run that is cut short leaves what
 /// it has.
 void run_table1(const Table1Options& options) {
+  check_apart("", {{"--csv", options.csv},
+                   {"--markdown", options.markdown},
+                   {"--cells", options.cells},
+                   {"--paired-with", options.paired_with}});
   const Plan plan = plan_of(options);
+  Table1 table{.blocks = {}, .notes = {}, .then_path = options.paired_with};
+  if (!options.paired_with.empty()) {
+    table.then = read_cells(options.paired_with);
+    check_paired(plan.blocks, *table.then, options.paired_with);
+  }
   auto context = sim::GlContext::make_headless();
   if (!options.pictures.empty()) make_folder(options.pictures);
-  Table1 table;
+  if (!options.checkpoints_to.empty()) make_folder(options.checkpoints_to);
   SheetWriter sheets;
   Progress progress("still runs", plan.runs);
   std::size_t runs = 0;
@@ -149,6 +175,24 @@ void add_table1_command(CLI::App& app) {
       ->add_option("--pictures", words->pictures,
                    "Folder for the methods side by side, painted by level below; made when missing")
       ->check(output_folder());
+  auto* to = command
+                 ->add_option("--checkpoints-to", words->checkpoints_to,
+                              "Folder in which HiRes' checkpoints are stored; made when missing")
+                 ->check(output_folder());
+  auto* from =
+      command
+          ->add_option(
+              "--checkpoints-from", words->checkpoints_from,
+              "Folder of stored checkpoints, from which this run starts instead of running HiRes up to "
+              "them")
+          ->excludes(to);
+  command->add_option("--cells", words->cells, "File for the scores of each picture, as CSV")
+      ->check(output_file());
+  command
+      ->add_option("--paired-with", words->paired_with,
+                   "Such a file of another run: adds what changed since, over pairs of checkpoint and gaze; "
+                   "both runs start from the same stored checkpoints")
+      ->needs(from);
   command->callback([words] {
     words->checkpoints = checkpoints_of(words->checkpoints_word);
     run_table1(*words);

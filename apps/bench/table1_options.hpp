@@ -18,7 +18,10 @@ struct Table1Options : TableOptions {
   int projections = 50;      ///< of a start, at most
   bool unperturbed = false;  ///< starts are not moved: HiRes must then equal itself
   PictureSize size{1280, 720};
-  std::string pictures;  ///< folder for side by side pictures; empty = none
+  std::string pictures;                          ///< folder for side by side pictures; empty = none
+  std::string checkpoints_to, checkpoints_from;  ///< folders of checkpoint_file.hpp; empty = none
+  std::string cells;                             ///< file for cell_scores.hpp; empty = none
+  std::string paired_with;                       ///< such a file of another run; empty = none
 };
 
 /// What all runs of a method have in common.

@@ -43,12 +43,11 @@ constexpr std::size_t bytes_per_pixel = 4 * 8;
 
 }  // namespace
 
-void write_gbuffer(const std::filesystem::path& path, const GBuffer& g) {
+std::string gbuffer_bytes(const GBuffer& g, const std::string& place) {
   const auto pixels = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
   for (const std::size_t size : {g.depth.size(), g.filtered_depth.size(), g.normal.size() / 3,
                                  g.thickness.size(), g.front.size(), g.radius.size()}) {
-    if (size != pixels || pixels == 0)
-      throw base::Error(path.string(), "the G-buffer's arrays are not whole", "");
+    if (size != pixels || pixels == 0) throw base::Error(place, "the G-buffer's arrays are not whole", "");
   }
   const Viewport& v = g.view.viewport;
   const Header header{g.width,        g.height,    {v.x, v.y, v.width, v.height},
@@ -60,24 +59,22 @@ void write_gbuffer(const std::filesystem::path& path, const GBuffer& g) {
     append(bytes, values->data(), values->size());
   }
   append(bytes, g.front.data(), g.front.size());
-  base::write_file_atomically(path, bytes);
+  return bytes;
 }
 
-GBuffer read_gbuffer(const std::filesystem::path& path) {
-  const std::string bytes = base::read_file(path, max_file_bytes);
+GBuffer gbuffer_of(std::string_view bytes, const std::string& place) {
   const std::string mend = "write it again with this version of the program";
-  if (!std::string_view(bytes).starts_with(magic))
-    throw base::Error(path.string(), "not a G-buffer of version 1", mend);
-  Reader reader{std::string_view(bytes).substr(magic.size())};
-  if (reader.rest.size() < sizeof(Header)) throw base::Error(path.string(), "truncated in its header", mend);
+  if (!bytes.starts_with(magic)) throw base::Error(place, "not a G-buffer of version 1", mend);
+  Reader reader{bytes.substr(magic.size())};
+  if (reader.rest.size() < sizeof(Header)) throw base::Error(place, "truncated in its header", mend);
   Header header;
   reader.take(&header, 1);
   if (header.width < 1 || header.height < 1 || header.width > max_side_px || header.height > max_side_px) {
-    throw base::Error(path.string(), "its size in px is out of range", mend);
+    throw base::Error(place, "its size in px is out of range", mend);
   }
   const auto pixels = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   if (reader.rest.size() != pixels * bytes_per_pixel) {
-    throw base::Error(path.string(),
+    throw base::Error(place,
                       "holds " + std::to_string(reader.rest.size()) + " bytes of pixels, not " +
                           std::to_string(pixels * bytes_per_pixel),
                       mend);
@@ -99,6 +96,14 @@ GBuffer read_gbuffer(const std::filesystem::path& path) {
   g.front.resize(pixels);
   reader.take(g.front.data(), pixels);
   return g;
+}
+
+void write_gbuffer(const std::filesystem::path& path, const GBuffer& gbuffer) {
+  base::write_file_atomically(path, gbuffer_bytes(gbuffer, path.string()));
+}
+
+GBuffer read_gbuffer(const std::filesystem::path& path) {
+  return gbuffer_of(base::read_file(path, max_file_bytes), path.string());
 }
 
 }  // namespace sim

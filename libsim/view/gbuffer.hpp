@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "libsim/exec/gl_buffer_ref.hpp"
@@ -47,5 +49,9 @@ struct GlPicture {
 /// whole (base::Error).
 void write_gbuffer(const std::filesystem::path& path, const GBuffer& gbuffer);
 GBuffer read_gbuffer(const std::filesystem::path& path);
+
+/// The same as part of another file, whose name stands in errors.
+std::string gbuffer_bytes(const GBuffer& gbuffer, const std::string& place);
+GBuffer gbuffer_of(std::string_view bytes, const std::string& place);
 
 }  // namespace sim

@@ -59,6 +59,7 @@ class OutputOptionsE2e : public ::testing::Test {
             growth_ + " --svg ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
+            table1_ + " --cells ",
             table2_ + " --csv ",
             table2_ + " --markdown "};
   }
@@ -72,6 +73,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-study check protocols/task2.toml --size 64x36 --preview ",
             table1_ + " --svg ",
             table1_ + " --pictures ",
+            table1_ + " --checkpoints-to ",
             table2_ + " --svg ",
             "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --png "};
   }
@@ -90,10 +92,10 @@ class OutputOptionsE2e : public ::testing::Test {
   inline static const std::string table1_ =
       "vip-bench table1 --scene SingleDam --n-star 64 --checkpoints 1 --gazes 1 --repeats 1 --frames-after 1 "
       "--cumul-frames 2 --projections 1 --size 64x36";
-  inline static const std::string table2_ =
-      "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
+  inline static const std::string table2_ =
+      "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
   const TemporaryFolder folder_;
   const std::string database_ = folder_ / "s.db", page_ = folder_ / "page.html";
 };
