@@ -2,10 +2,10 @@
 /// The scores of Table 1 picture by picture, and how they changed since another run.
 
 #include <array>
-#include <compare>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "apps/bench/scores.hpp"
@@ -23,7 +23,12 @@ struct CellKey {
   std::string start;   ///< checkpoint_digest: pictures of other water are no pair
   int gaze = 0;        ///< from 1, in the order of gaze_points
   int repeat = 0;      ///< from 1
-  auto operator<=>(const CellKey&) const = default;
+  friend bool operator<(const CellKey& a, const CellKey& b) {
+    const auto order = [](const CellKey& k) {
+      return std::tie(k.scene, k.n_star, k.preset, k.method, k.checkpoint, k.start, k.gaze, k.repeat);
+    };
+    return order(a) < order(b);
+  }
 };
 /// A value for each of still_metrics: infinite where the pictures are equal, NaN where the mask is too small.
 using CellValues = std::array<double, still_metrics.size()>;

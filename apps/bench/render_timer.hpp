@@ -29,7 +29,7 @@ class RenderTimer {
   /// Call with the solver idle.
   Times draw(sim::Simulation& fluid);
 
-  /// Keys render_ms_median, render_ms_p95, transfer_ms_median, passes, ... of all pictures since warm_up;
+  /// Keys render_ms_median, _p95, _p99, the same of transfer_ms, passes, ... of all pictures since warm_up;
   /// null before the first.
   nlohmann::json figures() const;
 

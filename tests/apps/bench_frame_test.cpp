@@ -38,6 +38,12 @@ TEST_F(BenchFrameE2e, TimesSolverAndPicturesApart) {
   const auto result = figures();
   for (const char* key : {"solve_ms_median", "transfer_ms_median", "render_ms_median", "render_ms_p95"})
     EXPECT_GT(result[key].get<double>(), 0) << key;
+  for (const std::string part : {"solve", "transfer", "render", "frame"}) {
+    const auto at = [&](const char* rank) { return result[part + "_ms_" + rank].get<double>(); };
+    EXPECT_GE(at("p99"), at("p95")) << part;
+    EXPECT_GE(at("p95"), at("median")) << part;
+  }
+  EXPECT_NE(text.find(" p99"), std::string::npos) << text;
   // A frame is its three parts: never shorter than the shortest of each.
   EXPECT_GT(result["frame_ms_median"].get<double>(), result["render_ms_median"].get<double>());
   EXPECT_EQ(result["transfer"], "uploaded");
