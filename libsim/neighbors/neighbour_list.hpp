@@ -72,7 +72,7 @@ using PredictedView = Reads<Column::Predicted>;
 class NeighbourList {
  public:
   /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
-  static constexpr float margin = 1.05f;
+  static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Lists beyond the
   /// capacity go to the store; what finds no room there either is left out and told to the witness.
