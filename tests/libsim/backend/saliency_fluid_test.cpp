@@ -1,6 +1,7 @@
 /// Saliency as a whole (Eq. 1-9) on fluids that the solver made.
 
 #include <cstdio>
+#include <limits>
 
 #include "libsim/simulation.hpp"
 #include "tests/libsim/backend/saliency_helpers.hpp"
@@ -134,6 +135,39 @@ SIM_TEST(SaliencyOfFluids, StillWaterIsNotFinestOutsideTheFovea) {
               interior);
   ASSERT_GT(interior, 4000);
   EXPECT_LT(finest, 0.05 * interior);
+}
+
+SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
+  Seen seen = prepare(broken_dam(), before_dam);
+  auto& particles = seen.fluid.state.particles;
+  const auto n = static_cast<std::size_t>(particles.size());
+  Array<float> unrest;
+  unrest.from_host(std::vector<float>(n, std::numeric_limits<float>::quiet_NaN()));
+  SaliencyFluid fluid = seen.fluid.view();
+  fluid.unrest = unrest.data();
+  seen.looks.eyes[0].seen = &seen.picture;
+  const auto next = [&] {
+    seen.fluid.saliency.input.look(seen.looks);
+    evaluate_saliency(seen.fluid.saliency, fluid);
+    return unrest.to_host();
+  };
+  const auto first = next();
+  for (const float value : first) ASSERT_TRUE(std::isfinite(value));
+  const auto levels = seen.fluid.levels();
+  // The water stops, and the eye jumps.
+  particles.all().velocity.zero();
+  seen.looks.eyes[0].gaze.direction[0] -= 20 * d;
+  EXPECT_EQ(next(), first);
+  EXPECT_NE(seen.fluid.levels(), levels);
+  const auto third = next();
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    before += static_cast<double>(first[i]);
+    after += static_cast<double>(third[i]);
+  }
+  // What is left follows the density alone: at most two frames of a fifth are gone.
+  EXPECT_LT(after, 0.95 * before);
+  EXPECT_GT(after, 0.63 * before);
 }
 
 SIM_TEST(SaliencyOfFluids, LevelsDoNotDependOnTheUnitOfLength) {
