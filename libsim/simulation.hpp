@@ -197,7 +197,9 @@ class Simulation {
   /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods
   /// that follow no gaze ignore it; those that do look from the scene's own view along its axis until it is
   /// called. False, and nothing is taken, when a picture lies in GL buffers that this back end cannot reach
-  /// (EyeLook::shared; the CPU, or a context on another device): read it back and look again. base::Error: no
+  /// (EyeLook::shared; the CPU, or a context on another device): read it back and look again. Buffers of GL's
+  /// that were shared, here or by copy_to_gl, are the simulation's from here to copy_to_gl: GL neither reads
+  /// nor draws them meanwhile. base::Error: no
   /// eye or more than two, a camera that is not finite, a G-buffer that is not whole.
   virtual bool look(const Looks& looks) = 0;
   /// Whether the method looks at the picture of the last frame; other pictures need not be read back.

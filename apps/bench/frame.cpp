@@ -12,7 +12,6 @@
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timed_run.hpp"
 #include "apps/bench/timing.hpp"
-#include "apps/bench/watcher.hpp"
 #include "apps/common/finite_water.hpp"
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/options.hpp"
@@ -68,7 +67,6 @@ double h_over_d(const sim::Simulation& fluid) {
 struct Pictures {
   std::unique_ptr<RenderTimer> timer;
   std::string left_out;
-  std::unique_ptr<Watcher> watcher = {};  ///< goes before the timer, which holds the context
 };
 
 Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
@@ -81,9 +79,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
     if (options.look) throw;
     return {nullptr, error.what()};
   }
-  Pictures out{std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
-  if (options.look) out.watcher = std::make_unique<Watcher>(scene, size);
-  return out;
+  return {std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
 }
 
 /// What each frame's account says, and the share of particles solved over all of them.
@@ -105,7 +101,6 @@ nlohmann::json run_frames(const FrameOptions& options) {
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
   fluid->synchronize();
   if (pictures.timer) pictures.timer->warm_up(*fluid);
-  if (pictures.watcher) pictures.watcher->draw(*fluid);
 
   fluid->profile_launches(options.passes);
   std::vector<double> solve_ms, frame_ms;
@@ -115,8 +110,8 @@ nlohmann::json run_frames(const FrameOptions& options) {
   const int stride = options.measure_every > 0 ? options.measure_every : tenth_of(options.frames);
   Substeps substeps;
   for (int frame = 0; frame < options.frames; ++frame) {
-    if (pictures.watcher) pictures.watcher->look(*fluid);
     const double start = milliseconds_now();
+    if (options.look) pictures.timer->look(*fluid);
     fluid->step_frame();
     fluid->synchronize();
     solve_ms.push_back(milliseconds_now() - start);
@@ -126,7 +121,6 @@ nlohmann::json run_frames(const FrameOptions& options) {
       frame_ms.push_back(solve_ms.back() + times.transfer + times.render);
     }
     fluid->frame_time(pictures.timer ? frame_ms.back() : solve_ms.back());
-    if (pictures.watcher) pictures.watcher->draw(*fluid);
     accounts.add(*fluid, options.fluid.frame_dt_s > 0 ? options.fluid.frame_dt_s : scene.frame_dt_s);
     if (frame % stride == stride - 1) accuracy.add(fluid->report());
     progress.update(static_cast<std::size_t>(frame) + 1);
@@ -302,8 +296,8 @@ void add_frame_command(CLI::App& app) {
   auto* no_render = command->add_flag("--no-render", options->no_render, "Time the solver alone");
   command
       ->add_flag("--look", options->look,
-                 "Let the method see each picture and its middle, as in a live session; the picture is drawn "
-                 "once more for it, untimed")
+                 "Let the method see each picture and its middle, as in a live session; handing it over "
+                 "counts as solve")
       ->excludes(no_render);
   add_size(*command, options->size, "Picture of one view, px");
   add_count(*command, "--views", options->views, 1, 2, "1, or 2 eyes side by side");

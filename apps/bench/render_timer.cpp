@@ -8,7 +8,7 @@
 
 #include "apps/bench/pass_table.hpp"
 #include "apps/bench/timing.hpp"
-#include "libsim/render/fluid_renderer.hpp"
+#include "apps/common/fluid_picture.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 
@@ -42,10 +42,7 @@ struct RenderTimer::State {
   sim::GlContext context;
   std::vector<sim::View> views;
   sim::Offscreen target;
-  sim::FluidRenderer renderer;
-  sim::ParticleBuffer buffer;
-  std::vector<sim::RenderParticle> particles;
-  bool uploaded = false;
+  FluidPicture picture;
   std::vector<double> transfer_ms, render_ms;
   PassTable passes;
 
@@ -54,18 +51,11 @@ struct RenderTimer::State {
         context(std::move(current)),
         views(make_views(scene, chosen, count)),
         target(count * chosen.width, chosen.height),
-        renderer(scene, timed_passes()) {}
+        picture(scene, timed_passes()) {}
 
   void transfer(sim::Simulation& fluid) {
-    buffer.reserve(fluid.particle_capacity());
-    uploaded = !fluid.copy_to_gl(buffer.gl());
-    if (uploaded) {
-      fluid.read_particles(particles);
-      buffer.upload(particles);
-    } else {
-      buffer.set_count(fluid.particle_count());
-      fluid.synchronize();
-    }
+    picture.take(fluid);
+    if (!picture.uploaded()) fluid.synchronize();
     glFinish();
   }
 };
@@ -87,26 +77,32 @@ RenderTimer::Times RenderTimer::draw(sim::Simulation& fluid) {
   const double start = milliseconds_now();
   s.transfer(fluid);
   const double moved = milliseconds_now();
-  s.renderer.draw(s.buffer, s.views, s.target.framebuffer());
+  s.picture.show(s.views, s.target.framebuffer());
   glFinish();
   const Times times{moved - start, milliseconds_now() - moved};
   s.transfer_ms.push_back(times.transfer);
   s.render_ms.push_back(times.render);
-  s.passes.add(s.renderer.times());
+  s.passes.add(s.picture.renderer().times());
   return times;
+}
+
+void RenderTimer::look(sim::Simulation& fluid) {
+  const sim::View& view = state_->views.front();
+  const auto& shown = view.viewport;
+  state_->picture.look(fluid, view, gaze_through(view, 0.5 * shown.width, 0.5 * shown.height));
 }
 
 nlohmann::json RenderTimer::figures() const {
   const State& s = *state_;
   if (s.render_ms.empty()) return nullptr;
-  const auto counts = s.renderer.counts();
+  const auto counts = s.picture.renderer().counts();
   return {{"render_ms_median", quantile(s.render_ms, 0.5)},
           {"render_ms_p95", quantile(s.render_ms, 0.95)},
           {"render_ms_p99", quantile(s.render_ms, 0.99)},
           {"transfer_ms_median", quantile(s.transfer_ms, 0.5)},
           {"transfer_ms_p95", quantile(s.transfer_ms, 0.95)},
           {"transfer_ms_p99", quantile(s.transfer_ms, 0.99)},
-          {"transfer", s.uploaded ? "uploaded" : "shared with CUDA"},
+          {"transfer", s.picture.uploaded() ? "uploaded" : "shared with CUDA"},
           {"render_width_px", s.size.width},
           {"render_height_px", s.size.height},
           {"render_views", s.views.size()},

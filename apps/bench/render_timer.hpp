@@ -28,6 +28,9 @@ class RenderTimer {
   void warm_up(sim::Simulation& fluid);
   /// Call with the solver idle.
   Times draw(sim::Simulation& fluid);
+  /// Before a frame, as a live session does: the eye is at the first view, looks at its middle and has seen
+  /// the picture that was drawn last.
+  void look(sim::Simulation& fluid);
 
   /// Keys render_ms_median, _p95, _p99, the same of transfer_ms, passes, ... of all pictures since warm_up;
   /// null before the first.

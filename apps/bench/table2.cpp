@@ -121,7 +121,9 @@ void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Tab
   for (int frame = 1; frame <= options.frames; ++frame) {
     stage.look(frame);
     fluid.step_frame();
+    // What GL still draws would count as the next frame's saliency.
     if (fluid.follows_picture()) stage.draw();
+    glFinish();
     fluid.frame_time(run.told_ms[static_cast<std::size_t>(frame - 1)]);
     if (frame <= options.warm_up) continue;
     const sim::PartTimes parts = fluid.part_times();

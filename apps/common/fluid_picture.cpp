@@ -2,7 +2,7 @@
 
 namespace apps {
 
-void FluidPicture::draw(sim::Simulation& fluid, std::span<const sim::View> views, unsigned framebuffer) {
+void FluidPicture::take(sim::Simulation& fluid) {
   buffer_.reserve(fluid.particle_capacity());
   uploaded_ = !fluid.copy_to_gl(buffer_.gl());
   if (uploaded_) {
@@ -11,8 +11,12 @@ void FluidPicture::draw(sim::Simulation& fluid, std::span<const sim::View> views
   } else {
     buffer_.set_count(fluid.particle_count());
   }
+  taken_frame_ = fluid.frame();
+}
+
+void FluidPicture::show(std::span<const sim::View> views, unsigned framebuffer) {
   renderer_.draw(buffer_, views, framebuffer);
-  drawn_frame_ = fluid.frame();
+  drawn_frame_ = taken_frame_;
 }
 
 void FluidPicture::begin(const sim::GBuffer* seen) {

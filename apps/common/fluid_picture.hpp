@@ -22,10 +22,16 @@ class FluidPicture {
   /// until the first draw.
   void begin(const sim::GBuffer* seen);
   /// Takes the particles, on the device where the back end shares memory with GL, and draws them.
-  void draw(sim::Simulation& fluid, std::span<const sim::View> views, unsigned framebuffer);
+  void draw(sim::Simulation& fluid, std::span<const sim::View> views, unsigned framebuffer) {
+    take(fluid);
+    show(views, framebuffer);
+  }
   void draw(sim::Simulation& fluid, const sim::View& view, unsigned framebuffer) {
     draw(fluid, std::span(&view, 1), framebuffer);
   }
+  /// draw() in two steps, for who times them apart.
+  void take(sim::Simulation& fluid);
+  void show(std::span<const sim::View> views, unsigned framebuffer);
   /// Tells the simulation where one looks in the coming frame and, once something was drawn, what was seen in
   /// the last one. The picture stays on the device where the back end shares memory with GL, otherwise it
   /// takes a way through the host; it is the last one drawn either way.
@@ -41,7 +47,8 @@ class FluidPicture {
   sim::ParticleBuffer buffer_;
   sim::GBuffer seen_;
   const sim::GBuffer* before_ = nullptr;
-  std::optional<int> drawn_frame_;  ///< of the simulation
+  int taken_frame_ = 0;             ///< of the simulation
+  std::optional<int> drawn_frame_;  ///< the same, once it was drawn
   std::vector<sim::RenderParticle> particles_;
   bool uploaded_ = false;
 };

@@ -21,10 +21,16 @@ std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& point
 
 GlSharing::~GlSharing() { forget(); }
 
+/// The context or the buffers may be gone already; then there is nothing left to give back, and CUDA's word
+/// on it must not be taken for an error of the next launch.
 void GlSharing::forget() {
-  for (void* resource : resources_) {
-    // The context may be gone already; then there is nothing left to give back.
-    if (cudaGraphicsUnregisterResource(resource_of(resource)) != cudaSuccess) cudaGetLastError();
+  auto resources = resources_of(resources_);
+  if (!memory_.empty() &&
+      cudaGraphicsUnmapResources(static_cast<int>(resources.size()), resources.data()) != cudaSuccess)
+    cudaGetLastError();
+  memory_.clear();
+  for (const auto& resource : resources) {
+    if (cudaGraphicsUnregisterResource(resource) != cudaSuccess) cudaGetLastError();
   }
   resources_.clear();
 }
@@ -47,20 +53,22 @@ bool GlSharing::accept(const std::vector<GlBufferRef>& buffers) {
   return true;
 }
 
-std::vector<void*> GlSharing::map() {
+const std::vector<void*>& GlSharing::map() {
+  if (!memory_.empty()) return memory_;
   auto resources = resources_of(resources_);
   check(cudaGraphicsMapResources(static_cast<int>(resources.size()), resources.data()), "map GL buffers");
-  std::vector<void*> out;
   for (const auto& resource : resources) {
     void* pointer = nullptr;
     std::size_t size = 0;
     check(cudaGraphicsResourceGetMappedPointer(&pointer, &size, resource), "map GL buffers");
-    out.push_back(pointer);
+    memory_.push_back(pointer);
   }
-  return out;
+  return memory_;
 }
 
 void GlSharing::unmap() {
+  if (memory_.empty()) return;
+  memory_.clear();
   auto resources = resources_of(resources_);
   check(cudaGraphicsUnmapResources(static_cast<int>(resources.size()), resources.data()), "unmap GL buffers");
 }

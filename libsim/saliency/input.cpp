@@ -79,14 +79,14 @@ void SaliencyInput::OneEye::take(const GBuffer& seen) {
   picture = {depth.data(), normal.data(), 3, seen.width, seen.height, seen.radius_scale};
 }
 
-/// A copy, so that GL may draw the next picture while this one is looked at.
+/// A copy, so that GL may draw the next picture while this one is looked at. The buffers stay mapped until
+/// give_back(): to give them back here would cost the device two more changes between GL and the back end.
 void SaliencyInput::OneEye::take(const GlPicture& shared) {
   depth.resize(pixels_of(shared));
   normal.resize(4 * pixels_of(shared));
-  const auto memory = sharing.map();
+  const auto& memory = sharing.map();
   copy_within(depth.data(), memory[0], depth.size() * sizeof(float));
   copy_within(normal.data(), memory[1], normal.size() * sizeof(float));
-  sharing.unmap();
   picture_view = shared.view;
   picture = {depth.data(), normal.data(), 4, shared.width, shared.height, shared.radius_scale};
 }
@@ -100,6 +100,9 @@ bool SaliencyInput::look(const Looks& looks) {
     const GlPicture* shared = looks.eyes[k].shared;
     if (shared && !eyes_[k].sharing.accept({shared->depth, shared->normal})) return false;
   }
+  // All at once, before the copies: GL takes its turn once.
+  for (std::size_t k = 0; k < looks.eyes.size(); ++k)
+    if (looks.eyes[k].shared) eyes_[k].sharing.map();
   count_ = static_cast<int>(looks.eyes.size());
   seen_ = {};
   for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
@@ -121,6 +124,10 @@ bool SaliencyInput::look(const Looks& looks) {
     seen_.way = first ? way : std::max(seen_.way, way);
   }
   return true;
+}
+
+void SaliencyInput::give_back() {
+  for (auto& eye : eyes_) eye.sharing.unmap();
 }
 
 void SaliencyInput::look_by_default(const View& view) { look({{{{}, view, nullptr}}}); }

@@ -23,6 +23,8 @@ class SaliencyInput {
   /// buffers that cannot be shared. base::Error: no eye or more than two, a camera that is not finite, a
   /// G-buffer whose arrays are not whole.
   bool look(const Looks& looks);
+  /// Gives GL the buffers of the pictures back, which look() keeps. They must be back before GL draws.
+  void give_back();
   /// The eye of a program that never calls look().
   void look_by_default(const View& view);
 

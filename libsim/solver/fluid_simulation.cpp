@@ -67,6 +67,8 @@ class FluidSimulation final : public Simulation {
   }
 
   bool look(const Looks& looks) override {
+    // GL has drawn: what the coming frame is drawn from changes hands now, not in a turn of its own.
+    gl_.map_again();
     if (!follows_gaze()) return true;
     if (follows_picture()) return state_.saliency.input.look(looks);
     Looks gazes = looks;
@@ -240,11 +242,12 @@ class FluidSimulation final : public Simulation {
 
   bool copy_to_gl(const GlBufferRef& buffer) override {
     const int n = state_.particles.size();
-    if (buffer.bytes < static_cast<std::size_t>(n) * sizeof(Vec4) || !gl_.accept({buffer})) return false;
-    auto* target = static_cast<Vec4*>(gl_.map()[0]);
-    pack_for_drawing(state_.particles, target);
+    const bool room = buffer.bytes >= static_cast<std::size_t>(n) * sizeof(Vec4);
+    const bool shared = room && gl_.accept({buffer});
+    if (shared) pack_for_drawing(state_.particles, static_cast<Vec4*>(gl_.map()[0]));
     gl_.unmap();
-    return true;
+    state_.saliency.input.give_back();
+    return shared;
   }
 
   std::string explain() const override {

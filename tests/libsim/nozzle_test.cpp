@@ -262,7 +262,7 @@ void ledger_closes(Backend backend) {
     }
     EXPECT_GT(levels, 1u) << "the test must see mixed levels";
     EXPECT_GT(fluid->report().particles_in, 0);
-    EXPECT_NE(fluid->report().particles_in, fluid->report().particles_out) << "levels must differ";
+    EXPECT_GT(fluid->report().levels.born + fluid->report().levels.merges, 0u) << "levels must change";
     EXPECT_GE(fluid->report().guards.gaze_lost, 40u);
     const auto state = fluid->read_state();
     for (std::size_t i = 1; i < state.size(); ++i) ASSERT_LT(state[i - 1].id, state[i].id);

@@ -150,6 +150,24 @@ TEST_F(SharedPictureGpu, BothWaysGiveTheSameValues) {
   expect_same_values();
 }
 
+TEST_F(SharedPictureGpu, BuffersMayGoWhileTheSimulationHasThem) {
+  make(Backend::Cuda);
+  draw(320, 240);
+  for (int round = 0; round < 3; ++round) {
+    const sim::GlPicture shared = renderer->picture();
+    ASSERT_TRUE(fluid->look(looks(nullptr, &shared)));
+    renderer = std::make_unique<sim::FluidRenderer>(dam());
+    buffer = sim::ParticleBuffer();
+    fluid->step_frame();
+    draw(320, 240);
+    expect_same_values();
+  }
+  const sim::GlPicture shared = renderer->picture();
+  ASSERT_TRUE(fluid->look(looks(nullptr, &shared)));
+  fluid.reset();
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
 TEST_F(SharedPictureGpu, PicturesMayChangeSizeAndRenderer) {
   make(Backend::Cuda);
   for (const auto& [width, height] : {std::pair{320, 240}, {640, 480}, {200, 100}}) {
