@@ -146,8 +146,11 @@ __device__ __forceinline__ void begin_kernel() {
 #endif
 }
 
+/// Threads of a block, but for those of one_block.hpp.
+constexpr int block_threads = 256;
+
 template <class F>
-__global__ void __launch_bounds__(256) run_kernel(int n, const __grid_constant__ F f) {
+__global__ void __launch_bounds__(block_threads) run_kernel(int n, const __grid_constant__ F f) {
   begin_kernel();
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < n) f(i);
@@ -159,11 +162,29 @@ void for_each(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  launch(label, run_kernel<F>, static_cast<unsigned>((n + 255) / 256), 256, 0, n, f);
+  launch(label, run_kernel<F>, static_cast<unsigned>((n + block_threads - 1) / block_threads), block_threads,
+         0, n, f);
 }
 
+/// Lanes for each of n indices: a functor of for_each_team may have measured its own, `static int lanes(int
+/// n)`.
+template <class F>
+int lanes_for(int n) {
+  if constexpr (requires { F::lanes(n); }) {
+    return F::lanes(n);
+  } else {
+    return team_wish(n);
+  }
+}
+
+/// Blocks that a multiprocessor must be able to hold. Left alone, the compiler gives a thread so few
+/// registers that it waits for each load by itself; passes over neighbours gain more by loads that they wait
+/// for together than by more blocks.
+constexpr int least_team_blocks = 4;
+
 template <int Size, class F>
-__global__ void __launch_bounds__(256) run_team_kernel(int n, const __grid_constant__ F f) {
+__global__ void __launch_bounds__(block_threads, least_team_blocks)
+    run_team_kernel(int n, const __grid_constant__ F f) {
   begin_kernel();
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / Size);
   if (i >= n) return;
@@ -176,8 +197,8 @@ __global__ void __launch_bounds__(256) run_team_kernel(int n, const __grid_const
 
 template <int Size, class F>
 void launch_teams(const char* label, int n, F f) {
-  const auto blocks = (static_cast<long long>(n) * Size + 255) / 256;
-  launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), 256, 0, n, f);
+  const auto blocks = (static_cast<long long>(n) * Size + block_threads - 1) / block_threads;
+  launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), block_threads, 0, n, f);
 }
 
 /// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a loop inside: the fewer indices there are,
@@ -187,7 +208,7 @@ void for_each_team(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  switch (team_wish(n)) {
+  switch (lanes_for<F>(n)) {
     case 8:
       return launch_teams<8>(label, n, f);
     case 4:

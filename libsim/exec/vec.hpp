@@ -33,6 +33,14 @@ SIM_FN float at_most(float a, float b) {
   return a < b ? a : b;
 #endif
 }
+/// The whole number at or below x, or the nearer of two bounds.
+SIM_FN int floor_within(float x, int low, int high) {
+#ifdef __CUDA_ARCH__
+  return min(max(__float2int_rd(x), low), high);
+#else
+  return static_cast<int>(at_most(at_least(floorf(x), static_cast<float>(low)), static_cast<float>(high)));
+#endif
+}
 
 SIM_FN Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 SIM_FN Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

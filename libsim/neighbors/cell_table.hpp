@@ -22,16 +22,15 @@ struct LevelCells {
 
   SIM_FN int size() const { return nx * ny * nz; }
   /// The cell along one axis of a place `x` from the low corner: 1 .. count - 2 inside the domain.
-  SIM_FN int along(float x, int count) const {
-    const float cell = floorf(x * inverse) + 1;
-    return static_cast<int>(at_most(at_least(cell, 0.0f), static_cast<float>(count - 1)));
+  SIM_FN int along(float x, int count) const { return floor_within(x * inverse, -1, count - 2) + 1; }
+  /// x, or the nearest place to it that is not beyond the outermost cells' nominal sides.
+  SIM_FN float nominal(float x, int count) const {
+    return at_most(at_least(x, -edge), static_cast<float>(count - 1) * edge);
   }
-  /// How far x lies outside the slab of a cell along one axis.
-  SIM_FN float gap(float x, int cell, int count) const {
+  /// At most how far x, a nominal place, lies outside the slab of a cell along one axis.
+  SIM_FN float gap(float x, int cell) const {
     const float low = static_cast<float>(cell - 1) * edge - x;
-    const float below = cell > 0 ? low : 0.0f;
-    const float above = cell < count - 1 ? -(low + edge) : 0.0f;
-    return at_least(at_least(below, above), 0.0f);
+    return at_least(at_least(low, -(low + edge)), 0.0f);
   }
 };
 
@@ -52,7 +51,7 @@ struct CellTable {
   /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
   /// (last_y, last_z). `at`: from the low corner.
   struct Window {
-    Vec3 at;
+    Vec3 at;  ///< y and z are nominal
     float reach;
     int first_y, last_y, first_z, last_z;
   };
@@ -62,7 +61,7 @@ struct CellTable {
     // Beyond what rounding of places, distances and cells can hide.
     const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
                         1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
-    return {at,
+    return {{at.x, grid.nominal(at.y, grid.ny), grid.nominal(at.z, grid.nz)},
             reach,
             grid.along(at.y - reach, grid.ny),
             grid.along(at.y + reach, grid.ny),
@@ -74,8 +73,8 @@ struct CellTable {
   }
   /// The particles of one line that can be within the reach.
   SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
-    const float dy = grid.gap(look.at.y, y, grid.ny);
-    const float dz = grid.gap(look.at.z, z, grid.nz);
+    const float dy = grid.gap(look.at.y, y);
+    const float dz = grid.gap(look.at.z, z);
     const float left = look.reach * look.reach - dy * dy - dz * dz;
     if (!(left > 0)) return {0, 0};
     const float half = rough_root(left);
