@@ -168,6 +168,7 @@ struct FrameReport {
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;         ///< max of rho / rho_0
   double neighbours_mean = 0;     ///< without self, within h
+  double listed_mean = 0;         ///< length of a list of neighbours, which looks farther than h
   double speed_max_m_s = 0;
   std::int64_t poured = 0;        ///< by nozzles since the simulation was made, in units of m_*
   std::int64_t particles_in = 0;  ///< particles that nozzles made

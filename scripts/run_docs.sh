@@ -24,6 +24,8 @@ docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/performance.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/single_dam.toml|s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
+docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
+docs/performance.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2/|it needs a GPU|
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
 docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|scripts/window_protocols.sh
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain

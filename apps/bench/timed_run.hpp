@@ -16,11 +16,13 @@ struct Accuracy {
   double error_mean = 0;
   double density_max = 0;
   double neighbours_mean = 0;
+  double listed_mean = 0;
   int samples = 0;
   void add(const sim::FrameReport& report) {
     ++samples;
     error_mean += (report.density_error_mean - error_mean) / samples;
     neighbours_mean += (report.neighbours_mean - neighbours_mean) / samples;
+    listed_mean += (report.listed_mean - listed_mean) / samples;
     density_max = std::max(density_max, report.density_max);
   }
 };

@@ -55,4 +55,10 @@ struct Listed {
   SIM_FN int operator()(int slot) const { return slot < 0 ? -1 : select(slot); }
 };
 
+/// Whether a pass looks at a few only; a profile tells it from the pass over all.
+template <class Selection>
+inline constexpr bool few_in = false;
+template <class Selection>
+inline constexpr bool few_in<Listed<Selection>> = true;
+
 }  // namespace sim::SIM_BACKEND

@@ -152,6 +152,7 @@ class FluidSimulation final : public Simulation {
     out.density_error_mean = measured.density_error_mean;
     out.density_max = measured.density_max;
     out.neighbours_mean = measured.neighbours_mean;
+    out.listed_mean = measured.listed_mean;
     out.speed_max_m_s = measured.speed_max_m_s;
     out.guards = guard_counts(state_.guards.to_host()[0], state_);
     out.poured = state_.jets.poured;

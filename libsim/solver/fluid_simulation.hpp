@@ -43,6 +43,7 @@ struct Measured {
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;
   double neighbours_mean = 0;  ///< within h, without self
+  double listed_mean = 0;      ///< length of a list
   double speed_max_m_s = 0;
   double jump_share = 0;  ///< share of the pairs within h whose levels differ by more than one
 };

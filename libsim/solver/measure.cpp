@@ -32,6 +32,7 @@ struct MeasureOne {
   Neighbours neighbours;
   float* excess;
   float* near;
+  float* listed;
   float* speed;
   SIM_FN void operator()(int i) const {
     const Vec4 self = position[i];
@@ -44,6 +45,7 @@ struct MeasureOne {
     }
     excess[i] = at_least(density[i] - 1, 0.0f);
     near[i] = static_cast<float>(within);
+    listed[i] = static_cast<float>(neighbours.size(i));
     speed[i] = length(xyz(velocity[i]));
   }
 };
@@ -93,6 +95,7 @@ Measured measure(const FluidState& live) {
   const auto size = static_cast<std::size_t>(n);
   Array<float> excess(size);
   Array<float> near(size);
+  Array<float> listed(size);
   Array<float> speed(size);
   for_each("measure", n,
            MeasureOne{.position = p.position(),
@@ -101,10 +104,12 @@ Measured measure(const FluidState& live) {
                       .neighbours = state.neighbours.view(),
                       .excess = excess.data(),
                       .near = near.data(),
+                      .listed = listed.data(),
                       .speed = speed.data()});
   out.density_error_mean = fixed_order_sum(excess, n) / n;
   const double pairs = fixed_order_sum(near, n);
   out.neighbours_mean = pairs / n;
+  out.listed_mean = fixed_order_sum(listed, n) / n;
   if (!state.one_level && pairs > 0) {
     for_each("measure jumps", n, MeasureJumps{p.position(), p.level(), state.neighbours.view(), near.data()});
     out.jump_share = fixed_order_sum(near, n) / pairs;

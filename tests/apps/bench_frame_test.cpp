@@ -72,9 +72,31 @@ TEST_F(BenchFrameE2e, TimesEveryLaunch) {
   ASSERT_NE(density, launches.end());
   EXPECT_GT((*density)["ms_a_frame"].get<double>(), 0);
   EXPECT_GE((*density)["launches_a_frame"].get<double>(), 4);
-  EXPECT_NE(text.find("ms a frame in"), std::string::npos);
+  EXPECT_NE(text.find("times floor"), std::string::npos) << text;
+  const double gb_s = figures()["bandwidth_gb_s"].get<double>();
+  EXPECT_GT(gb_s, 0);
+  const double floor = (*density)["floor_ms_a_frame"].get<double>();
+  EXPECT_NEAR(floor, (*density)["bytes_a_frame"].get<double>() / gb_s / 1e6, 1e-9 * floor);
+  EXPECT_NEAR((*density)["times_floor"].get<double>(), (*density)["ms_a_frame"].get<double>() / floor, 1e-6);
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_TRUE(figures()["launches"].empty());
+  EXPECT_TRUE(figures()["bandwidth_gb_s"].is_null());
+}
+
+TEST_F(BenchFrameE2e, StatesThatAreMeasuredAreNoLaunches) {
+  const auto launches = [&](const std::string& every) {
+    EXPECT_EQ(bench("--no-render --passes --substeps 1 --measure-every " + every), 0) << text;
+    double sum = 0;
+    const auto result = figures();
+    for (const auto& pass : result["launches"]) {
+      EXPECT_NE(pass["pass"], "measure");
+      sum += pass["launches_a_frame"].get<double>();
+    }
+    return sum;
+  };
+  const double every = launches("1");
+  EXPECT_GT(every, 0);
+  EXPECT_EQ(every, launches("2"));
 }
 
 TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {

@@ -89,7 +89,7 @@ struct Density {
 
 template <bool OneLevel, bool OthersYield, class Selection>
 void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
-  for_each_team("density", p.size(),
+  for_each_team(few_in<Selection> ? "density beside fresh" : "density", p.size(),
                 Density<OneLevel, OthersYield, Selection>{.select = select,
                                                           .predicted = p.predicted(),
                                                           .neighbours = state.neighbours.view(),

@@ -108,7 +108,7 @@ struct Displace {
 template <bool OneLevel, bool Tensile, class Selection>
 void launch(FluidState& state, DisplacementView p, Selection select) {
   const auto& k = state.parameters;
-  for_each_team("displacement", p.size(),
+  for_each_team(few_in<Selection> ? "displacement beside fresh" : "displacement", p.size(),
                 Displace<OneLevel, Tensile, Selection>{.select = select,
                                                        .predicted = p.predicted(),
                                                        .lambda = p.lambda(),

@@ -1,0 +1,37 @@
+#pragma once
+/// What vip-bench frame is asked and runs.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "apps/common/picture_size.hpp"
+#include "libsim/simulation.hpp"
+
+namespace apps {
+
+struct FrameOptions {
+  std::string scene = "data/scenes/single_dam.toml";
+  std::string method = "HiRes";
+  std::string n_star = "4k";
+  std::string backend = "auto";
+  std::string tau = "live";
+  std::string rate, ptpe;
+  std::string json;
+  std::string save_state;
+  int frames = 100;
+  int warm_up = 5;
+  int measure_every = 0;
+  sim::SimulationOptions
+      fluid;  ///< the solver's numbers; method, n_* and back end are read from the words above
+  bool no_render = false;
+  bool passes = false;
+  bool look = false;
+  bool peers = false;
+  PictureSize size{1280, 720};
+  int views = 1;
+};
+
+/// Every figure of the run.
+nlohmann::json run_frames(const FrameOptions& options);
+
+}  // namespace apps

@@ -1,0 +1,207 @@
+/// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/bench/cells.hpp"
+#include "apps/bench/commands.hpp"
+#include "apps/bench/frame.hpp"
+#include "apps/bench/launch_table.hpp"
+#include "apps/bench/peers.hpp"
+#include "apps/bench/render_timer.hpp"
+#include "apps/common/options.hpp"
+#include "libsim/scene/scene.hpp"
+#include "libstudy/session/machine.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr const char* floors_help =
+    "--passes holds each pass against memory. least MB: what a frame's launches of the pass must move, each\n"
+    "input read once and each output written once; of cells, grids and columns that only some methods have\n"
+    "nothing is counted. Lists of neighbours are as long as in the mean of the measured states. Where\n"
+    "temporal acceleration lets particles rest, passes over the solved ones count these alone. floor: these\n"
+    "bytes over the bandwidth of a copy of 256 MiB within the back end's memory, read plus written. times\n"
+    "floor: measured time over it. What a cache still holds moves faster: with few particles a pass may "
+    "take\n"
+    "less than its floor. - stands where nothing is known.";
+
+/// Numbers of the solver that a scene gives otherwise.
+void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
+  auto* substeps = command
+                       .add_option("--substeps", fluid.substeps,
+                                   "Substeps in every frame; 0 = as many as the fastest particle asks for")
+                       ->check(CLI::Range(0, 64));
+  command.add_option("--iterations", fluid.iterations, "Projections a substep; 0 = the scene's")
+      ->check(CLI::Range(0, 64));
+  command.add_option("--dt", fluid.frame_dt_s, "Frame step in s; the scene's when left out")
+      ->check(number_in(1e-5, 1.0));
+  command.add_option("--relaxation", fluid.relaxation, "Constraint relaxation")->check(number_in(0.0, 100.0));
+  command.add_option("--tensile", fluid.tensile, "s_corr strength")->check(number_in(0.0, 100.0));
+  command
+      .add_option("--viscosity", fluid.viscosity_m2_s,
+                  "Kinematic viscosity in m2/s; the scene's when left out")
+      ->check(number_in(0.0, 1e3));
+  command
+      .add_option("--courant", fluid.courant,
+                  "Way of the fastest particle in a substep at most, in h; the scene's when left out")
+      ->check(number_in(0.05, 4.0))
+      ->excludes(substeps);
+  command
+      .add_option("--most-substeps", fluid.most_substeps,
+                  "Substeps a frame at most while the fastest particle is followed")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(substeps);
+  command.add_option("--momentum", fluid.momentum, "Share of the last projection taken again")
+      ->check(number_in(0.0, 100.0));
+  command.add_option("--coarse-cycles", fluid.coarse_cycles, "V-cycles of the coarse pressure; 0 = none")
+      ->check(CLI::Range(0, 16));
+  command.add_option("--coarse-edge", fluid.coarse_edge, "Edge of its cells in h")
+      ->check(number_in(0.5, 8.0));
+}
+
+void print_frame(const nlohmann::json& result) {
+  std::printf("%s %s n_* %s on %s: %lld particles, %d frames\n", result["scene"].get<std::string>().c_str(),
+              result["method"].get<std::string>().c_str(), result["n_star"].get<std::string>().c_str(),
+              result["backend"].get<std::string>().c_str(), result["particles"].get<long long>(),
+              result["frames"].get<int>());
+  std::printf("  solve        %8.3f ms a frame (median), %.3f mean, %.3f p95, %.3f p99\n",
+              result["solve_ms_median"].get<double>(), result["solve_ms_mean"].get<double>(),
+              result["solve_ms_p95"].get<double>(), result["solve_ms_p99"].get<double>());
+  if (result.contains("render_left_out")) {
+    std::printf("  render       left out: %s\n", result["render_left_out"].get<std::string>().c_str());
+  } else {
+    print_render_figures(result);
+    std::printf(
+        "  frame        %8.3f ms (median), %.3f p95, %.3f p99: solve, transfer and render one after "
+        "another\n",
+        result["frame_ms_median"].get<double>(), result["frame_ms_p95"].get<double>(),
+        result["frame_ms_p99"].get<double>());
+  }
+  std::printf("  h/d          %8.3f\n  neighbours   %8.2f mean within h\n", result["h_over_d"].get<double>(),
+              result["neighbours_mean"].get<double>());
+  std::printf("  density      %8.4f %% mean of max(rho/rho_0 - 1, 0), max rho/rho_0 %.3f\n",
+              100 * result["density_error_mean"].get<double>(), result["density_max"].get<double>());
+  const auto& temporal = result["temporal"];
+  std::printf(
+      "  substeps     %8.2f a frame on average, %d at most; %d frames asked for more than were allowed\n",
+      result["substeps_mean"].get<double>(), result["substeps_most"].get<int>(),
+      result["frames_short_of_substeps"].get<int>());
+  std::printf("  temporal     tau %s frames/s (%s), beta %.3f, %.2f %% of the particles solved\n",
+              temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
+              temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
+              100 * temporal["solved_share_mean"].get<double>());
+  std::printf("  guards       %s\n", result["guards"].dump().c_str());
+  if (const auto& first = result["divergence"]; !first.is_null())
+    std::printf("  divergence   %s\n", first["in_words"].get<std::string>().c_str());
+  if (!result["bandwidth_gb_s"].is_null())
+    std::printf("%s", launch_lines(result["launches"], result["bandwidth_gb_s"].get<double>()).c_str());
+}
+
+// The conditions under which the rows of data/peers.csv were measured.
+constexpr const char* peers_scene = "data/scenes/peers_dam.toml";
+constexpr const char* peers_method = "HiRes";
+constexpr const char* peers_n_star = "4k";
+constexpr double peers_dt_s = 0.005;
+
+/// --peers says all that makes the run; only what leaves the setting as it is may stand beside it.
+void refuse_beside_peers(const CLI::App& command) {
+  constexpr std::array allowed{"--peers",  "--backend", "--frames",     "--warm-up",      "--no-render",
+                               "--passes", "--json",    "--save-state", "--measure-every"};
+  for (const CLI::Option* option : command.get_options()) {
+    const auto is = [&](const char* name) { return option->check_name(name); };
+    if (option->count() > 0 && std::none_of(allowed.begin(), allowed.end(), is))
+      throw CLI::ExcludesError("--peers", option->get_name());
+  }
+}
+
+/// Runs the peers' setting in place of the options' own.
+nlohmann::json run_peers(FrameOptions options) {
+  const auto peers = read_peers(base::find_input("data/peers.csv"));
+  options.scene = peers_scene;
+  options.method = peers_method;
+  options.n_star = peers_n_star;
+  options.fluid.frame_dt_s = peers_dt_s;
+  options.no_render = true;
+  const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
+  nlohmann::json result = run_frames(options);
+  // Of a GPU the program knows no name.
+  const std::string machine = result["backend"] == "cpu" ? study::describe_machine() : "";
+  const OurRow ours = our_row(result, peers_dt_s, scene.solver_iterations, machine);
+  print_frame(result);
+  std::printf("\n%s\n%s\n", to_markdown(peers_table(peers, ours)).c_str(), peers_note(peers, ours).c_str());
+  result["machine"] = machine.empty() ? nlohmann::json() : nlohmann::json(machine);
+  result["peers"] = to_json(peers);
+  return result;
+}
+
+/// Runs and prints what was asked for.
+nlohmann::json run(const FrameOptions& options) {
+  if (options.peers) return run_peers(options);
+  nlohmann::json result = run_frames(options);
+  print_frame(result);
+  return result;
+}
+
+}  // namespace
+
+void add_frame_command(CLI::App& app) {
+  auto options = std::make_shared<FrameOptions>();
+  auto* command = app.add_subcommand("frame", "Milliseconds a frame of one scene and method");
+  command->footer(floors_help);
+  command->add_option("scene", options->scene, "Scene file")->capture_default_str();
+  add_method(*command, options->method);
+  add_n_star(*command, options->n_star);
+  add_backend(*command, options->backend);
+  auto* tau = command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
+                  ->capture_default_str();
+  command
+      ->add_option("--rate", options->rate,
+                   "Mean and standard deviation of the frame rate that its tau follows from, as in a study's "
+                   "cell: 16.9,3.2")
+      ->excludes(tau);
+  command->add_option("--ptpe", options->ptpe, ptpe_help);
+  command->add_flag("--temporal", options->fluid.temporal.always,
+                    "Temporal acceleration also for a method without it");
+  add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
+  add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
+  add_solver_numbers(*command, options->fluid);
+  command
+      ->add_option("--resume", options->fluid.resume_from,
+                   "Go on from a state that --save-state wrote, with the same scene and options")
+      ->check(CLI::ExistingFile);
+  command
+      ->add_option("--save-state", options->save_state, "Write the state after the last frame to this file")
+      ->check(output_file());
+  add_count(*command, "--measure-every", options->measure_every, 0, 100000,
+            "Measure the density every so many frames, untimed; 0 = ten times");
+  command->add_flag(
+      "--passes", options->passes,
+      "Also time every launch of the solver (slows it down) and hold it against the memory's bandwidth");
+  auto* no_render = command->add_flag("--no-render", options->no_render, "Time the solver alone");
+  command
+      ->add_flag("--look", options->look,
+                 "Let the method see each picture and its middle, as in a live session; handing it over "
+                 "counts as solve")
+      ->excludes(no_render);
+  add_size(*command, options->size, "Picture of one view, px");
+  add_count(*command, "--views", options->views, 1, 2, "1, or 2 eyes side by side");
+  command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
+  command->add_flag("--peers", options->peers,
+                    "Run PeersDam with 32,768 particles, HiRes and steps of 0.005 s, without pictures, and "
+                    "print it beside other programs' times at that setting");
+  command->callback([options, command] {
+    if (options->peers) refuse_beside_peers(*command);
+    options->fluid.temporal.model = load_model(options->ptpe);
+    const auto result = run(*options);
+    if (!options->json.empty()) base::write_file_atomically(options->json, result.dump(2) + "\n");
+  });
+}
+
+}  // namespace apps
