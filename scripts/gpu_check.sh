@@ -54,6 +54,10 @@ done
 step single_dam_cuda_32k "$bench" frame data/scenes/single_dam.toml --n-star 32k --backend cuda --frames 120 \
   --json "$out/single_dam_cuda_32k.json"
 figure "SingleDam, n_* 32k" "$out/single_dam_cuda_32k.json"
+step peers "$bench" frame --peers --backend cuda --passes --json "$out/peers.json"
+step growth "$bench" growth data/scenes/peers_dam.toml --n-star 16k,32k,128k,512k --backend cuda --frames 60 \
+  --csv "$out/growth.csv" --svg "$out/growth.svg"
+grep -h '^exponent' "$out/growth.log" | tee -a "$table"
 
 echo
 nvidia-smi --query-gpu=name,driver_version --format=csv,noheader 2>/dev/null

@@ -8,21 +8,30 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each index looks at every `stride`th particle, so that neighbours in a warp read neighbours in memory.
+/// Each lane looks at every so many'th particle, so that neighbours in a warp read neighbours in memory; a
+/// team's lanes are summed first, since all sums meet in one place.
 struct Gather {
   const Vec4* velocity;
   const float* density;
   const std::uint8_t* level;
   const std::uint8_t* active;  ///< nullptr when everyone was solved
   const int* id;
-  int n, stride;
+  int n, teams;
   int half;  ///< the frame's end, see TroubleKey
   Extremes* out;
-  SIM_FN void operator()(int first) const {
+#ifdef SIM_CUDA
+  static constexpr int particles_a_team = 128;
+  static int lanes(int) { return 8; }
+#else
+  static constexpr int particles_a_team = 32;
+#endif
+
+  template <class Team>
+  SIM_FN void operator()(int number, Team team) const {
     float fastest = 0;
     float excess = 0;
     int mass = 0;
-    for (int i = first; i < n; i += stride) {
+    for (int i = number * Team::size + team.rank(); i < n; i += teams * Team::size) {
       const Vec3 v = xyz(velocity[i]);
       const float speed2 = dot(v, v);
       fastest = fmaxf(fastest, speed2);
@@ -33,8 +42,12 @@ struct Gather {
       mass += units;
       excess += static_cast<float>(units) * fminf(fmaxf(density[i] - 1, 0.0f), 1.0f);
     }
+    fastest = -team.min(-fastest);
+    const auto units = team.sum(static_cast<std::uint64_t>(excess / Extremes::excess_unit));
+    mass = team.sum(mass);
+    if (team.rank() > 0) return;
     atomic_max(&out->fastest_bits, bits_of(sqrtf(fastest)));
-    atomic_add(&out->excess, static_cast<std::uint64_t>(excess / Extremes::excess_unit));
+    atomic_add(&out->excess, units);
     atomic_add(&out->mass, static_cast<std::uint64_t>(mass));
   }
   SIM_FN void tell(Trouble cause, int i) const {
@@ -137,18 +150,18 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
   extremes_.resize(1);
   extremes_.zero();
   const int n = state.particles.size();
-  const int lookers = (n + 31) / 32;
+  const int teams = (n + Gather::particles_a_team - 1) / Gather::particles_a_team;
   const auto& p = state.particles.all();
-  for_each("gather extremes", lookers,
-           Gather{.velocity = p.velocity.data(),
-                  .density = p.density.data(),
-                  .level = p.level.data(),
-                  .active = left_out ? p.active.data() : nullptr,
-                  .id = p.id.data(),
-                  .n = n,
-                  .stride = lookers,
-                  .half = 2 * state.parameters.substeps,
-                  .out = extremes_.data()});
+  for_each_team("gather extremes", teams,
+                Gather{.velocity = p.velocity.data(),
+                       .density = p.density.data(),
+                       .level = p.level.data(),
+                       .active = left_out ? p.active.data() : nullptr,
+                       .id = p.id.data(),
+                       .n = n,
+                       .teams = teams,
+                       .half = 2 * state.parameters.substeps,
+                       .out = extremes_.data()});
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
                  .lists = state.neighbours.need(),
