@@ -36,6 +36,7 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
   choice.n_star = size.n_star;
   choice.backend = sim::choose_backend(options.backend);
   choice.temporal.fixed_tau = sim::parse_tau(options.tau);
+  const auto taken_before = sim::device_bytes_taken(choice.backend);
   const auto fluid = make_settled(scene, choice);
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
   fluid->synchronize();
@@ -64,8 +65,10 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
   out.ms_substep_p99 = quantile(substep_ms, 0.99);
   out.ms_frame_mean = all_ms / options.frames;
   out.density_error_mean = accuracy.error_mean;
-  out.column_bytes =
-      static_cast<double>(fluid->particle_bytes()) / static_cast<double>(fluid->particle_count());
+  const auto particles = static_cast<double>(fluid->particle_count());
+  out.column_bytes = static_cast<double>(fluid->particle_bytes()) / particles;
+  if (const auto taken = sim::device_bytes_taken(choice.backend))
+    out.device_bytes = static_cast<double>(*taken - *taken_before) / particles;
   return out;
 }
 
@@ -101,8 +104,9 @@ constexpr const char* columns_help =
     "picture is drawn, and saliency sees none. exponent is the least-squares slope of log(ms_substep_mean)\n"
     "over log(particles_mean), exponent_se its standard error (- with two sizes). column_bytes_per_particle\n"
     "counts the particles' columns and what saliency, temporal acceleration, nozzles and outlets keep;\n"
-    "neighbour lists, cells and the grids of the pressure are not in it. density_error_mean is the mean of\n"
-    "max(rho/rho_0 - 1, 0) over ten states.";
+    "neighbour lists, cells and the grids of the pressure are not in it. device_bytes_per_particle is what\n"
+    "the device's memory holds after the run above what it held before it (- on the CPU).\n"
+    "density_error_mean is the mean of max(rho/rho_0 - 1, 0) over ten states.";
 
 }  // namespace
 

@@ -32,14 +32,14 @@ std::string in_words(const Growth& growth, std::size_t sizes) {
 TextTable to_table(const GrowthRun& run, const std::vector<GrowthRow>& rows, const Growth& growth) {
   TextTable out{{"scene", "method", "backend", "n_star", "frames", "particles_mean", "substeps_mean",
                  "ms_substep_mean", "ms_substep_p99", "ms_frame_mean", "density_error_mean",
-                 "column_bytes_per_particle", "exponent", "exponent_se"},
+                 "column_bytes_per_particle", "device_bytes_per_particle", "exponent", "exponent_se"},
                 {}};
   for (const auto& row : rows) {
     out.rows.push_back(
         {run.scene, run.method, run.backend, row.n_star, std::to_string(run.frames), number(row.particles, 0),
          number(row.substeps_mean, 2), number(row.ms_substep_mean, 4), number(row.ms_substep_p99, 4),
          number(row.ms_frame_mean, 4), number(row.density_error_mean, 6), number(row.column_bytes, 1),
-         number(growth.exponent, 4), number(growth.standard_error, 4)});
+         number(row.device_bytes, 1), number(growth.exponent, 4), number(growth.standard_error, 4)});
   }
   return out;
 }

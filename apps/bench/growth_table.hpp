@@ -22,6 +22,9 @@ struct GrowthRow {
   /// saliency, temporal acceleration, nozzles and outlets keep, at their capacity. Neighbour lists, cells and
   /// the grids of the pressure are not in it.
   double column_bytes = 0;
+  /// What the device's memory holds after the run above what it held before the fluid was made, over the same
+  /// particles; NaN on the CPU.
+  double device_bytes = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// ms a substep = factor particles^exponent, by least squares over the logarithms.

@@ -8,6 +8,7 @@ namespace sim {
 namespace cuda {
 /// Empty when a device answers, otherwise why none does.
 std::string device_problem();
+std::int64_t device_bytes_taken();
 }  // namespace cuda
 #endif
 
@@ -36,6 +37,13 @@ Backend choose_backend(std::string_view name) {
   if (problem.empty()) return Backend::Cuda;
   if (name == "auto") return Backend::Cpu;
   throw base::Error("--backend cuda", problem, cuda_mend);
+}
+
+std::optional<std::int64_t> device_bytes_taken([[maybe_unused]] Backend backend) {
+#ifdef SIM_HAS_CUDA
+  if (backend == Backend::Cuda) return cuda::device_bytes_taken();
+#endif
+  return {};
 }
 
 }  // namespace sim

@@ -21,7 +21,8 @@ bool launches_overlap() {
     int device = 0;
     int major = 0;
     return cudaGetDevice(&device) == cudaSuccess &&
-           cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) == cudaSuccess && major >= 9;
+           cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) == cudaSuccess &&
+           major >= 9;
   }();
   return can;
 }
@@ -44,6 +45,13 @@ std::string device_problem() {
   const cudaError_t status = cudaGetDeviceCount(&devices);
   if (status != cudaSuccess) return cudaGetErrorString(status);
   return devices ? "" : "no CUDA device answers";
+}
+
+std::int64_t device_bytes_taken() {
+  std::size_t left = 0;
+  std::size_t all = 0;
+  check(cudaMemGetInfo(&left, &all), "memory");
+  return static_cast<std::int64_t>(all - left);
 }
 
 void* allocate(std::size_t bytes) {

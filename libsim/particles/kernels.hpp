@@ -82,7 +82,7 @@ SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   return {sign * across * cosf(angle), sign * y, sign * across * sinf(angle)};
 }
 
-/// For loops over neighbours: several lanes at once on the CPU, plain code on the GPU.
+/// For loops over neighbours: lanes on the CPU. The body is one call; structs made in it leave one lane.
 #ifdef SIM_CUDA
 #define SIM_LANES(...)
 #else

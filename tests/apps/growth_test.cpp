@@ -82,6 +82,7 @@ TEST_F(GrowthE2e, HoldsARowForEachSize) {
                 std::stod(row.at("ms_frame_mean")), 0.02 * std::stod(row.at("ms_frame_mean")) + 1e-3);
     EXPECT_GT(std::stod(row.at("ms_substep_p99")), 0);
     EXPECT_GT(std::stod(row.at("column_bytes_per_particle")), 32) << "place and velocity alone";
+    EXPECT_EQ(row.at("device_bytes_per_particle"), "-") << "no device";
     EXPECT_EQ(row.at("exponent"), table.front().at("exponent"));
     particles *= 2;
   }

@@ -22,6 +22,32 @@ struct Density {
   Guards* guards;
   float rest_density, relaxation;
 
+  /// What particle j adds to the sums; see SIM_LANES.
+  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& rho, float& gx, float& gy,
+                  float& gz, float& squares, int& zero) const {
+    const Other other(predicted, j);
+    const Kernel kernel = pair.with(other.w);
+    const float ratio = pair.mass_ratio(other.w);
+    const float dx = self.x - other.x;
+    const float dy = self.y - other.y;
+    const float dz = self.z - other.z;
+    const float r2 = dx * dx + dy * dy + dz * dz;
+    const float least = coincident * kernel.h;
+    zero += r2 < least * least;
+    const Root root(at_least(r2, least * least));
+    const float slope = kernel.slope(root.r);
+    const float along = root.under(ratio * slope);
+    rho += ratio * kernel.density(r2);
+    gx -= along * dx;
+    gy -= along * dy;
+    gz -= along * dz;
+    if constexpr (OthersYield) {
+      squares += ratio * slope * slope;
+    } else {
+      squares += select.moves(j) * ratio * slope * slope;
+    }
+  }
+
   template <class Team>
   SIM_FN void operator()(int turn, Team team) const {
     const int slot = select.slot(turn);
@@ -40,30 +66,8 @@ struct Density {
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(rho, gx, gy, gz, squares, zero)
-    for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = run[k];
-      const Vec4 other = predicted[j];
-      const Kernel kernel = pair.with(other.w);
-      const float ratio = pair.mass_ratio(other.w);
-      const float dx = self.x - other.x;
-      const float dy = self.y - other.y;
-      const float dz = self.z - other.z;
-      const float r2 = dx * dx + dy * dy + dz * dz;
-      const float least = coincident * kernel.h;
-      zero += r2 < least * least;
-      const Root root(at_least(r2, least * least));
-      const float slope = kernel.slope(root.r);
-      const float along = root.under(ratio * slope);
-      rho += ratio * kernel.density(r2);
-      gx -= along * dx;
-      gy -= along * dy;
-      gz -= along * dz;
-      if constexpr (OthersYield) {
-        squares += ratio * slope * slope;
-      } else {
-        squares += select.moves(j) * ratio * slope * slope;
-      }
-    }
+    for (int k = team.rank(); k < count; k += Team::size)
+      add(run[k], self, pair, rho, gx, gy, gz, squares, zero);
     rho = team.sum(rho) + Kernel(self.w).density(0);
     gx = team.sum(gx);
     gy = team.sum(gy);

@@ -19,6 +19,26 @@ struct Displace {
   int half;  ///< of a substep, see TroubleKey
   float rest_density, tensile, wall_gap, momentum;
 
+  /// What particle j adds to the step; see SIM_LANES. own: lambda of the particle itself.
+  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
+                  float& pz, int& zero) const {
+    const Other other(predicted, j);
+    const Kernel kernel = pair.with(other.w);
+    const float dx = self.x - other.x;
+    const float dy = self.y - other.y;
+    const float dz = self.z - other.z;
+    const float r2 = dx * dx + dy * dy + dz * dz;
+    const float least = coincident * kernel.h;
+    zero += r2 < least * least;
+    const Root root(at_least(r2, least * least));
+    float push = pair.mass_ratio(other.w) * own + lambda[j];
+    if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
+    const float along = root.under(push * kernel.slope(root.r));
+    px -= along * dx;
+    py -= along * dy;
+    pz -= along * dz;
+  }
+
   template <class Team>
   SIM_FN void operator()(int turn, Team team) const {
     const int slot = select.slot(turn);
@@ -36,24 +56,7 @@ struct Displace {
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(px, py, pz, zero)
-    for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = run[k];
-      const Vec4 other = predicted[j];
-      const Kernel kernel = pair.with(other.w);
-      const float dx = self.x - other.x;
-      const float dy = self.y - other.y;
-      const float dz = self.z - other.z;
-      const float r2 = dx * dx + dy * dy + dz * dz;
-      const float least = coincident * kernel.h;
-      zero += r2 < least * least;
-      const Root root(at_least(r2, least * least));
-      float push = pair.mass_ratio(other.w) * own + lambda[j];
-      if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
-      const float along = root.under(push * kernel.slope(root.r));
-      px -= along * dx;
-      py -= along * dy;
-      pz -= along * dz;
-    }
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, own, px, py, pz, zero);
     px = team.sum(px);
     py = team.sum(py);
     pz = team.sum(pz);

@@ -21,19 +21,17 @@ struct RestingWater {
   float strength;
   Calm calm;
   /// Share of the filter that moving water keeps: with all of it dams lose 4 % of their energy, with none a
-  /// deep pool of levels stirs itself beyond what rests.
-  static constexpr float in_motion = 0.4f;
+  /// deep pool of levels stirs itself beyond what rests. Without gravity nothing rests, and it is 1.
+  float in_motion;
   float viscosity;  ///< of water at rest besides its own, as a multiple of it
 
-  /// How much of the pair is water at rest that was so before the substep's kicks. Without gravity nothing
-  /// rests, and kicks are filtered everywhere.
-  SIM_FN float rest(Vec4 v, int i) const {
-    const Vec4 k = kick[i];
+  /// How much of the pair is water at rest that was so before the substep's kicks.
+  SIM_FN float rest(const Other& v, int i) const {
+    const Other k(kick, i);
     return calm(v.x - k.x, v.y - k.y, v.z - k.z);
   }
   SIM_FN float share(int i, int j, float resting) const {
-    return (calm.inverse_square > 0 ? at_least(resting, in_motion) : 1) * strength *
-           (1 - at_most(ease[i], ease[j]));
+    return at_least(resting, in_motion) * strength * (1 - at_most(ease[i], ease[j]));
   }
 };
 
@@ -55,6 +53,42 @@ struct Xsph {
   float spread;  ///< 22 nu dt, m2
   Filter filter;
 
+  /// The particle whose neighbours are summed.
+  struct Self {
+    int i;
+    Vec4 at, velocity;
+    float density;
+    PairKernel<OneLevel> pair;
+    Vec4 kick{};     ///< with a filter
+    float rest = 0;  ///< with a filter
+  };
+
+  /// What particle j adds to the change of velocity; see SIM_LANES.
+  SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
+    const Other other(position, j);
+    const Kernel kernel = me.pair.with(other.w);
+    const float dx = me.at.x - other.x;
+    const float dy = me.at.y - other.y;
+    const float dz = me.at.z - other.z;
+    const float weight = quotient(me.pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz),
+                                  me.density + density[j]);
+    const Other v(velocity, j);
+    float thicker = 1;
+    if constexpr (Filter::filters) {
+      const float resting = at_most(me.rest, filter.rest(v, j));
+      thicker += filter.viscosity * resting;
+      const float share = filter.share(me.i, j, resting) * weight;
+      const Other kick(filter.kick, j);
+      vx += share * (kick.x - me.kick.x);
+      vy += share * (kick.y - me.kick.y);
+      vz += share * (kick.z - me.kick.z);
+    }
+    const float flow = at_most(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
+    vx += flow * (v.x - me.velocity.x);
+    vy += flow * (v.y - me.velocity.y);
+    vz += flow * (v.z - me.velocity.z);
+  }
+
   template <class Team>
   SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
@@ -64,15 +98,11 @@ struct Xsph {
         return;
       }
     }
-    const Vec4 self = position[i];
-    const PairKernel<OneLevel> pair(self.w);
     const Vec4 own = velocity[i];
-    const float own_density = density[i];
-    [[maybe_unused]] Vec4 own_kick{};
-    [[maybe_unused]] float own_rest = 0;
+    Self me{i, position[i], own, density[i], PairKernel<OneLevel>(position[i].w)};
     if constexpr (Filter::filters) {
-      own_kick = filter.kick[i];
-      own_rest = filter.rest(own, i);
+      me.kick = filter.kick[i];
+      me.rest = filter.rest(Other(own), i);
     }
     float vx = 0;
     float vy = 0;
@@ -80,37 +110,13 @@ struct Xsph {
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
     SIM_LANES(vx, vy, vz)
-    for (int k = team.rank(); k < count; k += Team::size) {
-      const int j = run[k];
-      const Vec4 other = position[j];
-      const Kernel kernel = pair.with(other.w);
-      const float dx = self.x - other.x;
-      const float dy = self.y - other.y;
-      const float dz = self.z - other.z;
-      const float weight = quotient(pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz),
-                                    own_density + density[j]);
-      const Vec4 v = velocity[j];
-      float thicker = 1;
-      if constexpr (Filter::filters) {
-        const float resting = at_most(own_rest, filter.rest(v, j));
-        thicker += filter.viscosity * resting;
-        const float share = filter.share(i, j, resting) * weight;
-        const Vec4 kick = filter.kick[j];
-        vx += share * (kick.x - own_kick.x);
-        vy += share * (kick.y - own_kick.y);
-        vz += share * (kick.z - own_kick.z);
-      }
-      const float flow = at_most(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
-      vx += flow * (v.x - own.x);
-      vy += flow * (v.y - own.y);
-      vz += flow * (v.z - own.z);
-    }
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz);
     vx = team.sum(vx);
     vy = team.sum(vy);
     vz = team.sum(vz);
     if (team.rank() > 0) return;
     // Volume m_i / rho_0; densities are relative to rho_0.
-    const float scale = 2 * mass_of(self.w, 1);
+    const float scale = 2 * mass_of(me.at.w, 1);
     next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
   }
 };
@@ -149,13 +155,15 @@ using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column
 
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
+  const Calm calm =
+      calm_below(state.saliency.readings.calm_speed, static_cast<double>(state.parameters.gravity),
+                 static_cast<double>(state.finest_support) / 2);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
                              .ease = p.ease(),
                              .strength = rules.kick_filter,
-                             .calm = calm_below(state.saliency.readings.calm_speed,
-                                                static_cast<double>(state.parameters.gravity),
-                                                static_cast<double>(state.finest_support) / 2),
+                             .calm = calm,
+                             .in_motion = calm.most > 0 ? 0.4f : 1,
                              .viscosity = rules.calm_viscosity});
 }
 
