@@ -17,22 +17,6 @@ struct alignas(16) Vec4 {
   float x, y, z, w;
 };
 
-/// Another particle in a loop over lanes: on the GPU one load, on the CPU a row of numbers, since g++ gathers
-/// no parts of what is aligned as a whole, and a loop that cannot gather has one lane.
-struct Other {
-  float x, y, z, w;
-#ifdef SIM_CUDA
-  SIM_FN Other(const Vec4* all, int j) : Other(all[j]) {}
-  SIM_FN explicit Other(Vec4 at) : x(at.x), y(at.y), z(at.z), w(at.w) {}
-#else
-  Other(const Vec4* all, int j) : Other(reinterpret_cast<const float*>(all), 4 * j) {}
-  explicit Other(Vec4 at) : x(at.x), y(at.y), z(at.z), w(at.w) {}
-
- private:
-  Other(const float* all, int at) : x(all[at]), y(all[at + 1]), z(all[at + 2]), w(all[at + 3]) {}
-#endif
-};
-
 /// max(a, b) and min(a, b) for a bound b that is a number: an a that is none gives way to it, as in fmaxf and
 /// fminf. Those are a call on the CPU, and a call in a loop over lanes leaves one lane.
 SIM_FN float at_least(float a, float b) {

@@ -25,7 +25,7 @@ struct Density {
   /// What particle j adds to the sums; see SIM_LANES.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& rho, float& gx, float& gy,
                   float& gz, float& squares, int& zero) const {
-    const Other other(predicted, j);
+    const Vec4 other = predicted[j];
     const Kernel kernel = pair.with(other.w);
     const float ratio = pair.mass_ratio(other.w);
     const float dx = self.x - other.x;

@@ -22,7 +22,7 @@ struct Displace {
   /// What particle j adds to the step; see SIM_LANES. own: lambda of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
                   float& pz, int& zero) const {
-    const Other other(predicted, j);
+    const Vec4 other = predicted[j];
     const Kernel kernel = pair.with(other.w);
     const float dx = self.x - other.x;
     const float dy = self.y - other.y;

@@ -26,8 +26,8 @@ struct RestingWater {
   float viscosity;  ///< of water at rest besides its own, as a multiple of it
 
   /// How much of the pair is water at rest that was so before the substep's kicks.
-  SIM_FN float rest(const Other& v, int i) const {
-    const Other k(kick, i);
+  SIM_FN float rest(Vec4 v, int i) const {
+    const Vec4 k = kick[i];
     return calm(v.x - k.x, v.y - k.y, v.z - k.z);
   }
   SIM_FN float share(int i, int j, float resting) const {
@@ -65,20 +65,20 @@ struct Xsph {
 
   /// What particle j adds to the change of velocity; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
-    const Other other(position, j);
+    const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);
     const float dx = me.at.x - other.x;
     const float dy = me.at.y - other.y;
     const float dz = me.at.z - other.z;
     const float weight = quotient(me.pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz),
                                   me.density + density[j]);
-    const Other v(velocity, j);
+    const Vec4 v = velocity[j];
     float thicker = 1;
     if constexpr (Filter::filters) {
       const float resting = at_most(me.rest, filter.rest(v, j));
       thicker += filter.viscosity * resting;
       const float share = filter.share(me.i, j, resting) * weight;
-      const Other kick(filter.kick, j);
+      const Vec4 kick = filter.kick[j];
       vx += share * (kick.x - me.kick.x);
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
@@ -102,7 +102,7 @@ struct Xsph {
     Self me{i, position[i], own, density[i], PairKernel<OneLevel>(position[i].w)};
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
-      me.rest = filter.rest(Other(own), i);
+      me.rest = filter.rest(own, i);
     }
     float vx = 0;
     float vy = 0;
