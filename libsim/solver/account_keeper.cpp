@@ -21,7 +21,6 @@ struct Gather {
   Extremes* out;
 #ifdef SIM_CUDA
   static constexpr int particles_a_team = 128;
-  static int lanes(int) { return 8; }
 #else
   static constexpr int particles_a_team = 32;
 #endif
