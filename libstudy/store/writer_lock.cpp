@@ -89,6 +89,8 @@ WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(datab
   }
   struct stat held {};
   ::fstat(fd_, &held);
+  // Another start may have made the file and lost the race for its lock: the duty to remove it comes here.
+  if (how == sqlite::Open::Create && held.st_size == 0) made_ = true;
   const std::lock_guard guard(own_locks().mutex);
   own_locks().files.insert(id_of(held));
 }

@@ -12,17 +12,17 @@ namespace study {
 /// this process.
 class WriterLock {
  public:
-  /// Open::Create makes a missing file, empty and 0600. base::Error while another vip-study writes, and when
-  /// the file cannot be opened for writing.
+  /// Open::Create makes a missing file, empty and 0600, and takes over one that it finds empty. base::Error
+  /// while another vip-study writes, and when the file cannot be opened for writing.
   explicit WriterLock(const std::filesystem::path& database, sqlite::Open how = sqlite::Open::Write);
-  /// Removes a file that was made here, unless something came to stand in it.
+  /// Removes a file that was made or taken over here, unless something came to stand in it.
   ~WriterLock();
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
 
   /// Something stands in the file now: it stays.
   void keep() { made_ = false; }
-  /// Whether the file was made here and may go again.
+  /// Whether the file was empty at first and may go again.
   bool made() const { return made_; }
 
  private:

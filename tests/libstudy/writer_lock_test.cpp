@@ -130,6 +130,16 @@ TEST(WriterLock, RemovesOnlyWhatItMadeAndWhatIsStillThere) {
   EXPECT_EQ(test::bytes_of(path), "of somebody else");
 }
 
+TEST(WriterLock, TakesOverTheEmptyFileOfAStartThatLostTheRace) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  base::write_file_atomically(path, "");
+  { const WriterLock lock(path, Open::Write); }
+  EXPECT_TRUE(fs::exists(path)) << "whoever makes no database removes none";
+  { const WriterLock lock(path, Open::Create); }
+  EXPECT_FALSE(fs::exists(path));
+}
+
 /// What another process learns of a database: whether it could have it all to itself.
 bool free_for_others(const fs::path& path) {
   const pid_t child = ::fork();
