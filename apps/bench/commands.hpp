@@ -6,6 +6,9 @@ class App;
 
 namespace apps {
 
+/// vip-bench accuracy: error and milliseconds of each setting, and what a knob buys.
+void add_accuracy_command(CLI::App& app);
+
 /// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
 void add_frame_command(CLI::App& app);
 

@@ -9,10 +9,10 @@
 
 #include "apps/bench/commands.hpp"
 #include "apps/bench/stability_map.hpp"
+#include "apps/bench/timed_run.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/cases/hard_case.hpp"
-#include "libstudy/session/machine.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -67,13 +67,6 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
   if (out.empty())
     throw base::Error("--method", "names no method", "leave it out, or write for example Ours");
   return out;
-}
-
-/// Processor and cores; the operating system has no say in the numbers.
-std::string processor() {
-  const std::string machine = study::describe_machine();
-  const auto end = machine.find("; ");
-  return end == std::string::npos ? machine : machine.substr(end + 2);
 }
 
 /// What failed of a case; empty when nothing did.

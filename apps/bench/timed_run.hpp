@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 
 #include "libsim/simulation.hpp"
 
@@ -10,6 +11,9 @@ namespace apps {
 
 /// The scene at frame 0, from the kept state where there is one; a progress line shows the settling.
 std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
+
+/// Processor and cores; the operating system has no say in the numbers.
+std::string processor();
 
 /// Density error averaged over states spread over the run, so that one calm or wild moment does not decide.
 struct Accuracy {

@@ -9,6 +9,7 @@ namespace cuda {
 /// Empty when a device answers, otherwise why none does.
 std::string device_problem();
 std::int64_t device_bytes_taken();
+std::string device_name();
 }  // namespace cuda
 #endif
 
@@ -42,6 +43,13 @@ Backend choose_backend(std::string_view name) {
 std::optional<std::int64_t> device_bytes_taken([[maybe_unused]] Backend backend) {
 #ifdef SIM_HAS_CUDA
   if (backend == Backend::Cuda) return cuda::device_bytes_taken();
+#endif
+  return {};
+}
+
+std::string device_name([[maybe_unused]] Backend backend) {
+#ifdef SIM_HAS_CUDA
+  if (backend == Backend::Cuda) return cuda::device_name();
 #endif
   return {};
 }

@@ -18,5 +18,7 @@ Backend choose_backend(std::string_view name);
 
 /// Bytes of the device's memory that are taken, by this program or another; none on the CPU.
 std::optional<std::int64_t> device_bytes_taken(Backend backend);
+/// What the device calls itself, such as "NVIDIA H200"; empty on the CPU.
+std::string device_name(Backend backend);
 
 }  // namespace sim

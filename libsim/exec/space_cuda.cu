@@ -54,6 +54,14 @@ std::int64_t device_bytes_taken() {
   return static_cast<std::int64_t>(all - left);
 }
 
+std::string device_name() {
+  int device = 0;
+  cudaDeviceProp properties{};
+  check(cudaGetDevice(&device), "device");
+  check(cudaGetDeviceProperties(&properties, device), "name");
+  return properties.name;
+}
+
 void* allocate(std::size_t bytes) {
   void* pointer = nullptr;
   if (bytes) check(cudaMalloc(&pointer, bytes), "allocation");

@@ -145,6 +145,7 @@ const Rooms rooms{
     {"apps/common/headset", 1},
     {"apps/common/window", 1, {"apps/common/headset"}},
     {"apps/bench", 2},
+    {"apps/bench/accuracy", 3},
     {"apps/stats/data", 2},
     {"apps/stats/power", 3},
     {"apps/stats/ptpe", 3},

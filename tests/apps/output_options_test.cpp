@@ -57,6 +57,10 @@ class OutputOptionsE2e : public ::testing::Test {
             bench + " --json ",
             growth_ + " --csv ",
             growth_ + " --svg ",
+            accuracy_ + " --db ",
+            accuracy_ + " --db " + sweep_ + " --csv ",
+            accuracy_ + " --db " + sweep_ + " --prices-csv ",
+            accuracy_ + " --db " + sweep_ + " --markdown ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
             table1_ + " --cells ",
@@ -92,12 +96,15 @@ class OutputOptionsE2e : public ::testing::Test {
   inline static const std::string table1_ =
       "vip-bench table1 --scene SingleDam --n-star 64 --checkpoints 1 --gazes 1 --repeats 1 --frames-after 1 "
       "--cumul-frames 2 --projections 1 --size 64x36";
+  inline static const std::string accuracy_ =
+      "vip-bench accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
   inline static const std::string table2_ =
       "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
   const TemporaryFolder folder_;
-  const std::string database_ = folder_ / "s.db", page_ = folder_ / "page.html";
+  const std::string database_ = folder_ / "s.db", sweep_ = folder_ / "sweep.db",
+                    page_ = folder_ / "page.html";
 };
 
 TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
@@ -142,7 +149,7 @@ TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
   std::vector<fs::path> targets;
   for (const std::string& line : all) {
     targets.push_back(folder_ / ("new" + std::to_string(targets.size())) / "deep" / "out");
-    const bool table = line.starts_with(table1_) || line.starts_with(table2_);
+    const bool table = line.starts_with(table1_) || line.starts_with(table2_) || line.starts_with(accuracy_);
     const std::size_t option = table ? line.rfind(" --") : line.size();
     outputs[line.substr(0, option)] += line.substr(option) + targets.back().string();
   }

@@ -1,0 +1,185 @@
+/// vip-bench accuracy: what a millisecond buys.
+
+#include <omp.h>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/bench/commands.hpp"
+#include "apps/bench/timed_run.hpp"
+#include "apps/common/options.hpp"
+#include "apps/common/program.hpp"
+#include "libsim/solver/settled_state.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+using study::sqlite::Open;
+
+struct AccuracyOptions {
+  std::string scene = "SingleDam", n_star = "4k", backend = "auto";
+  std::string database, cell, out, csv, prices_csv, markdown;
+  std::optional<PictureSize> size;
+  double seconds = 2;
+  int seeds = 2;
+  bool quick = false, list = false, table_only = false;
+  std::vector<std::string> shards;
+};
+
+SweepPlan plan_of(const AccuracyOptions& options) {
+  SweepPlan out{.scene = options.scene,
+                .n_star = sim::parse_n_star(options.n_star),
+                .seconds = options.seconds,
+                .seeds = options.seeds,
+                .size = options.size ? size_words(*options.size) : "",
+                .quick = options.quick};
+  if (out.quick) out.n_star = std::min<std::int64_t>(out.n_star, 256);
+  if (out.quick) out.seconds = std::min(out.seconds, 0.5);
+  if (!out.quick && out.n_star < 256) {
+    throw base::Error("--n-star " + options.n_star, "leaves nothing for a quarter of it to run with",
+                      "use 256 or more");
+  }
+  return out;
+}
+
+struct Job {
+  CellScene scene;
+  SweepPlan plan;
+  SweepOrigin origin;
+  sim::Backend backend;
+  std::vector<SweepCell> cells;
+  std::string key(const SweepCell& cell) const { return key_of(cell, origin.scene_sha256, origin.program); }
+};
+
+/// What times depend on besides the program.
+std::string machine(sim::Backend backend) {
+  const std::string device = sim::device_name(backend);
+  return fmt::format("{}; {}, {} threads", processor(), device.empty() ? "cpu" : device,
+                     omp_get_max_threads());
+}
+
+Job job_of(const AccuracyOptions& options) {
+  if (options.scene == "all")
+    throw base::Error("--scene all", "is more than one sweep", "name one scene; a file may hold several");
+  Job out{scenes_of(options.scene).front(), plan_of(options), {}, sim::choose_backend(options.backend), {}};
+  out.origin = {machine(out.backend), base::version() + " " + sim::program_digest().substr(0, 16),
+                out.scene.scene.sha256};
+  out.cells = cells_of(out.plan);
+  return out;
+}
+
+StoredCell run(const Job& job, const SweepCell& cell) {
+  return {job.key(cell), cell, job.origin, run_cell(cell, job.scene.scene, job.backend)};
+}
+
+void print_list(const Job& job) {
+  for (const auto& cell : job.cells) std::printf("%s %s\n", job.key(cell).c_str(), to_text(cell).c_str());
+}
+
+void run_one(const Job& job, const AccuracyOptions& options) {
+  const auto found = std::find_if(job.cells.begin(), job.cells.end(),
+                                  [&](const auto& cell) { return job.key(cell) == options.cell; });
+  if (found == job.cells.end()) {
+    throw base::Error("--cell " + options.cell, "is no cell of this sweep",
+                      "copy one from --list, given with the same program and options");
+  }
+  SweepFile file(options.out, Open::Create);
+  if (!file.keys(job.origin.machine).contains(options.cell)) file.add(run(job, *found));
+}
+
+/// Each cell is kept when it is done: a run that is cut short goes on with the rest.
+void run_missing(const Job& job, SweepFile& file) {
+  const auto done = file.keys(job.origin.machine);
+  std::vector<SweepCell> missing;
+  for (const auto& cell : job.cells)
+    if (!done.contains(job.key(cell))) missing.push_back(cell);
+  if (missing.empty()) return;
+  Progress progress("cells", missing.size());
+  std::size_t finished = 0;
+  for (const auto& cell : missing) {
+    file.add(run(job, cell));
+    progress.update(++finished);
+  }
+}
+
+void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& options) {
+  const auto list = price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
+  std::printf("%s", to_markdown(list).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(setting_table(list)));
+  if (!options.prices_csv.empty()) base::write_file_atomically(options.prices_csv, to_csv(price_table(list)));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(list));
+}
+
+void run_accuracy(const AccuracyOptions& options) {
+  check_apart(
+      "", {{"--csv", options.csv}, {"--prices-csv", options.prices_csv}, {"--markdown", options.markdown}});
+  const Job job = job_of(options);
+  if (options.list) return print_list(job);
+  if (!options.cell.empty()) return run_one(job, options);
+  if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
+  SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
+  if (!options.table_only) run_missing(job, file);
+  write_tables(job, file, options);
+}
+
+void merge_shards(const AccuracyOptions& options) {
+  for (const auto& shard : options.shards) SweepFile(shard, Open::Read);
+  SweepFile file(options.database, Open::Create);
+  std::int64_t added = 0;
+  for (const auto& shard : options.shards) added += file.merge(shard);
+  std::printf("%s: %lld cells added from %zu files\n", options.database.c_str(),
+              static_cast<long long>(added), options.shards.size());
+}
+
+}  // namespace
+
+void add_accuracy_command(CLI::App& app) {
+  auto options = std::make_shared<AccuracyOptions>();
+  auto* command = app.add_subcommand(
+      "accuracy",
+      "What accuracy costs in time: error and milliseconds of each setting, and what a knob buys");
+  command
+      ->add_option("--db", options->database, "Sweep file, made when missing; cells in it are not run again")
+      ->check(output_file());
+  command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();
+  add_n_star(*command, options->n_star);
+  add_backend(*command, options->backend);
+  command->add_option("--seconds", options->seconds, "Of content, from the opening of the gate")
+      ->check(number_in(0.1, 60))
+      ->capture_default_str();
+  add_count(*command, "--seeds", options->seeds, 1, 100, "Starts of a setting, an ulp apart");
+  add_size(*command, options->size, "Also draw each frame so large, px; saliency then sees the picture");
+  command->add_flag("--quick", options->quick, "A dozen cells of 256 n_* and half a second");
+  auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");
+  auto* cell = command->add_option("--cell", options->cell, "Only run the cell of this key, into --out");
+  auto* out = command->add_option("--out", options->out, "Sweep file for --cell")->check(output_file());
+  cell->needs(out)->excludes(list);
+  out->needs(cell);
+  command->add_flag("--table", options->table_only, "Only make the tables, of what --db holds")
+      ->excludes(list)
+      ->excludes(cell);
+  command->add_option("--csv", options->csv, "File for a row for each setting")->check(output_file());
+  command->add_option("--prices-csv", options->prices_csv, "File for a row for each turn of a knob")
+      ->check(output_file());
+  command->add_option("--markdown", options->markdown, "File for what is printed")->check(output_file());
+  auto* merge = command->add_subcommand("merge", "Put the cells of several sweep files into one");
+  merge->add_option("--db", options->database, "Sweep file that takes them, made when missing")
+      ->required()
+      ->check(output_file());
+  merge->add_option("shards", options->shards, "Sweep files that --cell wrote")
+      ->required()
+      ->check(CLI::ExistingFile);
+  merge->callback([options] { merge_shards(*options); });
+  command->callback([options, merge] {
+    if (!merge->parsed()) run_accuracy(*options);
+  });
+}
+
+}  // namespace apps

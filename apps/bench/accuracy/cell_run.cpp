@@ -1,0 +1,98 @@
+#include "apps/bench/accuracy/cell_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "apps/bench/checkpoint.hpp"
+#include "apps/bench/render_timer.hpp"
+#include "apps/bench/timed_run.hpp"
+#include "apps/bench/timing.hpp"
+#include "apps/common/finite_water.hpp"
+
+namespace apps {
+
+namespace {
+
+constexpr int samples_per_s = 30, warm_up_frames = 5;
+
+std::unique_ptr<sim::Simulation> start(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend) {
+  auto options = to_options(cell.setting, backend, static_cast<std::uint32_t>(cell.seed));
+  auto fluid = make_settled(scene, options);
+  if (cell.seed == 1) return fluid;
+  options.start = perturbed(fluid->read_state(), cell.seed - 1);
+  fluid.reset();
+  return sim::make_simulation(scene, options);
+}
+
+std::unique_ptr<RenderTimer> pictures(const SweepCell& cell, const sim::Scene& scene) {
+  if (cell.size.empty()) return nullptr;
+  return std::make_unique<RenderTimer>(sim::GlContext::make_headless(), scene, parse_picture_size(cell.size),
+                                       1);
+}
+
+}  // namespace
+
+WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water) {
+  WaterSample out{.time_s = time_s};
+  double all = 0;
+  std::vector<std::pair<float, double>> by_x;  // x, mass
+  by_x.reserve(water.size());
+  for (const auto& p : water) {
+    const double mass = std::exp2(p.level);
+    const double vx = p.vx_m_s, vy = p.vy_m_s, vz = p.vz_m_s;
+    all += mass;
+    out.centre_m[0] += mass * p.x_m;
+    out.centre_m[1] += mass * p.y_m;
+    out.centre_m[2] += mass * p.z_m;
+    out.kinetic_j_kg += mass * (vx * vx + vy * vy + vz * vz) / 2;
+    by_x.emplace_back(p.x_m, mass);
+  }
+  if (all == 0) return out;
+  for (double& axis : out.centre_m) axis /= all;
+  out.kinetic_j_kg /= all;
+  std::sort(by_x.begin(), by_x.end());
+  double behind = 0;
+  for (const auto& [x, mass] : by_x) {
+    behind += mass;
+    out.front_m = x;
+    if (behind >= 0.99 * all) break;
+  }
+  return out;
+}
+
+CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend) {
+  const auto pictures_of_cell = pictures(cell, scene);
+  const auto fluid = start(cell, scene, backend);
+  if (pictures_of_cell) pictures_of_cell->warm_up(*fluid);
+  const int rate = static_cast<int>(cell.setting[SweepKnob::Rate]);
+  const int frames = std::max(1, static_cast<int>(std::lround(cell.seconds * rate)));
+  CellRun out;
+  Substeps substeps;
+  for (int frame = 1; frame <= frames; ++frame) {
+    FrameCost cost;
+    const double begin = milliseconds_now();
+    if (pictures_of_cell && fluid->follows_picture()) pictures_of_cell->look(*fluid);
+    fluid->step_frame();
+    fluid->synchronize();
+    cost.solve_ms = milliseconds_now() - begin;
+    if (pictures_of_cell) {
+      const auto times = pictures_of_cell->draw(*fluid);
+      cost.draw_ms = times.transfer + times.render;
+    }
+    if (frame > warm_up_frames) out.frames.push_back(cost);
+    substeps.add(fluid->substeps());
+    out.particles_mean += static_cast<double>(fluid->particle_count()) / frames;
+    if (frame * samples_per_s % rate != 0) continue;
+    const auto report = fluid->report();
+    out.samples.push_back(sample_of(static_cast<double>(frame) / rate, fluid->read_state()));
+    out.samples.back().density_error = report.density_error_mean;
+    out.samples.back().density_max = report.density_max;
+    out.braked = static_cast<std::int64_t>(report.guards.speed_limited);
+  }
+  check_finite(*fluid, to_text(cell));
+  out.substeps_mean = substeps.mean(frames);
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,39 @@
+#pragma once
+/// Runs one cell of a sweep: what the water did, and what each frame took.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/bench/accuracy/matrix.hpp"
+
+namespace apps {
+
+/// The water at one instant. Energies are a kilogram's, J/kg.
+struct WaterSample {
+  double time_s = 0;     ///< since the gate opened
+  double front_m = 0;    ///< 99 % of the mass has a smaller x
+  double centre_m[3]{};  ///< of mass
+  double kinetic_j_kg = 0;
+  double density_error = 0;  ///< mean of max(rho / rho_0 - 1, 0)
+  double density_max = 0;    ///< rho / rho_0
+};
+WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
+
+struct FrameCost {
+  double solve_ms = 0;            ///< with the hand-over of the picture that saliency sees
+  std::optional<double> draw_ms;  ///< transfer and rendering; none = no picture
+  double all_ms() const { return solve_ms + draw_ms.value_or(0); }
+};
+
+struct CellRun {
+  std::vector<WaterSample> samples;  ///< every 1/30 s, from the first after the gate opened
+  std::vector<FrameCost> frames;     ///< without the first five, in which buffers grow
+  double particles_mean = 0, substeps_mean = 0;
+  std::int64_t braked = 0;  ///< particle-substeps
+};
+
+/// base::Error when the water breaks. The state is measured between frames, which is not timed.
+CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
+
+}  // namespace apps

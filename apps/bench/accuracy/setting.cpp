@@ -1,0 +1,100 @@
+#include "apps/bench/accuracy/setting.hpp"
+
+#include <fmt/core.h>
+#include <cmath>
+
+#include "libsim/solver/settled_state.hpp"
+
+namespace apps {
+
+const std::array<SweepKnobTraits, sweep_knob_count>& sweep_knobs() {
+  using enum SweepKnob;
+  static const std::array<SweepKnobTraits, sweep_knob_count> all{{
+      {.knob = Size, .column = "n_star", .words = "n_*", .usual = 32768, .others = {0.25, 0.5, 2}},
+      {.knob = Rate, .column = "frames_per_s", .words = "frames/s", .usual = 60, .others = {90, 120}},
+      {.knob = Iterations, .column = "iterations", .words = "projections", .usual = 4, .others = {2, 8, 16}},
+      {.knob = Substeps, .column = "substeps", .words = "substeps", .usual = 0, .others = {1, 2, 4}},
+      {.knob = CoarseCycles,
+       .column = "coarse_cycles",
+       .words = "coarse cycles",
+       .usual = 2,
+       .others = {0, 1, 4}},
+      {.knob = Momentum, .column = "momentum", .words = "momentum", .usual = 0.4, .others = {0, 0.2, 0.6}},
+      {.knob = Levels,
+       .column = "levels",
+       .words = "levels",
+       .of_levels = true,
+       .usual = 4,
+       .others = {2, 3}},
+      {.knob = Alpha,
+       .column = "alpha",
+       .words = "alpha",
+       .of_levels = true,
+       .of_saliency = true,
+       .usual = 2.0 / 3,
+       .others = {0, 1.0 / 3, 1}},
+      {.knob = Fovea,
+       .column = "fovea_deg",
+       .words = "fovea, deg",
+       .of_levels = true,
+       .usual = 7.5,
+       .others = {5, 15, 30}},
+      {.knob = Beta,
+       .column = "beta",
+       .words = "beta",
+       .of_levels = true,
+       .usual = 1,
+       .others = {0.9, 0.67, 0.5}},
+  }};
+  return all;
+}
+
+const SweepKnobTraits& traits_of(SweepKnob knob) { return sweep_knobs()[static_cast<std::size_t>(knob)]; }
+
+SweepSetting usual_setting(const std::string& scene, sim::MethodKind method, std::int64_t n_star) {
+  SweepSetting out{.scene = scene, .method = method};
+  for (const auto& traits : sweep_knobs()) out[traits.knob] = traits.usual;
+  out[SweepKnob::Size] = static_cast<double>(n_star);
+  return out;
+}
+
+bool turns(SweepKnob knob, sim::MethodKind method) {
+  const auto& method_traits = sim::traits_of(method);
+  const auto& traits = traits_of(knob);
+  if (traits.of_saliency) return method_traits.target == sim::TargetSource::Saliency;
+  return !traits.of_levels || method_traits.adaptive();
+}
+
+std::string to_text(const SweepSetting& setting) {
+  std::string out = setting.scene + " " + sim::method_name(setting.method);
+  for (const auto& traits : sweep_knobs()) {
+    if (turns(traits.knob, setting.method))
+      out += fmt::format(" {}={:.6g}", traits.column, setting[traits.knob]);
+  }
+  return out;
+}
+
+sim::SimulationOptions to_options(const SweepSetting& setting, sim::Backend backend, std::uint32_t seed) {
+  using enum SweepKnob;
+  sim::SimulationOptions out;
+  out.method = setting.method;
+  out.n_star = std::llround(setting[Size]);
+  out.backend = backend;
+  out.cache = sim::default_cache_folder();
+  out.frame_dt_s = 1 / setting[Rate];
+  out.iterations = static_cast<int>(setting[Iterations]);
+  out.substeps = static_cast<int>(setting[Substeps]);
+  out.coarse_cycles = static_cast<int>(setting[CoarseCycles]);
+  out.momentum = setting[Momentum];
+  if (!sim::traits_of(setting.method).adaptive()) return out;
+  out.levels = static_cast<int>(setting[Levels]);
+  out.readings.alpha = setting[Alpha];
+  out.readings.fovea_half_angle_deg = setting[Fovea];
+  out.temporal.seed = seed;
+  out.temporal.always = setting[Beta] < 1;
+  if (out.temporal.always || sim::traits_of(setting.method).temporal)
+    out.temporal.fixed_tau = std::log(setting[Beta]) / (2 * out.temporal.model.b);
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,360 @@
+/// vip-bench accuracy: its cells, its file, and what it makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "apps/bench/accuracy/price_list.hpp"
+#include "stats/base/error.hpp"
+#include "tests/apps/table_test_support.hpp"
+
+namespace apps {
+namespace {
+
+using study::sqlite::Open;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::ThrowsMessage;
+
+TEST(AccuracyMatrix, NoSettingStandsTwiceAndTheReferenceIsFirst) {
+  const SweepPlan plan;
+  const auto cells = cells_of(plan);
+  std::set<std::string> keys;
+  for (const auto& cell : cells) keys.insert(key_of(cell, "scene", "program"));
+  EXPECT_EQ(keys.size(), cells.size());
+  EXPECT_EQ(cells[0].setting, reference_setting("SingleDam", 4096));
+  EXPECT_EQ(cells[1].setting, cells[0].setting);
+  EXPECT_EQ(cells[1].seed, 2);
+  std::set<std::string> settings;
+  for (const auto& cell : cells) settings.insert(to_text(cell.setting));
+  EXPECT_GE(settings.size(), 80u);
+  EXPECT_LE(settings.size(), 120u);
+}
+
+TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
+  std::map<std::array<double, 3>, std::set<double>> levels;
+  std::map<double, int> each;
+  for (const auto& cell : cells_of({.seeds = 1})) {
+    const auto& s = cell.setting;
+    const auto usual = usual_setting("SingleDam", sim::MethodKind::Ours, 4096);
+    bool others = s.method == sim::MethodKind::Ours && s[SweepKnob::Substeps] > 0;
+    for (const auto knob : {SweepKnob::Rate, SweepKnob::CoarseCycles, SweepKnob::Momentum, SweepKnob::Alpha,
+                            SweepKnob::Fovea, SweepKnob::Beta})
+      others = others && s[knob] == usual[knob];
+    if (others)
+      levels[{s[SweepKnob::Size], s[SweepKnob::Iterations], s[SweepKnob::Substeps]}].insert(
+          s[SweepKnob::Levels]);
+  }
+  EXPECT_EQ(levels.size(), 36u) << "4 sizes, 3 numbers of projections, 3 of substeps";
+  // The turns of one knob at the usual size and projections stand there beside the quarter.
+  for (const auto& [combination, found] : levels) {
+    const bool turned_alone = combination[0] == 4096 && combination[1] == 4;
+    EXPECT_LE(found.size(), turned_alone ? 2u : 1u);
+    if (!turned_alone) ++each[*found.begin()];
+  }
+  for (const auto& [level, count] : each) EXPECT_NEAR(count, 33 / 4.0, 1) << level;
+}
+
+TEST(AccuracyMatrix, AKeyNamesEverythingThatACellDependsOn) {
+  const SweepCell cell{usual_setting("SingleDam", sim::MethodKind::Ours, 1024), 1, 2, ""};
+  std::set<std::string> keys{key_of(cell, "scene", "program"), key_of(cell, "other scene", "program"),
+                             key_of(cell, "scene", "other program")};
+  for (const auto& traits : sweep_knobs()) {
+    auto other = cell;
+    other.setting[traits.knob] += 1;
+    keys.insert(key_of(other, "scene", "program"));
+  }
+  for (const int what : {0, 1, 2, 3}) {
+    auto other = cell;
+    if (what == 0) other.seed = 2;
+    if (what == 1) other.seconds = 3;
+    if (what == 2) other.size = "640x360";
+    if (what == 3) other.setting.method = sim::MethodKind::HiRes;
+    keys.insert(key_of(other, "scene", "program"));
+  }
+  EXPECT_EQ(keys.size(), 3 + sweep_knob_count + 4);
+  auto hires = usual_setting("SingleDam", sim::MethodKind::HiRes, 1024), same = hires;
+  same[SweepKnob::Levels] = 2;
+  EXPECT_EQ(to_text(hires), to_text(same)) << "HiRes has no levels to number";
+}
+
+TEST(AccuracySample, MassesWeigh) {
+  // A particle of level 1 has twice the mass of one of level 0.
+  const auto sample = sample_of(0.5, {{.id = 0, .level = 1, .x_m = 0, .y_m = 3, .z_m = 1, .vx_m_s = 2},
+                                      {.id = 1, .level = 0, .x_m = 3, .y_m = 0, .z_m = 1, .vy_m_s = 4}});
+  EXPECT_DOUBLE_EQ(sample.time_s, 0.5);
+  EXPECT_DOUBLE_EQ(sample.centre_m[0], 1);
+  EXPECT_DOUBLE_EQ(sample.centre_m[1], 2);
+  EXPECT_DOUBLE_EQ(sample.centre_m[2], 1);
+  EXPECT_DOUBLE_EQ(sample.kinetic_j_kg, (2 * 2 + 8) / 3.0);
+  EXPECT_DOUBLE_EQ(sample.front_m, 3);
+}
+
+TEST(AccuracySample, TheFrontLeavesOnePerCentOfTheMassBefore) {
+  std::vector<sim::ParticleState> water;
+  for (int i = 0; i < 1000; ++i) water.push_back({.id = i, .x_m = static_cast<float>(i)});
+  EXPECT_DOUBLE_EQ(sample_of(0, water).front_m, 989);
+}
+
+/// Two samples that lie this far from zero.
+CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
+  CellRun out;
+  for (const double time : {0.1, 0.2}) {
+    WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = kinetic};
+    sample.centre_m[1] = front / 2;
+    sample.density_error = density;
+    sample.density_max = 1;
+    out.samples.push_back(sample);
+  }
+  for (int frame = 0; frame < 8; ++frame) out.frames.push_back({ms + frame, {}});
+  return out;
+}
+
+TEST(AccuracyErrors, AreRootMeanSquaresInPerCent) {
+  const auto errors = errors_of(run_with(3, 11, 1), run_with(1, 10, 1), 20);
+  EXPECT_DOUBLE_EQ(errors[0], 10);
+  EXPECT_DOUBLE_EQ(errors[1], 5);
+  EXPECT_DOUBLE_EQ(errors[2], 10);
+  EXPECT_DOUBLE_EQ(errors[3], 0.1);
+  auto uneven = run_with(1, 10, 1);
+  uneven.samples[1].front_m = 4;
+  EXPECT_DOUBLE_EQ(errors_of(uneven, run_with(1, 10, 1), 100)[0], 3 / std::sqrt(2.0));
+  auto shorter = uneven;
+  shorter.samples.pop_back();
+  EXPECT_THROW(errors_of(shorter, uneven, 1), base::Error);
+  shorter = uneven;
+  shorter.samples[0].time_s = 0.15;
+  EXPECT_THROW(errors_of(shorter, uneven, 1), base::Error);
+}
+
+const SweepPlan small_plan{.n_star = 512};
+const SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
+
+StoredCell stored(const SweepSetting& setting, int seed, const CellRun& run) {
+  const SweepCell cell{setting, seed, small_plan.seconds, small_plan.size};
+  return {key_of(cell, origin.scene_sha256, origin.program), cell, origin, run};
+}
+
+/// A reference with a floor of 0.1 of 10 m, HiRes as it is usually and with two more numbers of projections.
+std::vector<StoredCell> small_sweep() {
+  const auto reference = reference_setting("SingleDam", 512);
+  const auto usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
+  auto eight = usual, three = usual;
+  eight[SweepKnob::Iterations] = 8;
+  three[SweepKnob::Iterations] = 3;
+  auto as_quick = run_with(1.3, 10, 10);
+  for (std::size_t i = 0; i < as_quick.frames.size(); ++i) as_quick.frames[i].solve_ms += i % 2 ? 0.5 : -0.5;
+  return {stored(reference, 1, run_with(1, 10, 100)),
+          stored(reference, 2, run_with(1.01, 10, 100)),
+          stored(three, 1, as_quick),
+          stored(usual, 1, run_with(1.2, 10, 10)),
+          stored(usual, 2, run_with(1.3, 10, 10)),
+          stored(eight, 1, run_with(1.1, 10, 14)),
+          stored(eight, 2, run_with(1.12, 10, 14, 0.002))};
+}
+
+TEST(AccuracyPrices, ArePairsOfMillisecondsAndErrors) {
+  const auto list = price_list(small_sweep(), small_plan, origin, 10);
+  EXPECT_NEAR(list.floor[0], 0.1, 1e-9);
+  ASSERT_EQ(list.settings.size(), 3u);
+  ASSERT_EQ(list.prices.size(), 2u);
+  const Price& three = list.prices[0];
+  EXPECT_TRUE(three.free()) << "its frames are faster and slower by turns";
+  const Price& eight = list.prices[1];
+  EXPECT_EQ(eight.knob, SweepKnob::Iterations);
+  EXPECT_DOUBLE_EQ(eight.from, 4);
+  EXPECT_DOUBLE_EQ(eight.to, 8);
+  EXPECT_DOUBLE_EQ(eight.ms, 4);
+  EXPECT_FALSE(eight.free());
+  EXPECT_NEAR(eight.errors[0].mean, (1 + 1.2) / 2 - (2 + 3) / 2.0, 1e-9);
+  EXPECT_NEAR(eight.errors[0].low, 1 - 3, 1e-9);
+  EXPECT_NEAR(eight.errors[0].high, 1.2 - 2, 1e-9);
+  EXPECT_NEAR(eight.errors[3].high, 0.1, 1e-9);
+  const std::string text = to_markdown(list);
+  EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 8 | +4.00 [+4.00, +4.00] | -1.4 [-2, -0.8] |"));
+  EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 3 | free |"));
+  EXPECT_THAT(text, HasSubstr("was not held against finer ones"));
+  EXPECT_THAT(to_csv(price_table(list)), HasSubstr("iterations,4,8,4.000,4.000,4.000,no,-1.4000"));
+}
+
+TEST(AccuracyPrices, AReferenceCountsAsConvergedByAThirdOfTheSmallestError) {
+  for (const double moved : {0.03, 0.05}) {  // of 10 m: 0.3 and 0.5 %; the smallest error is 1.1 %
+    auto cells = small_sweep();
+    for (const auto& finer : finer_references(reference_setting("SingleDam", 512)))
+      cells.push_back(stored(finer, 1, run_with(1 + moved, 10, 200)));
+    const auto list = price_list(cells, small_plan, origin, 10);
+    EXPECT_EQ(list.finer.size(), 3u);
+    EXPECT_EQ(list.settings.size(), 3u) << "what judges the reference is no choice";
+    EXPECT_EQ(list.converged[0], moved < 0.04);
+    EXPECT_THAT(to_markdown(list), HasSubstr(moved < 0.04 ? "front_pct: the reference counts as converged"
+                                                          : "front_pct: the reference does not count"));
+  }
+}
+
+TEST(AccuracyPrices, NeverMixMachinesProgramsOrScenes) {
+  auto cells = small_sweep();
+  const auto alone = to_markdown(price_list(cells, small_plan, origin, 10));
+  for (const int what : {0, 1, 2}) {
+    auto other = stored(usual_setting("SingleDam", sim::MethodKind::LoRes, 512), 1, run_with(5, 5, 5));
+    if (what == 0) other.origin.machine = "another";
+    if (what == 1) other.origin.program = "0.2.0 def";
+    if (what == 2) other.origin.scene_sha256 = "beef";
+    cells.push_back(other);
+  }
+  EXPECT_EQ(to_markdown(price_list(cells, small_plan, origin, 10)), alone);
+  cells.erase(cells.begin());
+  EXPECT_THAT([&] { price_list(cells, small_plan, origin, 10); },
+              ThrowsMessage<base::Error>(HasSubstr("no finished reference")));
+}
+
+std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1 << 24); }
+
+TEST(SweepFile, GivesBackWhatItWasGiven) {
+  const ::test::TemporaryFolder folder;
+  auto cell = stored(usual_setting("SingleDam", sim::MethodKind::OursTsp, 512), 2, run_with(1.25, 7, 3));
+  cell.cell.size = "640x360";
+  cell.run.frames[3].draw_ms = 1.5;
+  cell.run.particles_mean = 123.5;
+  cell.run.substeps_mean = 2.25;
+  cell.run.braked = 4;
+  {
+    SweepFile file(folder / "a.db", Open::Create);
+    file.add(cell);
+    file.add(cell);
+  }
+  SweepFile file(folder / "a.db", Open::Read);
+  const auto cells = file.cells();
+  ASSERT_EQ(cells.size(), 1u);
+  const auto& found = cells[0];
+  EXPECT_EQ(found.key, cell.key);
+  EXPECT_EQ(found.cell, cell.cell);
+  EXPECT_EQ(found.origin, cell.origin);
+  EXPECT_EQ(found.run.particles_mean, 123.5);
+  EXPECT_EQ(found.run.substeps_mean, 2.25);
+  EXPECT_EQ(found.run.braked, 4);
+  ASSERT_EQ(found.run.samples.size(), 2u);
+  EXPECT_EQ(found.run.samples[1].time_s, 0.2);
+  EXPECT_EQ(found.run.samples[1].centre_m[1], 0.625);
+  EXPECT_EQ(errors_of(found.run, cell.run, 1)[2], 0);
+  ASSERT_EQ(found.run.frames.size(), 8u);
+  EXPECT_FALSE(found.run.frames[2].draw_ms);
+  EXPECT_EQ(found.run.frames[3].all_ms(), cell.run.frames[3].all_ms());
+  EXPECT_EQ(file.keys("a machine"), std::set<std::string>{cell.key});
+  EXPECT_TRUE(file.keys("another").empty());
+}
+
+TEST(SweepFile, ShardsInAnyOrderGiveTheSameCells) {
+  const ::test::TemporaryFolder folder;
+  const auto cells = small_sweep();
+  const auto in_order = [](SweepFile&& file) {
+    std::vector<std::string> keys;
+    for (const auto& cell : file.cells()) keys.push_back(cell.key);
+    return keys;
+  };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    SweepFile(folder / (std::to_string(i) + ".db"), Open::Create).add(cells[i]);
+    SweepFile(folder / "serial.db", Open::Create).add(cells[i]);
+  }
+  {
+    SweepFile merged(folder / "merged.db", Open::Create);
+    for (std::size_t i = cells.size(); i-- > 0;)
+      EXPECT_EQ(merged.merge(folder / (std::to_string(i) + ".db")), 1);
+    EXPECT_EQ(merged.merge(folder / "serial.db"), 0);
+  }
+  EXPECT_EQ(in_order(SweepFile(folder / "merged.db", Open::Read)),
+            in_order(SweepFile(folder / "serial.db", Open::Read)));
+}
+
+TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
+  const ::test::TemporaryFolder folder;
+  const auto path = folder / "a.db";
+  SweepFile(path, Open::Create).add(small_sweep()[0]);
+  const std::string sound = bytes_of(path);
+  const auto refused = [&](const std::string& bytes, const char* why) {
+    base::write_file_atomically(folder / "b.db", bytes);
+    for (const auto how : {Open::Read, Open::Create}) {
+      EXPECT_THAT([&] { SweepFile(folder / "b.db", how); }, ThrowsMessage<base::Error>(HasSubstr(why)));
+      EXPECT_EQ(bytes_of(folder / "b.db"), bytes) << why;
+    }
+  };
+  refused("time,ms\n" + std::string(200, '1'), "not a sweep file");
+  refused(sound.substr(0, 50), "not a sweep file");
+  auto foreign = sound, newer = sound;
+  foreign[68] = 'X';  // application_id
+  newer[63] = 9;      // user_version
+  refused(foreign, "not a sweep file");
+  refused(newer, "newer program (schema 9");
+  refused(sound.substr(0, sound.size() / 2), "is damaged or cut short\n  mend: give another file");
+  EXPECT_THROW(SweepFile(folder / "none.db", Open::Read), base::Error);
+  base::write_file_atomically(folder / "empty.db", "");
+  EXPECT_THROW(SweepFile(folder / "empty.db", Open::Read), base::Error);
+  EXPECT_TRUE(SweepFile(folder / "empty.db", Open::Create).cells().empty());
+}
+
+class AccuracyE2e : public test::TableTest {
+ protected:
+  const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
+  /// A table's rows without what a clock gave.
+  std::vector<test::Row> timeless(const std::string& name) const {
+    auto out = rows(name);
+    for (auto& row : out)
+      std::erase_if(row, [](const auto& cell) { return cell.first.find("ms_") != std::string::npos; });
+    return out;
+  }
+};
+
+TEST_F(AccuracyE2e, CellsRunApartAndMergedGiveTheSerialRunsTable) {
+  // Killed after some cells, and given again.
+  const auto killed = table("accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --db " +
+                            path("serial.db") + " & sleep 4; kill -9 $!; true; #");
+  EXPECT_EQ(killed.exit_code, 0) << killed.out;
+  const auto serial = table(sweep + " --db " + path("serial.db") + " --csv " + path("serial.csv"));
+  ASSERT_EQ(serial.exit_code, 0) << serial.out;
+  EXPECT_THAT(serial.out, HasSubstr("| Ours-TSp |"));
+  const auto listed = table(sweep + " --list");
+  std::istringstream lines(listed.out);
+  std::string shards;
+  int number = 0;
+  for (std::string key, rest; lines >> key && std::getline(lines, rest);) {
+    const std::string shard = path("shard" + std::to_string(number++) + ".db");
+    const auto ended = table(sweep + " --cell " + key + " --out " + shard);
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+    shards = " " + shard + shards;
+  }
+  EXPECT_EQ(number, 13);
+  const auto merged =
+      test::run_shell(VIP_BIN_DIR "/vip-bench accuracy merge --db " + path("merged.db") + shards);
+  ASSERT_EQ(merged.exit_code, 0) << merged.out;
+  EXPECT_THAT(merged.out, HasSubstr("13 cells added from 13 files"));
+  const auto again = table(sweep + " --table --db " + path("merged.db") + " --csv " + path("merged.csv"));
+  ASSERT_EQ(again.exit_code, 0) << again.out;
+  const auto rows = timeless("serial.csv");
+  EXPECT_EQ(rows.size(), 11u);
+  EXPECT_EQ(timeless("merged.csv"), rows);
+}
+
+TEST_F(AccuracyE2e, WrongWordsAreNamedWithTheirMend) {
+  for (const auto& [words, place] : std::vector<std::pair<std::string, std::string>>{
+           {"accuracy", "--db: is missing"},
+           {"accuracy --scene all --db " + path("a.db"), "--scene all"},
+           {"accuracy --scene Pond --db " + path("a.db"), "--scene Pond"},
+           {"accuracy --n-star 128 --db " + path("a.db"), "--n-star 128"},
+           {"accuracy --cell 0123 --out " + path("a.db"), "--cell 0123"},
+           {"accuracy --table --db " + path("a.db"), "a.db"}}) {
+    const auto ended = table(words);
+    EXPECT_EQ(ended.exit_code, 1) << words << ended.out;
+    EXPECT_THAT(ended.out, HasSubstr(place)) << words;
+    EXPECT_FALSE(std::filesystem::exists(path("a.db"))) << words;
+  }
+  const auto merged = test::run_shell(VIP_BIN_DIR "/vip-bench accuracy merge --db " + path("a.db") +
+                                      " " VIP_TEST_DIR "/README.md");
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_THAT(merged.out, HasSubstr("README.md: is not a sweep file"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.db")));
+}
+
+}  // namespace
+}  // namespace apps
