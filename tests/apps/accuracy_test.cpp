@@ -308,8 +308,8 @@ class AccuracyE2e : public test::TableTest {
 
 TEST_F(AccuracyE2e, CellsRunApartAndMergedGiveTheSerialRunsTable) {
   // Killed after some cells, and given again.
-  const auto killed = table("accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --db " +
-                            path("serial.db") + " & sleep 4; kill -9 $!; true; #");
+  const auto killed = table("accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --db " + path("serial.db") +
+                            " & sleep 2; kill -9 $!; true; #");
   EXPECT_EQ(killed.exit_code, 0) << killed.out;
   const auto serial = table(sweep + " --db " + path("serial.db") + " --csv " + path("serial.csv"));
   ASSERT_EQ(serial.exit_code, 0) << serial.out;

@@ -145,9 +145,10 @@ void add_accuracy_command(CLI::App& app) {
   auto* command = app.add_subcommand(
       "accuracy",
       "What accuracy costs in time: error and milliseconds of each setting, and what a knob buys");
-  command
-      ->add_option("--db", options->database, "Sweep file, made when missing; cells in it are not run again")
-      ->check(output_file());
+  auto* database = command
+                       ->add_option("--db", options->database,
+                                    "Sweep file, made when missing; cells in it are not run again")
+                       ->check(output_file());
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();
   add_n_star(*command, options->n_star);
   add_backend(*command, options->backend);
@@ -160,7 +161,7 @@ void add_accuracy_command(CLI::App& app) {
   auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");
   auto* cell = command->add_option("--cell", options->cell, "Only run the cell of this key, into --out");
   auto* out = command->add_option("--out", options->out, "Sweep file for --cell")->check(output_file());
-  cell->needs(out)->excludes(list);
+  cell->needs(out)->excludes(list)->excludes(database);
   out->needs(cell);
   command->add_flag("--table", options->table_only, "Only make the tables, of what --db holds")
       ->excludes(list)

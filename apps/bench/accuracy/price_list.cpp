@@ -225,8 +225,8 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
 }
 
 TextTable setting_table(const PriceList& list) {
-  TextTable out{.head = {"scene", "method", "setting", "seeds", "particles", "substeps", "ms_mean", "ms_q25",
-                         "ms_median", "ms_q75", "ms_p95", "draw_ms_mean"},
+  TextTable out{.head = {"scene", "machine", "program", "method", "setting", "seeds", "particles", "substeps",
+                         "ms_mean", "ms_q25", "ms_median", "ms_q75", "ms_p95", "draw_ms_mean"},
                 .rows = {}};
   for (const char* error : sweep_error_columns) {
     for (const char* end : {"", "_low", "_high"}) out.head.push_back(std::string(error) + end);
@@ -235,6 +235,8 @@ TextTable setting_table(const PriceList& list) {
     for (const auto& one : *part) {
       auto& row = out.rows.emplace_back();
       row = {list.scene,
+             in_a_cell(list.origin.machine),
+             list.origin.program,
              sim::method_name(one.setting.method),
              in_a_cell(in_words(one.setting)),
              std::to_string(one.seeds),
@@ -254,7 +256,8 @@ TextTable setting_table(const PriceList& list) {
 }
 
 TextTable price_table(const PriceList& list) {
-  TextTable out{.head = {"scene", "method", "knob", "from", "to", "ms", "ms_q25", "ms_q75", "free"},
+  TextTable out{.head = {"scene", "machine", "program", "method", "knob", "from", "to", "ms", "ms_q25",
+                         "ms_q75", "free"},
                 .rows = {}};
   for (const char* error : sweep_error_columns) {
     for (const char* end : {"", "_low", "_high", "_per_ms"}) out.head.push_back(std::string(error) + end);
@@ -262,6 +265,8 @@ TextTable price_table(const PriceList& list) {
   for (const auto& price : list.prices) {
     auto& row = out.rows.emplace_back();
     row = {list.scene,
+           in_a_cell(list.origin.machine),
+           list.origin.program,
            sim::method_name(price.method),
            traits_of(price.knob).column,
            shortest(price.from),

@@ -172,6 +172,8 @@ SweepFile::SweepFile(const std::filesystem::path& path, Open how) {
     refuse_damaged(path);
   }
   database_->execute("PRAGMA foreign_keys = ON");
+  // A kill may have left a first transaction that SQLite undid just now.
+  if (how == Open::Read && database_->integer("PRAGMA user_version") == 0) refuse(path);
   if (how == Open::Read) return;
   database_->execute("PRAGMA synchronous = FULL");
   Transaction transaction(*database_);
