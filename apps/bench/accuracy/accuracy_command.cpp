@@ -76,7 +76,7 @@ Job job_of(const AccuracyOptions& options) {
 }
 
 StoredCell run(const Job& job, const SweepCell& cell) {
-  return {job.key(cell), cell, job.origin, run_cell(cell, job.scene.scene, job.backend)};
+  return {cell, job.origin, run_cell(cell, job.scene.scene, job.backend)};
 }
 
 void print_list(const Job& job) {
@@ -130,6 +130,7 @@ void run_accuracy(const AccuracyOptions& options) {
 }
 
 void merge_shards(const AccuracyOptions& options) {
+  // All are looked at before the first is taken over.
   for (const auto& shard : options.shards) SweepFile(shard, Open::Read);
   SweepFile file(options.database, Open::Create);
   std::int64_t added = 0;

@@ -9,6 +9,7 @@ namespace apps {
 
 const std::array<SweepKnobTraits, sweep_knob_count>& sweep_knobs() {
   using enum SweepKnob;
+  static const auto tuned = sim::readings_of(sim::Preset::Tuned);
   static const std::array<SweepKnobTraits, sweep_knob_count> all{{
       {.knob = Size, .column = "n_star", .words = "n_*", .usual = 32768, .others = {0.25, 0.5, 2}},
       {.knob = Rate, .column = "frames_per_s", .words = "frames/s", .usual = 60, .others = {90, 120}},
@@ -31,13 +32,13 @@ const std::array<SweepKnobTraits, sweep_knob_count>& sweep_knobs() {
        .words = "alpha",
        .of_levels = true,
        .of_saliency = true,
-       .usual = 2.0 / 3,
+       .usual = tuned.alpha,
        .others = {0, 1.0 / 3, 1}},
       {.knob = Fovea,
        .column = "fovea_deg",
        .words = "fovea, deg",
        .of_levels = true,
-       .usual = 7.5,
+       .usual = tuned.fovea_half_angle_deg,
        .others = {5, 15, 30}},
       {.knob = Beta,
        .column = "beta",

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <string_view>
 
+#include "libstudy/store/page_file.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
 
@@ -43,20 +44,13 @@ std::string schema() {
          "NOT NULL, centre_x_m REAL NOT NULL, centre_y_m REAL NOT NULL, centre_z_m REAL NOT NULL, "
          "kinetic_j_kg REAL NOT NULL, density_error REAL NOT NULL, density_max REAL NOT NULL, PRIMARY KEY "
          "(cell_id, time_s)) STRICT, WITHOUT ROWID;"
-         "CREATE TABLE frame (cell_id INTEGER NOT NULL REFERENCES cell, number INTEGER NOT NULL, solve_ms "
-         "REAL "
-         "NOT NULL, draw_ms REAL, PRIMARY KEY (cell_id, number)) STRICT, WITHOUT ROWID;";
+         "CREATE TABLE frame (cell_id INTEGER NOT NULL REFERENCES cell, number INTEGER NOT NULL, "
+         "solve_ms REAL NOT NULL, draw_ms REAL, PRIMARY KEY (cell_id, number)) STRICT, WITHOUT ROWID;";
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path) {
   throw base::Error(path.string(), "is not a sweep file of vip-bench accuracy",
                     "name the file that it wrote, or a new one");
-}
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-  return value;
 }
 
 /// By the file's head (sqlite.org/fileformat.html, section 1.3), before SQLite touches a file of others.
@@ -65,9 +59,9 @@ void recognise(Connection& database, Open how) {
   const std::string head = database.header();
   if (head.empty() && how == Open::Create) return;
   if (head.size() < header_bytes || !head.starts_with(sqlite_magic) ||
-      big_endian(head, application_at) != sweep_application_id)
+      study::salvaging::u32(head, application_at) != sweep_application_id)
     refuse(database.path());
-  const auto version = big_endian(head, version_at);
+  const auto version = study::salvaging::u32(head, version_at);
   if (version > schema_version) {
     throw base::Error(database.path().string(),
                       fmt::format("was written by a newer program (schema {}, this program knows {})",
@@ -84,7 +78,6 @@ void recognise(Connection& database, Open how) {
 
 StoredCell read_cell(const Statement& row) {
   StoredCell out;
-  out.key = row.text(1);
   out.origin = {row.text(2), row.text(3), row.text(4)};
   out.cell.setting.scene = row.text(5);
   out.cell.setting.method = sim::parse_method(row.text(6));
@@ -122,7 +115,7 @@ void read_run(Connection& database, std::int64_t id, CellRun& run) {
 /// Within a transaction. False where the machine's row for this key is there.
 bool insert(Connection& database, const StoredCell& stored) {
   Statement there(database, "SELECT 1 FROM cell WHERE key = ? AND machine = ?");
-  there.bind_all(stored.key, stored.origin.machine);
+  there.bind_all(stored.key(), stored.origin.machine);
   if (there.step()) return false;
   const auto& setting = stored.cell.setting;
   std::string marks = "?";
@@ -130,7 +123,7 @@ bool insert(Connection& database, const StoredCell& stored) {
   Statement cell(database, "INSERT INTO cell (" + cell_columns() + ") VALUES (" + marks + ")");
   int at = 0;
   for (const std::string& text :
-       {stored.key, stored.origin.machine, stored.origin.program, stored.origin.scene_sha256, setting.scene,
+       {stored.key(), stored.origin.machine, stored.origin.program, stored.origin.scene_sha256, setting.scene,
         sim::method_name(setting.method)})
     cell.bind_at(at++, text);
   for (const double value : setting.values) cell.bind_at(at++, value);

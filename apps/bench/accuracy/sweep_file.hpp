@@ -18,17 +18,17 @@ inline constexpr std::int64_t sweep_application_id = 0x56695053;
 
 /// What a cell ran on and from. Only cells that agree in machine, program and scene file are compared.
 struct SweepOrigin {
-  std::string machine;  ///< system, processor, cores and back end
+  std::string machine;  ///< processor, cores, device and threads
   std::string program;  ///< version and digest of the program's bytes
   std::string scene_sha256;
   auto operator<=>(const SweepOrigin&) const = default;
 };
 
 struct StoredCell {
-  std::string key;
   SweepCell cell;
   SweepOrigin origin;
   CellRun run;
+  std::string key() const { return key_of(cell, origin.scene_sha256, origin.program); }
 };
 
 class SweepFile {
