@@ -20,6 +20,7 @@ bool Watch::step() {
   ++frame_;
   state_ = fluid_->read_state();
   report_ = fluid_->report();
+  densities_.push_back(report_.density_max);
   densest_ = std::max(densest_, report_.density_max);
   fastest_ = std::max(fastest_, report_.speed_max_m_s);
   short_frames_ += report_.substeps.taken < report_.substeps.wished;
@@ -37,6 +38,15 @@ bool Watch::step() {
     end(fmt::format("{:.2f} m/s where {:.2f} is the bound", fastest_, bounds_.speed_m_s));
   }
   return !stopped_;
+}
+
+double Watch::densest_in(double share) const {
+  if (densities_.empty()) return 0;
+  std::vector<double> sorted = densities_;
+  const double frames = std::ceil(share * static_cast<double>(sorted.size()));
+  const auto last = sorted.begin() + std::max(1L, std::lround(frames)) - 1;
+  std::nth_element(sorted.begin(), last, sorted.end());
+  return *last;
 }
 
 Finding Watch::density_finding() const { return at_most("largest rho / rho_0", densest_, bounds_.density); }

@@ -2,6 +2,7 @@
 /// A run of a hard case that is looked at after each frame.
 
 #include <string>
+#include <vector>
 
 #include "libsim/cases/hard_case.hpp"
 #include "libsim/cases/water.hpp"
@@ -28,6 +29,8 @@ class Watch {
   const FrameReport& report() const { return report_; }
   int frame() const { return frame_; }
   double densest() const { return densest_; }  ///< of all frames
+  /// The largest rho / rho_0 that this share of the frames keeps to. 0 < share <= 1; 0 without a frame.
+  double densest_in(double share) const;
   double fastest_m_s() const { return fastest_; }
   int out() const { return out_; }                    ///< particles outside, in the worst frame
   int short_frames() const { return short_frames_; }  ///< that asked for more substeps than they got
@@ -48,6 +51,7 @@ class Watch {
   State state_;
   FrameReport report_;
   int frame_ = 0;
+  std::vector<double> densities_;  ///< the largest of each frame
   double densest_ = 0, fastest_ = 0;
   int out_ = 0, short_frames_ = 0;
   std::optional<Stop> stopped_;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include "libsim/cases/watch.hpp"
 #include "stats/base/error.hpp"
@@ -56,6 +57,22 @@ TEST(CaseOutcome, ARunStopsWhereItsBoundIs) {
   EXPECT_NEAR(frames, 6, 1);
   EXPECT_FALSE(watch.outcome({watch.speed_finding()}).passes());
   EXPECT_FALSE(watch.step());
+}
+
+TEST(CaseOutcome, AShareOfTheFramesKeepsToADensity) {
+  sim::Scene scene = tank({2, 2, 2}, {1, 1, 1});
+  const State start = block(sim::MethodKind::HiRes, {0.5, 0.5, 0.5}, {1.1, 1.1, 1.1});
+  Watch watch(scene, options_of({}, scene, start), {});
+  EXPECT_EQ(watch.densest_in(0.95), 0);
+  std::vector<double> of_frames;
+  for (int frame = 0; frame < 20; ++frame) {
+    ASSERT_TRUE(watch.step());
+    of_frames.push_back(watch.report().density_max);
+  }
+  std::sort(of_frames.begin(), of_frames.end());
+  EXPECT_EQ(watch.densest_in(0.95), of_frames[18]);
+  EXPECT_EQ(watch.densest_in(0.5), of_frames[9]);
+  EXPECT_EQ(watch.densest_in(1), watch.densest());
 }
 
 TEST(HardCases, AreFoundByTheirIds) {
