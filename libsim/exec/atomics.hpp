@@ -77,6 +77,16 @@ SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
+/// Raises a flag that others may raise too.
+SIM_FN void atomic_raise(int* flag) {
+#ifdef __CUDA_ARCH__
+  volatile int* const seen = flag;
+  if (*seen == 0) *seen = 1;
+#else
+  *flag = 1;
+#endif
+}
+
 #else
 
 template <class T>
@@ -104,6 +114,12 @@ template <class T>
 void atomic_max(T* target, T value) {
 #pragma omp critical(sim_atomic_max)
   if (value > *target) *target = value;
+}
+
+/// Raises a flag that others may raise too.
+inline void atomic_raise(int* flag) {
+#pragma omp atomic write
+  *flag = 1;
 }
 
 #endif

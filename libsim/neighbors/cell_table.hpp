@@ -21,6 +21,8 @@ struct LevelCells {
   int first;  ///< of its cells in the table
 
   SIM_FN int size() const { return nx * ny * nz; }
+  /// The cell of a place, from the low corner, among the grid's own.
+  SIM_FN int of(Vec3 at) const { return (along(at.y, ny) * nz + along(at.z, nz)) * nx + along(at.x, nx); }
   /// The cell along one axis of a place `x` from the low corner: 1 .. count - 2 inside the domain.
   SIM_FN int along(float x, int count) const { return floor_within(x * inverse, -1, count - 2) + 1; }
   /// x, or the nearest place to it that is not beyond the outermost cells' nominal sides.
@@ -40,13 +42,13 @@ struct CellTable {
   int levels;        ///< in use
   Vec3 low;          ///< corner of the domain
   const int* begin;  ///< of each cell's particles, and after the last cell the number of particles
+  /// Blocks as wide as any pair reaches, and the levels that particles of a block can meet, a bit each: most
+  /// of the water has one or two. nullptr where there is one level.
+  LevelCells blocks;
+  const std::uint8_t* met;
 
-  SIM_FN int cell(int l, Vec4 p) const {
-    const LevelCells& grid = level[l];
-    const int y = grid.along(p.y - low.y, grid.ny);
-    const int z = grid.along(p.z - low.z, grid.nz);
-    return grid.first + (y * grid.nz + z) * grid.nx + grid.along(p.x - low.x, grid.nx);
-  }
+  SIM_FN int cell(int l, Vec4 p) const { return level[l].first + level[l].of(xyz(p) - low); }
+  SIM_FN bool meets(Vec4 p, int l) const { return !met || met[blocks.of(xyz(p) - low)] >> l & 1; }
 
   /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
   /// (last_y, last_z). `at`: from the low corner.
@@ -68,9 +70,6 @@ struct CellTable {
             grid.along(at.z - reach, grid.nz),
             grid.along(at.z + reach, grid.nz)};
   }
-  SIM_FN bool empty(const LevelCells& grid) const {
-    return begin[grid.first] == begin[grid.first + grid.size()];
-  }
   /// The particles of one line that can be within the reach.
   SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
     const float dy = grid.gap(look.at.y, y);
@@ -88,8 +87,8 @@ struct CellTable {
   template <class Visit>
   SIM_FN void around(Vec4 self, float margin, Visit visit) const {
     for (int l = 0; l < levels; ++l) {
+      if (!meets(self, l)) continue;
       const LevelCells& grid = level[l];
-      if (empty(grid)) continue;
       const Window look = window(grid, self, margin);
       for (int y = look.first_y; y <= look.last_y; ++y) {
         for (int z = look.first_z; z <= look.last_z; ++z) {

@@ -24,6 +24,40 @@ struct CountCells {
   }
 };
 
+struct MarkPresent {
+  const Vec4* predicted;
+  const std::uint8_t* level;
+  CellTable cells;
+  int* present;
+  SIM_FN void operator()(int i) const {
+    const int block = cells.blocks.of(xyz(predicted[i]) - cells.low);
+    atomic_raise(present + block * LevelSupports::most + level[i]);
+  }
+};
+
+/// Particles of a block meet what is in it and in the blocks beside it.
+struct Meet {
+  const int* present;
+  LevelCells blocks;
+  std::uint8_t* met;
+  SIM_FN void operator()(int block) const {
+    const int x = block % blocks.nx;
+    const int z = block / blocks.nx % blocks.nz;
+    const int y = block / blocks.nx / blocks.nz;
+    unsigned out = 0;
+    for (int b = y - 1; b <= y + 1; ++b) {
+      for (int c = z - 1; c <= z + 1; ++c) {
+        for (int a = x - 1; a <= x + 1; ++a) {
+          if (a < 0 || b < 0 || c < 0 || a >= blocks.nx || b >= blocks.ny || c >= blocks.nz) continue;
+          const int* const levels = present + ((b * blocks.nz + c) * blocks.nx + a) * LevelSupports::most;
+          for (int l = 0; l < LevelSupports::most; ++l) out |= static_cast<unsigned>(levels[l]) << l;
+        }
+      }
+    }
+    met[block] = static_cast<std::uint8_t>(out);
+  }
+};
+
 struct Place {
   const int* begin;
   const int* cell_of;
@@ -119,8 +153,24 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
       grid.first = first;
       first += grid.size();
     }
-    if (sum <= static_cast<double>(most)) return;
+    if (sum > static_cast<double>(most)) continue;
+    const float widest = shape_.level[shape_.levels - 1].support;
+    // Beyond what rounding hides; see CellTable::window.
+    const double edge = wider * 1.001 * static_cast<double>(margin * widest) +
+                        1e-5 * static_cast<double>(size.x + size.y + size.z);
+    shape_.blocks = cells_of(size, edge, widest);
+    return;
   }
+}
+
+void Grid::find_met(Particles& particles) {
+  const Reads<Column::Predicted, Column::Level> p(particles);
+  const auto blocks = static_cast<std::size_t>(shape_.blocks.size());
+  present_.resize(blocks * LevelSupports::most);
+  present_.zero();
+  met_.resize(blocks);
+  for_each("mark levels", p.size(), MarkPresent{p.predicted(), p.level(), shape_, present_.data()});
+  for_each("meet levels", shape_.blocks.size(), Meet{present_.data(), shape_.blocks, met_.data()});
 }
 
 void Grid::sort(Particles& particles, bool by_level) {
@@ -158,6 +208,7 @@ void Grid::build(Particles& particles, float margin, const Domain& domain, const
   for (int l = 0; l < LevelSupports::most; ++l) shape_.level[l].support = supports.h[l];
   shape(domain, margin, particles.capacity());
   sort(particles, true);
+  find_met(particles);
 }
 
 int Grid::size() const {

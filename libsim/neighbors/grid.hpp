@@ -16,6 +16,7 @@ class Grid {
   CellTable cells() const {
     CellTable out = shape_;
     out.begin = begin_.data();
+    out.met = shape_.levels > 1 ? met_.data() : nullptr;
     return out;
   }
   /// Cells that hold particles, read back from the device (a synchronisation; for tests).
@@ -39,10 +40,13 @@ class Grid {
  private:
   void shape(const Domain& domain, float margin, int capacity);
   void sort(Particles& particles, bool by_level);
+  void find_met(Particles& particles);
 
   Scanner scanner_;
-  CellTable shape_{};  ///< but for `begin`
+  CellTable shape_{};  ///< but for what its arrays hold
   Array<int> begin_, counts_, cell_of_, arrival_, placed_, order_;
+  Array<int> present_;  ///< 1 = the block has particles of the level; levels of a block lie side by side
+  Array<std::uint8_t> met_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -51,8 +51,8 @@ struct ListNeighbours {
   SIM_FN int look(int slot, int i, Vec4 self, Team team) const {
     int found = 0;
     for (int l = 0; l < cells.levels; ++l) {
+      if (!cells.meets(self, l)) continue;
       const LevelCells grid = cells.level[l];
-      if (cells.empty(grid)) continue;
       const float radius = margin * 0.5f * (self.w + grid.support);
       const CellTable::Window window = cells.window(grid, self, margin);
       const int width = window.last_z - window.first_z + 1;
