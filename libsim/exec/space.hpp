@@ -166,12 +166,12 @@ void for_each(const char* label, int n, F f) {
          0, n, f);
 }
 
-/// Lanes for each of n indices: a functor of for_each_team may have measured its own, `static int lanes(int
-/// n)`.
+/// Lanes for each of n indices: a functor of for_each_team may have measured its own, `int lanes(int n)
+/// const`.
 template <class F>
-int lanes_for(int n) {
-  if constexpr (requires { F::lanes(n); }) {
-    return F::lanes(n);
+int lanes_for(const F& f, int n) {
+  if constexpr (requires { f.lanes(n); }) {
+    return f.lanes(n);
   } else {
     return team_wish(n);
   }
@@ -208,7 +208,7 @@ void for_each_team(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
   if (n <= 0) return;
   const LaunchTimer timer(label);
-  switch (lanes_for<F>(n)) {
+  switch (lanes_for(f, n)) {
     case 8:
       return launch_teams<8>(label, n, f);
     case 4:

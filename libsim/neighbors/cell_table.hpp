@@ -43,12 +43,16 @@ struct CellTable {
   Vec3 low;          ///< corner of the domain
   const int* begin;  ///< of each cell's particles, and after the last cell the number of particles
   /// Blocks as wide as any pair reaches, and the levels that particles of a block can meet, a bit each: most
-  /// of the water has one or two. nullptr where there is one level.
+  /// of the water has one or two. nullptr where they are not known (Grid::finds_met).
   LevelCells blocks;
   const std::uint8_t* met;
 
   SIM_FN int cell(int l, Vec4 p) const { return level[l].first + level[l].of(xyz(p) - low); }
-  SIM_FN bool meets(Vec4 p, int l) const { return !met || met[blocks.of(xyz(p) - low)] >> l & 1; }
+  /// Can a particle have neighbours of this level?
+  SIM_FN bool meets(Vec4 p, int l) const {
+    if (met) return met[blocks.of(xyz(p) - low)] >> l & 1;
+    return begin[level[l].first] < begin[level[l].first + level[l].size()];
+  }
 
   /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
   /// (last_y, last_z). `at`: from the low corner.

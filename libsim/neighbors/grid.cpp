@@ -208,7 +208,7 @@ void Grid::build(Particles& particles, float margin, const Domain& domain, const
   for (int l = 0; l < LevelSupports::most; ++l) shape_.level[l].support = supports.h[l];
   shape(domain, margin, particles.capacity());
   sort(particles, true);
-  find_met(particles);
+  if (finds_met) find_met(particles);
 }
 
 int Grid::size() const {

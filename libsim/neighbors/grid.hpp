@@ -16,7 +16,7 @@ class Grid {
   CellTable cells() const {
     CellTable out = shape_;
     out.begin = begin_.data();
-    out.met = shape_.levels > 1 ? met_.data() : nullptr;
+    out.met = finds_met && shape_.levels > 1 ? met_.data() : nullptr;
     return out;
   }
   /// Cells that hold particles, read back from the device (a synchronisation; for tests).
@@ -29,8 +29,11 @@ class Grid {
   /// lanes.
 #ifdef SIM_CUDA
   static constexpr float cells_per_reach = 2;
+  /// Empty lines cost the GPU less than the two passes that tell where a level is.
+  static constexpr bool finds_met = false;
 #else
   static constexpr float cells_per_reach = 1;
+  static constexpr bool finds_met = true;
 #endif
   /// The table has at most so many cells for each particle there is room for, and a least number; where the
   /// domain asks for more, the cells are wider.

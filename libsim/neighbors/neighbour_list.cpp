@@ -28,8 +28,9 @@ struct ListNeighbours {
   float margin;
 
 #ifdef SIM_CUDA
-  /// As measured on an H200; two lanes never paid.
-  static int lanes(int n) { return n < 20'000 ? 8 : n < 110'000 ? 4 : 1; }
+  /// As measured on an H200. In the grids of several levels a particle walks more lines, and shares them
+  /// longer.
+  int lanes(int n) const { return n < 20'000 ? 8 : n < (cells.levels > 1 ? 300'000 : 110'000) ? 4 : 1; }
 
   /// Those near among up to 32 particles from `begin` on, a bit each.
   struct Found {
