@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/bench/cells.hpp"
+#include "apps/bench/log_axis.hpp"
 #include "apps/common/svg.hpp"
 
 namespace apps {
@@ -15,26 +15,6 @@ constexpr const char* axis = R"( stroke="#333" fill="none")";
 constexpr const char* grid = R"( stroke="#ddd" fill="none")";
 constexpr const char* middle = R"( text-anchor="middle")";
 
-/// One axis.
-struct Scale {
-  double low = 1, high = 10;
-  double share(double value) const { return std::log(value / low) / std::log(high / low); }
-};
-
-/// 1, 2 and 5 times each power of ten from the last below the least to the first above the most.
-std::vector<double> ticks_of(double least, double most) {
-  std::vector<double> out;
-  for (double power = std::pow(10, std::floor(std::log10(least)));; power *= 10) {
-    for (const double tick : {power, 2 * power, 5 * power}) {
-      if (tick <= least) out.clear();
-      out.push_back(tick);
-      if (tick >= most && out.size() > 1) return out;
-    }
-  }
-}
-
-std::string label_of(double tick) { return tick < 1 ? shortest(tick) : number(tick, 0); }
-
 }  // namespace
 
 std::string to_svg(const LogChart& chart) {
@@ -45,8 +25,8 @@ std::string to_svg(const LogChart& chart) {
     least = std::min(least, point.y);
     most = std::max({most, point.y, point.high});
   }
-  const auto x_ticks = ticks_of(first->x, last->x), y_ticks = ticks_of(least, most);
-  const Scale x_scale{x_ticks.front(), x_ticks.back()}, y_scale{y_ticks.front(), y_ticks.back()};
+  const auto x_ticks = log_ticks(first->x, last->x), y_ticks = log_ticks(least, most);
+  const LogScale x_scale{x_ticks.front(), x_ticks.back()}, y_scale{y_ticks.front(), y_ticks.back()};
   const double right = left_px + plot_width_px, bottom = top_px + plot_height_px;
   const auto at = [&](double x, double y) {
     return svg::Point{left_px + x_scale.share(x) * plot_width_px, bottom - y_scale.share(y) * plot_height_px};
@@ -58,12 +38,12 @@ std::string to_svg(const LogChart& chart) {
   for (const double tick : x_ticks) {
     const double x = at(tick, y_scale.low).x;
     picture.body +=
-        svg::line({x, top_px}, {x, bottom}, grid) + svg::text({x, bottom + 17}, label_of(tick), middle);
+        svg::line({x, top_px}, {x, bottom}, grid) + svg::text({x, bottom + 17}, tick_label(tick), middle);
   }
   for (const double tick : y_ticks) {
     const double y = at(x_scale.low, tick).y;
     picture.body += svg::line({left_px, y}, {right, y}, grid) +
-                    svg::text({left_px - 6, y + 4}, label_of(tick), "text-anchor=\"end\"");
+                    svg::text({left_px - 6, y + 4}, tick_label(tick), "text-anchor=\"end\"");
   }
   picture.body += svg::line({left_px, top_px}, {left_px, bottom}, axis) +
                   svg::line({left_px, bottom}, {right, bottom}, axis) +

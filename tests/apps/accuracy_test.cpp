@@ -6,7 +6,9 @@
 #include <map>
 #include <set>
 
-#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/bench/accuracy/accuracy_page.hpp"
+#include "apps/bench/accuracy/work_precision.hpp"
+#include "apps/bench/log_axis.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/table_test_support.hpp"
 
@@ -230,6 +232,51 @@ TEST(AccuracyPrices, NeverMixMachinesProgramsOrScenes) {
               ThrowsMessage<base::Error>(HasSubstr("no finished reference")));
 }
 
+TEST(AccuracyFront, HoldsWhatNoneBeats) {
+  const auto setting = [](double ms, double error) {
+    SettingResult out;
+    out.ms_mean = ms;
+    out.errors[2].mean = error;
+    return out;
+  };
+  const std::vector<SettingResult> settings{setting(9, 1),  setting(4, 3), setting(5, 3), setting(4, 4),
+                                            setting(12, 1), setting(2, 8), setting(6, 2)};
+  EXPECT_EQ(pareto_front(settings, SweepError::Kinetic), (std::vector<std::size_t>{5, 1, 6, 0}));
+  EXPECT_TRUE(pareto_front({}, SweepError::Kinetic).empty());
+}
+
+TEST(LogAxis, EndsOutsideTheValues) {
+  EXPECT_EQ(log_ticks(3, 40), (std::vector<double>{2, 5, 10, 20, 50}));
+  EXPECT_EQ(log_ticks(10, 10), (std::vector<double>{10, 20}));
+  EXPECT_EQ(log_ticks(2, 9000), (std::vector<double>{1, 10, 100, 1000, 10000})) << "powers alone";
+  const LogScale scale{1, 100};
+  EXPECT_DOUBLE_EQ(scale.share(10), 0.5);
+}
+
+TEST(AccuracyPage, ShowsEachErrorTheFrontsAndThePrices) {
+  const auto list = price_list(small_sweep(), small_plan, origin, 10);
+  const auto page = accuracy_page(list, small_plan);
+  for (const char* words :
+       {"<h1>What accuracy costs in time: SingleDam</h1>", "Error of front", "Error of centre of mass",
+        "Error of kinetic energy", "Error of density", "a machine", "0.1.0 abc", "The floor is 0.1 %",
+        "was not held against finer ones", "<td>+4.00 [+4.00, +4.00]</td>", "<td>free</td>",
+        "n_* = 512, 2 s of content, 2 seeds", "the solver alone; nothing was drawn"}) {
+    EXPECT_THAT(page, HasSubstr(words));
+  }
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("http"))) << "needs nothing from elsewhere";
+  const auto picture = work_precision(list, SweepError::Front);
+  ASSERT_TRUE(picture);
+  EXPECT_THAT(picture->body, HasSubstr(">60 Hz<"));
+  EXPECT_THAT(picture->body, HasSubstr(">floor<"));
+}
+
+TEST(AccuracyPage, SaysWhereThereIsNothingToDraw) {
+  auto list = price_list(small_sweep(), small_plan, origin, 10);
+  for (auto& one : list.settings) one.errors[1] = {};
+  EXPECT_FALSE(work_precision(list, SweepError::Centre));
+  EXPECT_THAT(accuracy_page(list, small_plan), HasSubstr("No setting has an error above 0."));
+}
+
 std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1 << 24); }
 
 TEST(SweepFile, GivesBackWhatItWasGiven) {
@@ -331,9 +378,11 @@ TEST_F(AccuracyE2e, CellsRunApartAndMergedGiveTheSerialRunsTable) {
   const auto killed = table("accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --db " + path("serial.db") +
                             " & sleep 2; kill -9 $!; true; #");
   EXPECT_EQ(killed.exit_code, 0) << killed.out;
-  const auto serial = table(sweep + " --db " + path("serial.db") + " --csv " + path("serial.csv"));
+  const auto serial = table(sweep + " --db " + path("serial.db") + " --csv " + path("serial.csv") +
+                            " --html " + path("serial.html"));
   ASSERT_EQ(serial.exit_code, 0) << serial.out;
   EXPECT_THAT(serial.out, HasSubstr("| Ours-TSp |"));
+  EXPECT_THAT(bytes_of(path("serial.html")), HasSubstr("</html>"));
   const auto listed = table(sweep + " --list");
   std::istringstream lines(listed.out);
   std::string shards;

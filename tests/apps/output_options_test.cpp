@@ -61,6 +61,7 @@ class OutputOptionsE2e : public ::testing::Test {
             accuracy_ + " --db " + sweep_ + " --csv ",
             accuracy_ + " --db " + sweep_ + " --prices-csv ",
             accuracy_ + " --db " + sweep_ + " --markdown ",
+            accuracy_ + " --db " + sweep_ + " --html ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
             table1_ + " --cells ",

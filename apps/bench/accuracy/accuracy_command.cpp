@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/bench/accuracy/accuracy_page.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/timed_run.hpp"
 #include "apps/common/options.hpp"
@@ -25,7 +25,7 @@ using study::sqlite::Open;
 
 struct AccuracyOptions {
   std::string scene = "SingleDam", n_star = "4k", backend = "auto";
-  std::string database, cell, out, csv, prices_csv, markdown;
+  std::string database, cell, out, csv, prices_csv, markdown, html;
   std::optional<PictureSize> size;
   double seconds = 2;
   int seeds = 2;
@@ -115,11 +115,14 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
   if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(setting_table(list)));
   if (!options.prices_csv.empty()) base::write_file_atomically(options.prices_csv, to_csv(price_table(list)));
   if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(list));
+  if (!options.html.empty()) base::write_file_atomically(options.html, accuracy_page(list, job.plan));
 }
 
 void run_accuracy(const AccuracyOptions& options) {
-  check_apart(
-      "", {{"--csv", options.csv}, {"--prices-csv", options.prices_csv}, {"--markdown", options.markdown}});
+  check_apart("", {{"--csv", options.csv},
+                   {"--prices-csv", options.prices_csv},
+                   {"--markdown", options.markdown},
+                   {"--html", options.html}});
   const Job job = job_of(options);
   if (options.list) return print_list(job);
   if (!options.cell.empty()) return run_one(job, options);
@@ -171,6 +174,8 @@ void add_accuracy_command(CLI::App& app) {
   command->add_option("--prices-csv", options->prices_csv, "File for a row for each turn of a knob")
       ->check(output_file());
   command->add_option("--markdown", options->markdown, "File for what is printed")->check(output_file());
+  command->add_option("--html", options->html, "File for a page with diagrams, fronts and prices")
+      ->check(output_file());
   auto* merge = command->add_subcommand("merge", "Put the cells of several sweep files into one");
   merge->add_option("--db", options->database, "Sweep file that takes them, made when missing")
       ->required()

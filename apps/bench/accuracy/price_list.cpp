@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "apps/bench/timing.hpp"
 #include "stats/base/error.hpp"
@@ -152,19 +153,11 @@ Price price_of(const Sweep& sweep, const Group& from, const Group& to, SweepKnob
   return out;
 }
 
+constexpr std::array<const char*, sweep_error_count> short_errors{"front %", "centre %", "kinetic %",
+                                                                  "density %"};
+
 std::string with_range(const Spread& spread) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.mean, spread.low, spread.high);
-}
-
-/// What tells the setting from the method's usual one.
-std::string in_words(const SweepSetting& setting) {
-  std::string out;
-  for (const auto& traits : sweep_knobs()) {
-    const bool own = traits.knob == SweepKnob::Size || setting[traits.knob] != traits.usual;
-    if (own && turns(traits.knob, setting.method))
-      out += fmt::format("{}{} {:.4g}", out.empty() ? "" : ", ", traits.words, setting[traits.knob]);
-  }
-  return out;
 }
 
 }  // namespace
@@ -222,6 +215,35 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
     out.converged[e] = out.finer.size() == finer.size() && moved < smallest / 3;
   }
   return out;
+}
+
+std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error) {
+  const auto value = [&](std::size_t i) { return settings[i].errors[static_cast<std::size_t>(error)].mean; };
+  std::vector<std::size_t> order(settings.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(settings[a].ms_mean, value(a)) < std::pair(settings[b].ms_mean, value(b));
+  });
+  std::vector<std::size_t> out;
+  for (const std::size_t i : order)
+    if (out.empty() || value(i) < value(out.back())) out.push_back(i);
+  return out;
+}
+
+std::string in_words(const SweepSetting& setting) {
+  std::string out;
+  for (const auto& traits : sweep_knobs()) {
+    const bool own = traits.knob == SweepKnob::Size || setting[traits.knob] != traits.usual;
+    if (own && turns(traits.knob, setting.method))
+      out += fmt::format("{}{} {:.4g}", out.empty() ? "" : ", ", traits.words, setting[traits.knob]);
+  }
+  return out;
+}
+
+std::string convergence(const PriceList& list, SweepError error) {
+  return list.finer.empty()                                ? "was not held against finer ones"
+         : list.converged[static_cast<std::size_t>(error)] ? "counts as converged"
+                                                           : "does not count as converged";
 }
 
 TextTable setting_table(const PriceList& list) {
@@ -283,21 +305,23 @@ TextTable price_table(const PriceList& list) {
   return out;
 }
 
-std::string to_markdown(const PriceList& list) {
-  TextTable settings{.head = {"method", "setting", "particles", "ms mean", "p95"}, .rows = {}};
-  TextTable prices{.head = {"method", "knob", "change", "ms [quartiles]"}, .rows = {}};
-  for (const char* error : {"front %", "centre %", "kinetic %", "density %"}) {
-    settings.head.emplace_back(error);
-    prices.head.emplace_back(error);
-  }
+TextTable settings_to_read(const PriceList& list) {
+  TextTable out{.head = {"method", "setting", "particles", "ms mean", "p95"}, .rows = {}};
+  for (const char* error : short_errors) out.head.emplace_back(error);
   for (const auto& one : list.settings) {
-    auto& row = settings.rows.emplace_back();
+    auto& row = out.rows.emplace_back();
     row = {sim::method_name(one.setting.method), in_words(one.setting), number(one.particles, 0),
            number(one.ms_mean, 2), number(one.ms_p95, 2)};
     for (const auto& error : one.errors) row.push_back(with_range(error));
   }
+  return out;
+}
+
+TextTable prices_to_read(const PriceList& list) {
+  TextTable out{.head = {"method", "knob", "change", "ms [quartiles]"}, .rows = {}};
+  for (const char* error : short_errors) out.head.emplace_back(error);
   for (const auto& price : list.prices) {
-    auto& row = prices.rows.emplace_back();
+    auto& row = out.rows.emplace_back();
     row = {sim::method_name(price.method), traits_of(price.knob).words,
            shortest(price.from) + " to " + shortest(price.to),
            price.free() ? "free"
@@ -305,15 +329,17 @@ std::string to_markdown(const PriceList& list) {
                                       price.ms_high_quartile)};
     for (const auto& error : price.errors) row.push_back(with_range(error));
   }
+  return out;
+}
+
+std::string to_markdown(const PriceList& list) {
   std::string out = fmt::format("{} on {}\n\n{}\n{}\n", list.scene, list.origin.machine,
-                                to_markdown(settings), to_markdown(prices));
+                                to_markdown(settings_to_read(list)), to_markdown(prices_to_read(list)));
   out += fmt::format("a reference moved by an ulp: front {:.3g} %, centre {:.3g} %, kinetic {:.3g} %\n",
                      list.floor[0], list.floor[1], list.floor[2]);
   for (std::size_t e = 0; e < sweep_error_count; ++e) {
     out += fmt::format("{}: the reference {}\n", sweep_error_columns[e],
-                       list.finer.empty()  ? "was not held against finer ones"
-                       : list.converged[e] ? "counts as converged"
-                                           : "does not count as converged");
+                       convergence(list, static_cast<SweepError>(e)));
   }
   return out;
 }

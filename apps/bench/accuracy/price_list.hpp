@@ -22,6 +22,8 @@ enum class SweepError {
 inline constexpr std::size_t sweep_error_count = 4;
 inline constexpr std::array<const char*, sweep_error_count> sweep_error_columns{"front_pct", "centre_pct",
                                                                                 "kinetic_pct", "density_pct"};
+inline constexpr std::array<const char*, sweep_error_count> sweep_error_words{"front", "centre of mass",
+                                                                              "kinetic energy", "density"};
 using SweepErrors = std::array<double, sweep_error_count>;
 
 /// base::Error unless both were sampled at the same instants.
@@ -72,9 +74,22 @@ struct PriceList {
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 
+/// Settings that no other one beats in both milliseconds (mean) and this error, the fastest first: places in
+/// PriceList::settings.
+std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
+
+/// What tells a setting from its method's usual one: "n_* 512, projections 8".
+std::string in_words(const SweepSetting& setting);
+/// "counts as converged" and the like, of an error's reference.
+std::string convergence(const PriceList& list, SweepError error);
+
+/// For programs.
 TextTable setting_table(const PriceList& list);
 TextTable price_table(const PriceList& list);
-/// Both, with what the floor and the finer references say.
+/// For readers.
+TextTable settings_to_read(const PriceList& list);
+TextTable prices_to_read(const PriceList& list);
+/// Both of these, with what the floor and the finer references say.
 std::string to_markdown(const PriceList& list);
 
 }  // namespace apps
