@@ -1,6 +1,7 @@
 #include "apps/bench/accuracy/accuracy_page.hpp"
 
 #include <fmt/core.h>
+#include <algorithm>
 
 #include "apps/bench/accuracy/work_precision.hpp"
 #include "apps/common/html.hpp"
@@ -26,8 +27,13 @@ std::string to_html(const std::string& caption, const TextTable& table) {
 }
 
 std::string in_short(const SweepPlan& plan, const PriceList& prices) {
-  return list({fmt::format("Scene: {}, n_* = {}, {:.4g} s of content, {} seeds.", escaped(plan.scene),
-                           plan.n_star, plan.seconds, plan.seeds),
+  int fewest = prices.settings.empty() ? 0 : prices.settings.front().seeds, most = fewest;
+  for (const auto& one : prices.settings) {
+    fewest = std::min(fewest, one.seeds);
+    most = std::max(most, one.seeds);
+  }
+  return list({fmt::format("Scene: {}, n_* = {}, {:.4g} s of content; seeds a setting: {} to {}.",
+                           escaped(plan.scene), plan.n_star, plan.seconds, fewest, most),
                "A frame's time: " + std::string(plan.size.empty()
                                                     ? "the solver alone; nothing was drawn."
                                                     : "solver and picture of " + escaped(plan.size) + "."),
@@ -47,12 +53,10 @@ std::string floor_of(const PriceList& prices, SweepError error) {
 std::string diagrams(const PriceList& prices) {
   std::string out = paragraph(
       "Down and to the left is better. A mark is a setting: its mean error, with a stroke from the least "
-      "seed to "
-      "the largest. A line joins the settings of a method that no other of that method beats in time and "
-      "error at "
-      "once; a ring marks those that none of any method beats. Dashed lines upright are the time of a frame "
-      "at "
-      "120, 90 and 60 Hz.");
+      "seed "
+      "to the largest. A line joins the settings of a method that no other of that method beats in time and "
+      "error at once; a ring marks those that none of any method beats. Dashed lines upright are the time of "
+      "a frame at 120, 90 and 60 Hz.");
   for (std::size_t e = 0; e < sweep_error_count; ++e) {
     const auto error = static_cast<SweepError>(e);
     const auto picture = work_precision(prices, error);
@@ -70,10 +74,8 @@ std::string fronts(const PriceList& prices) {
     table.group(std::string("Error of ") + sweep_error_words[e]);
     for (const std::size_t i : pareto_front(prices.settings, static_cast<SweepError>(e))) {
       const auto& one = prices.settings[i];
-      const Spread& error = one.errors[e];
       table.row({sim::method_name(one.setting.method), escaped(in_words(one.setting)), number(one.ms_mean, 2),
-                 number(one.ms_p95, 2),
-                 fmt::format("{:.3g} [{:.3g}, {:.3g}]", error.mean, error.low, error.high)});
+                 number(one.ms_p95, 2), in_words(one.errors[e])});
     }
   }
   return table.html();
@@ -82,12 +84,9 @@ std::string fronts(const PriceList& prices) {
 std::string price_section(const PriceList& prices) {
   return paragraph(
              "What one turn of a knob changes, from the method's usual setting: milliseconds of the mean "
-             "frame, and "
-             "each error in per cent. Below 0 is less. Milliseconds stand with the quartiles of the "
-             "differences "
-             "between frames at the same instant; where zero lies between them the knob is free. Errors "
-             "stand "
-             "with the least and largest difference over all pairs of seeds.") +
+             "frame, and each error in per cent. Below 0 is less. Milliseconds stand with the quartiles of "
+             "the differences between frames at the same instant; where zero lies between them the knob is "
+             "free. Errors stand with the least and largest difference over all pairs of seeds.") +
          to_html("Price list", prices_to_read(prices));
 }
 

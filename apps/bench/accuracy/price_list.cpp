@@ -156,10 +156,6 @@ Price price_of(const Sweep& sweep, const Group& from, const Group& to, SweepKnob
 constexpr std::array<const char*, sweep_error_count> short_errors{"front %", "centre %", "kinetic %",
                                                                   "density %"};
 
-std::string with_range(const Spread& spread) {
-  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.mean, spread.low, spread.high);
-}
-
 }  // namespace
 
 SweepErrors errors_of(const CellRun& run, const CellRun& reference, double tank_length_m) {
@@ -215,6 +211,10 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
     out.converged[e] = out.finer.size() == finer.size() && moved < smallest / 3;
   }
   return out;
+}
+
+std::string in_words(const Spread& spread) {
+  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.mean, spread.low, spread.high);
 }
 
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error) {
@@ -312,7 +312,7 @@ TextTable settings_to_read(const PriceList& list) {
     auto& row = out.rows.emplace_back();
     row = {sim::method_name(one.setting.method), in_words(one.setting), number(one.particles, 0),
            number(one.ms_mean, 2), number(one.ms_p95, 2)};
-    for (const auto& error : one.errors) row.push_back(with_range(error));
+    for (const auto& error : one.errors) row.push_back(in_words(error));
   }
   return out;
 }
@@ -327,7 +327,7 @@ TextTable prices_to_read(const PriceList& list) {
            price.free() ? "free"
                         : fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", price.ms, price.ms_low_quartile,
                                       price.ms_high_quartile)};
-    for (const auto& error : price.errors) row.push_back(with_range(error));
+    for (const auto& error : price.errors) row.push_back(in_words(error));
   }
   return out;
 }

@@ -34,6 +34,9 @@ struct Spread {
   double mean = 0, low = 0, high = 0;
 };
 
+/// "1.2 [1.1, 1.3]": mean, least and largest.
+std::string in_words(const Spread& spread);
+
 /// A setting with all its seeds.
 struct SettingResult {
   SweepSetting setting;
