@@ -16,6 +16,7 @@ struct FrameOptions {
   std::string backend = "auto";
   std::string tau = "live";
   std::string rate, ptpe;
+  std::string setting;  ///< best.toml in place of method, n_star, tau and the solver's numbers; empty = none
   std::string json;
   std::string save_state;
   int frames = 100;

@@ -14,9 +14,11 @@
 #include "apps/bench/peers.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/common/options.hpp"
+#include "apps/common/setting_file.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -141,6 +143,29 @@ nlohmann::json run_peers(FrameOptions options) {
   return result;
 }
 
+/// --setting says all that the solver goes by.
+void refuse_beside_setting(const CLI::App& command) {
+  constexpr std::array allowed{"scene",     "--setting",   "--backend", "--frames",
+                               "--warm-up", "--no-render", "--passes",  "--look",
+                               "--size",    "--views",     "--json",    "--measure-every"};
+  for (const CLI::Option* option : command.get_options()) {
+    const auto is = [&](const char* name) { return option->check_name(name); };
+    if (option->count() > 0 && std::none_of(allowed.begin(), allowed.end(), is))
+      throw CLI::ExcludesError("--setting", option->get_name());
+  }
+}
+
+void take_setting(FrameOptions& options) {
+  const SettingFile file = read_setting_file(options.setting);
+  const auto scene = sim::read_scene(base::find_input(options.scene));
+  std::printf("%s\n", describe(file).c_str());
+  if (const auto note = other_scene(file, scene.sha256); !note.empty()) std::printf("%s\n", note.c_str());
+  options.fluid = to_options(file.setting, sim::Backend::Cpu, 1);
+  options.method = sim::method_name(options.fluid.method);
+  options.n_star = std::to_string(options.fluid.n_star);
+  if (const auto tau = options.fluid.temporal.fixed_tau) options.tau = "fixed:" + base::shortest(*tau);
+}
+
 /// Runs and prints what was asked for.
 nlohmann::json run(const FrameOptions& options) {
   if (options.peers) return run_peers(options);
@@ -167,6 +192,9 @@ void add_frame_command(CLI::App& app) {
                    "cell: 16.9,3.2")
       ->excludes(tau);
   command->add_option("--ptpe", options->ptpe, ptpe_help);
+  command->add_option(
+      "--setting", options->setting,
+      "best.toml of vip-bench accuracy --budget: method, sizes and all numbers of the solver");
   command->add_flag("--temporal", options->fluid.temporal.always,
                     "Temporal acceleration also for a method without it");
   add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames");
@@ -199,6 +227,10 @@ void add_frame_command(CLI::App& app) {
   command->callback([options, command] {
     if (options->peers) refuse_beside_peers(*command);
     options->fluid.temporal.model = load_model(options->ptpe);
+    if (!options->setting.empty()) {
+      refuse_beside_setting(*command);
+      take_setting(*options);
+    }
     const auto result = run(*options);
     if (!options->json.empty()) base::write_file_atomically(options->json, result.dump(2) + "\n");
   });

@@ -24,23 +24,26 @@ int main(int argc, char** argv) {
                  "Of a headset: real, or virtual for runtimes whose time waits for the program")
       ->check(CLI::IsMember({"real", "virtual"}))
       ->capture_default_str();
-  apps::add_method(app, options.method);
-  apps::add_n_star(app, options.n_star);
-  app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")->capture_default_str();
-  app.add_option("--levels", options.levels, "N: levels of methods that split and merge (1 to 4)")
-      ->capture_default_str();
-  app.add_option("--alpha", options.alpha,
-                 "Weight of the temporal feature, 0 to 1; the preset's when left out")
-      ->check(apps::number_in(0, 1));
-  app.add_option("--iterations", options.iterations,
-                 "Constraint projections a substep; the scene's when left out")
-      ->check(CLI::Range(1, sim::LiveNumbers::most_iterations));
+  std::vector<CLI::Option*> of_setting{apps::add_method(app, options.method),
+                                       apps::add_n_star(app, options.n_star)};
+  of_setting.push_back(app.add_option("--preset", options.preset, "Readings of the paper: tuned or paper")
+                           ->capture_default_str());
+  of_setting.push_back(
+      app.add_option("--levels", options.levels, "N: levels of methods that split and merge (1 to 4)")
+          ->capture_default_str());
+  of_setting.push_back(app.add_option("--alpha", options.alpha,
+                                      "Weight of the temporal feature, 0 to 1; the preset's when left out")
+                           ->check(apps::number_in(0, 1)));
+  of_setting.push_back(app.add_option("--iterations", options.iterations,
+                                      "Constraint projections a substep; the scene's when left out")
+                           ->check(CLI::Range(1, sim::LiveNumbers::most_iterations)));
   app.add_option("--overlay", options.overlay,
                  "Painted over the water: " + base::joined(apps::overlay_names()) +
                      "; headless, several with commas make a picture each")
       ->capture_default_str();
-  app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
-      ->capture_default_str();
+  of_setting.push_back(
+      app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
+          ->capture_default_str());
   apps::add_backend(app, options.backend);
   app.add_option("--frames", options.frames, "Frames to run (headless: 100 where left out; headset)")
       ->check(CLI::Range(1, 10'000));
@@ -51,11 +54,17 @@ int main(int argc, char** argv) {
   app.add_option("--camera", options.camera, "view or overview")
       ->check(CLI::IsMember({"view", "overview"}))
       ->capture_default_str();
-  app.add_option("--ptpe", options.ptpe,
-                 "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate");
+  of_setting.push_back(app.add_option(
+      "--ptpe", options.ptpe, "fitted.toml of vip-stats fit-ptpe: tau and beta at the measured frame rate"));
+  std::string setting_file;
+  auto* setting =
+      app.add_option("--setting", setting_file,
+                     "best.toml of vip-bench accuracy --budget: method, sizes and all numbers of the solver");
+  for (CLI::Option* option : of_setting) setting->excludes(option);
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
     if (headless) options.display = "headless";
+    if (!setting_file.empty()) apps::take_setting(options, setting_file);
     if (options.clock == "virtual" && options.display != "openxr")
       throw base::Error("--clock virtual", "is for a headset", "leave it out, or use --display openxr");
     if (options.display == "headless") return apps::run_headless(options);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/common/picture_size.hpp"
+#include "apps/common/setting_file.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/simulation.hpp"
 
@@ -18,14 +19,15 @@ struct ViewOptions {
   std::string n_star = "16k";
   std::string backend = "auto";
   std::string preset = "tuned";
-  std::string overlay = "none";   ///< what is painted over the water; headless, several with commas
-  std::string tau = "live";       ///< live or fixed:X
-  int levels = 4;                 ///< N
-  std::optional<double> alpha;    ///< weight of the temporal feature; none = the preset's
-  std::optional<int> iterations;  ///< a substep; none = the scene's
-  std::string camera = "view";    ///< view | overview
-  std::string ptpe;               ///< fitted.toml; empty = none
-  std::string png_folder;         ///< empty = no pictures
+  std::string overlay = "none";        ///< what is painted over the water; headless, several with commas
+  std::string tau = "live";            ///< live or fixed:X
+  int levels = 4;                      ///< N
+  std::optional<double> alpha;         ///< weight of the temporal feature; none = the preset's
+  std::optional<int> iterations;       ///< a substep; none = the scene's
+  std::string camera = "view";         ///< view | overview
+  std::string ptpe;                    ///< fitted.toml; empty = none
+  std::optional<SettingFile> setting;  ///< best.toml, which method, n_star, levels ... were taken from
+  std::string png_folder;              ///< empty = no pictures
   PictureSize size{1280, 720};
   std::optional<int> frames;       ///< none: 100 headless, in a headset until it is left
   int every = 1;                   ///< a picture every so many frames
@@ -43,6 +45,10 @@ struct PreparedFluid {
   double finest_spacing_m = 0;   ///< 2 r_*
   bool follows_picture = false;  ///< levels come from what was drawn last
 };
+/// Takes over what best.toml names: method, n_star, levels, alpha, iterations and tau. Its other numbers hold
+/// for as long as method, n_star, levels and preset stay as it has them.
+void take_setting(ViewOptions& options, const std::string& path);
+
 /// Reads the scene, settles it and prints what came of it, the schedule too when asked to. `settling` hears
 /// of each frame of that with (done, total); when it is empty a progress bar shows them.
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling = {});

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "apps/common/program.hpp"
+#include "apps/common/setting_file.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -9,40 +11,78 @@
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
+
+namespace {
+
+sim::SimulationOptions chosen(const ViewOptions& options) {
+  sim::SimulationOptions out;
+  out.method = sim::parse_method(options.method);
+  out.n_star = sim::parse_n_star(options.n_star);
+  out.backend = sim::choose_backend(options.backend);
+  out.readings = sim::readings_of(sim::parse_preset(options.preset));
+  out.levels = options.levels;
+  if (options.alpha) out.readings.alpha = *options.alpha;
+  out.iterations = options.iterations.value_or(0);
+  out.temporal.fixed_tau = sim::parse_tau(options.tau);
+  return out;
+}
+
+/// Are these still the words that the file gave?
+bool as_set(const ViewOptions& options) {
+  if (!options.setting) return false;
+  const SolverSetting& of = options.setting->setting;
+  return sim::parse_method(options.method) == of.method && options.preset == "tuned" &&
+         sim::parse_n_star(options.n_star) == std::llround(of[SolverKnob::Size]) &&
+         options.levels == static_cast<int>(of[SolverKnob::Levels]);
+}
+
+}  // namespace
+
+void take_setting(ViewOptions& options, const std::string& path) {
+  options.setting = read_setting_file(path);
+  const SolverSetting& of = options.setting->setting;
+  const auto made = to_options(of, sim::Backend::Cpu, 1);
+  options.method = sim::method_name(of.method);
+  options.n_star = std::to_string(made.n_star);
+  options.levels = static_cast<int>(of[SolverKnob::Levels]);
+  if (turns(SolverKnob::Alpha, of.method)) options.alpha = of[SolverKnob::Alpha];
+  options.iterations = made.iterations;
+  options.tau = made.temporal.fixed_tau ? "fixed:" + base::shortest(*made.temporal.fixed_tau) : "live";
+}
 
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));
   prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
   if (!options.ptpe.empty()) prepared.ptpe = sim::read_ptpe_file(options.ptpe);
-  sim::SimulationOptions choice;
+  sim::SimulationOptions choice =
+      as_set(options) ? to_options(options.setting->setting, sim::choose_backend(options.backend), 1)
+                      : chosen(options);
   choice.cache = sim::default_cache_folder();
-  choice.method = sim::parse_method(options.method);
-  choice.n_star = sim::parse_n_star(options.n_star);
-  choice.readings = sim::readings_of(sim::parse_preset(options.preset));
-  choice.levels = options.levels;
-  if (options.alpha) choice.readings.alpha = *options.alpha;
-  choice.iterations = options.iterations.value_or(0);
   // In a window they may be chosen later.
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
-  choice.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
-  choice.backend = sim::choose_backend(options.backend);
   {
     Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
     choice.settling =
         settling ? settling : [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
     prepared.fluid = sim::make_simulation(prepared.scene, choice);
   }
-  std::printf("%s, %s, n_* %s: %lld particles on %s\n", prepared.scene.name.c_str(),
-              sim::method_name(choice.method).c_str(), options.n_star.c_str(),
+  std::printf("%s, %s, n_* %lld: %lld particles on %s\n", prepared.scene.name.c_str(),
+              sim::method_name(choice.method).c_str(), static_cast<long long>(choice.n_star),
               static_cast<long long>(prepared.fluid->particle_count()),
               sim::backend_name(choice.backend).c_str());
+  if (as_set(options)) {
+    std::printf("%s\n", describe(*options.setting).c_str());
+    const auto note = other_scene(*options.setting, prepared.scene.sha256);
+    if (!note.empty()) std::printf("%s\n", note.c_str());
+  }
   if (options.explain) std::printf("%s\n", prepared.fluid->explain().c_str());
   return prepared;
 }

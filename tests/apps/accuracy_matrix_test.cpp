@@ -31,13 +31,13 @@ TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
   for (const auto& cell : cells_of({.seeds = 1})) {
     const auto& s = cell.setting;
     const auto usual = usual_setting("SingleDam", sim::MethodKind::Ours, 4096);
-    bool others = s.method == sim::MethodKind::Ours && s[SweepKnob::Substeps] > 0;
-    for (const auto knob : {SweepKnob::Rate, SweepKnob::CoarseCycles, SweepKnob::Momentum, SweepKnob::Alpha,
-                            SweepKnob::Fovea, SweepKnob::Beta})
+    bool others = s.method == sim::MethodKind::Ours && s[SolverKnob::Substeps] > 0;
+    for (const auto knob : {SolverKnob::Rate, SolverKnob::CoarseCycles, SolverKnob::Momentum,
+                            SolverKnob::Alpha, SolverKnob::Fovea, SolverKnob::Beta})
       others = others && s[knob] == usual[knob];
     if (others)
-      levels[{s[SweepKnob::Size], s[SweepKnob::Iterations], s[SweepKnob::Substeps]}].insert(
-          s[SweepKnob::Levels]);
+      levels[{s[SolverKnob::Size], s[SolverKnob::Iterations], s[SolverKnob::Substeps]}].insert(
+          s[SolverKnob::Levels]);
   }
   EXPECT_EQ(levels.size(), 36u) << "4 sizes, 3 numbers of projections, 3 of substeps";
   // The turns of one knob at the usual size and projections stand there beside the quarter.
@@ -53,7 +53,7 @@ TEST(AccuracyMatrix, AKeyNamesEverythingThatACellDependsOn) {
   const SweepCell cell{usual_setting("SingleDam", sim::MethodKind::Ours, 1024), 1, 2, ""};
   std::set<std::string> keys{key_of(cell, "scene", "program"), key_of(cell, "other scene", "program"),
                              key_of(cell, "scene", "other program")};
-  for (const auto& traits : sweep_knobs()) {
+  for (const auto& traits : solver_knobs()) {
     auto other = cell;
     other.setting[traits.knob] += 1;
     keys.insert(key_of(other, "scene", "program"));
@@ -66,9 +66,9 @@ TEST(AccuracyMatrix, AKeyNamesEverythingThatACellDependsOn) {
     if (what == 3) other.setting.method = sim::MethodKind::HiRes;
     keys.insert(key_of(other, "scene", "program"));
   }
-  EXPECT_EQ(keys.size(), 3 + sweep_knob_count + 4);
+  EXPECT_EQ(keys.size(), 3 + solver_knob_count + 4);
   auto hires = usual_setting("SingleDam", sim::MethodKind::HiRes, 1024), same = hires;
-  same[SweepKnob::Levels] = 2;
+  same[SolverKnob::Levels] = 2;
   EXPECT_EQ(to_text(hires), to_text(same)) << "HiRes has no levels to number";
 }
 

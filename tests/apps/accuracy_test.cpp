@@ -71,7 +71,7 @@ TEST(AccuracyErrors, AreRootMeanSquaresInPerCent) {
 const SweepPlan small_plan{.n_star = 512};
 const SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
 
-StoredCell stored(const SweepSetting& setting, int seed, const CellRun& run) {
+StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
   const SweepCell cell{setting, seed, small_plan.seconds, small_plan.size};
   return {cell, origin, run};
 }
@@ -81,8 +81,8 @@ std::vector<StoredCell> small_sweep() {
   const auto reference = reference_setting("SingleDam", 512);
   const auto usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
   auto eight = usual, three = usual;
-  eight[SweepKnob::Iterations] = 8;
-  three[SweepKnob::Iterations] = 3;
+  eight[SolverKnob::Iterations] = 8;
+  three[SolverKnob::Iterations] = 3;
   auto as_quick = run_with(1.3, 10, 10);
   for (std::size_t i = 0; i < as_quick.frames.size(); ++i) as_quick.frames[i].solve_ms += i % 2 ? 0.5 : -0.5;
   return {stored(reference, 1, run_with(1, 10, 100)),
@@ -102,7 +102,7 @@ TEST(AccuracyPrices, ArePairsOfMillisecondsAndErrors) {
   const Price& three = list.prices[0];
   EXPECT_TRUE(three.free()) << "its frames are faster and slower by turns";
   const Price& eight = list.prices[1];
-  EXPECT_EQ(eight.knob, SweepKnob::Iterations);
+  EXPECT_EQ(eight.knob, SolverKnob::Iterations);
   EXPECT_DOUBLE_EQ(eight.from, 4);
   EXPECT_DOUBLE_EQ(eight.to, 8);
   EXPECT_DOUBLE_EQ(eight.ms, 4);

@@ -62,6 +62,7 @@ class OutputOptionsE2e : public ::testing::Test {
             accuracy_ + " --db " + sweep_ + " --prices-csv ",
             accuracy_ + " --db " + sweep_ + " --markdown ",
             accuracy_ + " --db " + sweep_ + " --html ",
+            accuracy_ + " --db " + sweep_ + " --budget 5ms --out ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
             table1_ + " --cells ",

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "apps/bench/accuracy/accuracy_page.hpp"
+#include "apps/bench/accuracy/budget.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/timed_run.hpp"
 #include "apps/common/options.hpp"
@@ -26,6 +27,7 @@ using study::sqlite::Open;
 struct AccuracyOptions {
   std::string scene = "SingleDam", n_star = "4k", backend = "auto";
   std::string database, cell, out, csv, prices_csv, markdown, html;
+  std::string budget, error = "centre";
   std::optional<PictureSize> size;
   double seconds = 2;
   int seeds = 2;
@@ -118,15 +120,36 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
   if (!options.html.empty()) base::write_file_atomically(options.html, accuracy_page(list, job.plan));
 }
 
+/// Cells of the sweep that are not there leave the choice smaller; the setting itself is run anew.
+void run_budget(const Job& job, const AccuracyOptions& options) {
+  const BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
+                        job.scene.scene.tank_size_m[0]};
+  SweepFile file(options.database, Open::Read);
+  const auto done = file.keys(job.origin.machine);
+  const auto there = std::count_if(job.cells.begin(), job.cells.end(),
+                                   [&](const auto& cell) { return done.contains(job.key(cell)); });
+  if (static_cast<std::size_t>(there) < job.cells.size())
+    std::printf("%td of the sweep's %zu cells are there\n", there, job.cells.size());
+  const auto choice = choose_setting(
+      file.cells(), job.origin, wish, [&](const SweepCell& cell) { return run(job, cell); },
+      [](const std::string& words) { std::printf("%s\n", words.c_str()); });
+  base::write_file_atomically(options.out, format_setting_file(choice));
+  std::printf("%s: %s\n", options.out.c_str(), describe(choice).c_str());
+}
+
 void run_accuracy(const AccuracyOptions& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--prices-csv", options.prices_csv},
                    {"--markdown", options.markdown},
                    {"--html", options.html}});
+  check_apart(options.database, {{"--out", options.out}});
+  if (!options.out.empty() && options.cell.empty() && options.budget.empty())
+    throw base::Error("--out", "belongs to --cell or --budget", "give one of them");
   const Job job = job_of(options);
   if (options.list) return print_list(job);
   if (!options.cell.empty()) return run_one(job, options);
   if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
+  if (!options.budget.empty()) return run_budget(job, options);
   SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
   if (!options.table_only) run_missing(job, file);
   write_tables(job, file, options);
@@ -164,12 +187,25 @@ void add_accuracy_command(CLI::App& app) {
   command->add_flag("--quick", options->quick, "A dozen cells of 256 n_* and half a second");
   auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");
   auto* cell = command->add_option("--cell", options->cell, "Only run the cell of this key, into --out");
-  auto* out = command->add_option("--out", options->out, "Sweep file for --cell")->check(output_file());
+  auto* out = command->add_option("--out", options->out, "Sweep file of --cell, or setting file of --budget")
+                  ->check(output_file());
   cell->needs(out)->excludes(list)->excludes(database);
-  out->needs(cell);
-  command->add_flag("--table", options->table_only, "Only make the tables, of what --db holds")
-      ->excludes(list)
-      ->excludes(cell);
+  auto* table = command->add_flag("--table", options->table_only, "Only make the tables, of what --db holds")
+                    ->excludes(list)
+                    ->excludes(cell);
+  auto* budget = command
+                     ->add_option("--budget", options->budget,
+                                  "Only choose: of what --db holds, the setting of least error that keeps "
+                                  "95 % of its frames within this time, such as 11.1ms; into --out")
+                     ->needs(out)
+                     ->needs(database)
+                     ->excludes(list)
+                     ->excludes(cell)
+                     ->excludes(table);
+  command->add_option("--error", options->error, "That is to be least: front, centre, kinetic or density")
+      ->check(CLI::IsMember(sweep_error_names()))
+      ->capture_default_str()
+      ->needs(budget);
   command->add_option("--csv", options->csv, "File for a row for each setting")->check(output_file());
   command->add_option("--prices-csv", options->prices_csv, "File for a row for each turn of a knob")
       ->check(output_file());

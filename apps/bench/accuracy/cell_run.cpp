@@ -65,7 +65,7 @@ CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend ba
   const auto pictures_of_cell = pictures(cell, scene);
   const auto fluid = start(cell, scene, backend);
   if (pictures_of_cell) pictures_of_cell->warm_up(*fluid);
-  const int rate = static_cast<int>(cell.setting[SweepKnob::Rate]);
+  const int rate = static_cast<int>(cell.setting[SolverKnob::Rate]);
   const int frames = std::max(1, static_cast<int>(std::lround(cell.seconds * rate)));
   CellRun out;
   Substeps substeps;

@@ -10,36 +10,36 @@ namespace apps {
 
 namespace {
 
-SweepSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
+SolverSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
   auto out = usual_setting(plan.scene, method, plan.n_star);
   // At tau = -6 frames/s, as in Table 2.
-  if (sim::traits_of(method).temporal) out[SweepKnob::Beta] = stats::activation_floor({}, -6);
+  if (sim::traits_of(method).temporal) out[SolverKnob::Beta] = stats::activation_floor({}, -6);
   return out;
 }
 
 /// A knob's value as it stands in a setting.
-double value_of(const SweepKnobTraits& traits, double value, const SweepPlan& plan) {
-  return traits.knob == SweepKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
+double value_of(const SolverKnobTraits& traits, double value, const SweepPlan& plan) {
+  return traits.knob == SolverKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
 }
 
-std::vector<SweepSetting> methods_by_size(const SweepPlan& plan) {
-  std::vector<SweepSetting> out;
+std::vector<SolverSetting> methods_by_size(const SweepPlan& plan) {
+  std::vector<SolverSetting> out;
   for (const auto& method : sim::all_methods()) {
     out.push_back(start_of(plan, method.kind));
     if (plan.quick) continue;
-    for (const double factor : traits_of(SweepKnob::Size).others) {
+    for (const double factor : traits_of(SolverKnob::Size).others) {
       out.push_back(start_of(plan, method.kind));
-      out.back()[SweepKnob::Size] = value_of(traits_of(SweepKnob::Size), factor, plan);
+      out.back()[SolverKnob::Size] = value_of(traits_of(SolverKnob::Size), factor, plan);
     }
   }
   return out;
 }
 
-std::vector<SweepSetting> one_at_a_time(const SweepPlan& plan, sim::MethodKind method) {
-  std::vector<SweepSetting> out;
-  for (const auto& traits : sweep_knobs()) {
+std::vector<SolverSetting> one_at_a_time(const SweepPlan& plan, sim::MethodKind method) {
+  std::vector<SolverSetting> out;
+  for (const auto& traits : solver_knobs()) {
     if (!turns(traits.knob, method)) continue;
-    if (plan.quick && traits.knob != SweepKnob::Iterations) continue;
+    if (plan.quick && traits.knob != SolverKnob::Iterations) continue;
     for (const double value : traits.others) {
       out.push_back(start_of(plan, method));
       out.back()[traits.knob] = value_of(traits, value, plan);
@@ -48,18 +48,18 @@ std::vector<SweepSetting> one_at_a_time(const SweepPlan& plan, sim::MethodKind m
   return out;
 }
 
-std::vector<SweepSetting> quarter_factorial(const SweepPlan& plan) {
+std::vector<SolverSetting> quarter_factorial(const SweepPlan& plan) {
   constexpr double sizes[] = {0.25, 0.5, 1, 2}, iterations[] = {2, 4, 8}, substeps[] = {1, 2, 4},
                    levels[] = {1, 2, 3, 4};
-  std::vector<SweepSetting> out;
+  std::vector<SolverSetting> out;
   for (std::size_t s = 0; s < 4; ++s) {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t u = 0; u < 3; ++u) {
         auto& setting = out.emplace_back(start_of(plan, sim::MethodKind::Ours));
-        setting[SweepKnob::Size] = value_of(traits_of(SweepKnob::Size), sizes[s], plan);
-        setting[SweepKnob::Iterations] = iterations[i];
-        setting[SweepKnob::Substeps] = substeps[u];
-        setting[SweepKnob::Levels] = levels[(s + i + u) % 4];
+        setting[SolverKnob::Size] = value_of(traits_of(SolverKnob::Size), sizes[s], plan);
+        setting[SolverKnob::Iterations] = iterations[i];
+        setting[SolverKnob::Substeps] = substeps[u];
+        setting[SolverKnob::Levels] = levels[(s + i + u) % 4];
       }
     }
   }
@@ -77,16 +77,16 @@ std::string key_of(const SweepCell& cell, const std::string& scene_sha256, const
   return base::sha256_hex(to_text(cell) + "\n" + scene_sha256 + "\n" + program).substr(0, 16);
 }
 
-SweepSetting reference_setting(const std::string& scene, std::int64_t n_star) {
+SolverSetting reference_setting(const std::string& scene, std::int64_t n_star) {
   auto out = usual_setting(scene, sim::MethodKind::HiRes, n_star);
-  out[SweepKnob::Iterations] = 32;
-  out[SweepKnob::Substeps] = 4;
+  out[SolverKnob::Iterations] = 32;
+  out[SolverKnob::Substeps] = 4;
   return out;
 }
 
-std::vector<SweepSetting> finer_references(const SweepSetting& reference) {
-  std::vector<SweepSetting> out;
-  for (const SweepKnob knob : {SweepKnob::Iterations, SweepKnob::Substeps, SweepKnob::Size}) {
+std::vector<SolverSetting> finer_references(const SolverSetting& reference) {
+  std::vector<SolverSetting> out;
+  for (const SolverKnob knob : {SolverKnob::Iterations, SolverKnob::Substeps, SolverKnob::Size}) {
     out.push_back(reference);
     out.back()[knob] *= 2;
   }
@@ -95,7 +95,7 @@ std::vector<SweepSetting> finer_references(const SweepSetting& reference) {
 
 std::vector<SweepCell> cells_of(const SweepPlan& plan) {
   std::vector<SweepCell> out;
-  const auto add = [&](const SweepSetting& setting, int seeds) {
+  const auto add = [&](const SolverSetting& setting, int seeds) {
     for (int seed = 1; seed <= seeds; ++seed) {
       const SweepCell cell{setting, seed, plan.seconds, plan.size};
       if (std::find(out.begin(), out.end(), cell) == out.end()) out.push_back(cell);

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/accuracy/setting.hpp"
+#include "apps/common/solver_setting.hpp"
 
 namespace apps {
 
 struct SweepCell {
-  SweepSetting setting;
+  SolverSetting setting;
   int seed = 1;           ///< 1 = the settled state itself; others move it by an ulp
   double seconds = 2;     ///< of content, from the opening of the gate
   std::string size = {};  ///< picture in which water is drawn and looked at; empty = none
@@ -32,9 +32,9 @@ struct SweepPlan {
 };
 
 /// HiRes with 32 projections and four substeps: what the others are held against.
-SweepSetting reference_setting(const std::string& scene, std::int64_t n_star);
+SolverSetting reference_setting(const std::string& scene, std::int64_t n_star);
 /// The reference with twice the projections, substeps or particles.
-std::vector<SweepSetting> finer_references(const SweepSetting& reference);
+std::vector<SolverSetting> finer_references(const SolverSetting& reference);
 
 /// References first, with two seeds of the first; then each method at each size; then each knob alone around
 /// HiRes and Ours; then a quarter of the factorial of size, projections, substeps and levels under Ours, in

@@ -59,7 +59,7 @@ struct Sweep {
   double tank_length_m = 0;
   std::vector<Group> groups = {};
 
-  const Group* find(const SweepSetting& setting) const {
+  const Group* find(const SolverSetting& setting) const {
     const auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
       return to_text(group.front()->cell.setting) == to_text(setting);
     });
@@ -124,10 +124,10 @@ SettingResult result_of(const Sweep& sweep, const Group& group) {
 }
 
 /// The one knob in which two settings differ; none when it is none or several.
-std::optional<SweepKnob> turned(const SweepSetting& a, const SweepSetting& b) {
-  std::optional<SweepKnob> out;
+std::optional<SolverKnob> turned(const SolverSetting& a, const SolverSetting& b) {
+  std::optional<SolverKnob> out;
   if (a.method != b.method) return {};
-  for (const auto& traits : sweep_knobs()) {
+  for (const auto& traits : solver_knobs()) {
     if (a[traits.knob] == b[traits.knob]) continue;
     if (out) return {};
     out = traits.knob;
@@ -135,7 +135,7 @@ std::optional<SweepKnob> turned(const SweepSetting& a, const SweepSetting& b) {
   return out;
 }
 
-Price price_of(const Sweep& sweep, const Group& from, const Group& to, SweepKnob knob) {
+Price price_of(const Sweep& sweep, const Group& from, const Group& to, SolverKnob knob) {
   const auto &start = from.front()->cell.setting, &end = to.front()->cell.setting;
   Price out{.method = start.method, .knob = knob, .from = start[knob], .to = end[knob]};
   out.ms = mean(frame_ms(to)) - mean(frame_ms(from));
@@ -230,10 +230,10 @@ std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings
   return out;
 }
 
-std::string in_words(const SweepSetting& setting) {
+std::string in_words(const SolverSetting& setting) {
   std::string out;
-  for (const auto& traits : sweep_knobs()) {
-    const bool own = traits.knob == SweepKnob::Size || setting[traits.knob] != traits.usual;
+  for (const auto& traits : solver_knobs()) {
+    const bool own = traits.knob == SolverKnob::Size || setting[traits.knob] != traits.usual;
     if (own && turns(traits.knob, setting.method))
       out += fmt::format("{}{} {:.4g}", out.empty() ? "" : ", ", traits.words, setting[traits.knob]);
   }

@@ -39,7 +39,7 @@ std::string in_words(const Spread& spread);
 
 /// A setting with all its seeds.
 struct SettingResult {
-  SweepSetting setting;
+  SolverSetting setting;
   int seeds = 0;
   double particles = 0, substeps = 0;
   double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;  ///< whole frames
@@ -50,7 +50,7 @@ struct SettingResult {
 /// What turning one knob away from the start changes.
 struct Price {
   sim::MethodKind method{};
-  SweepKnob knob{};
+  SolverKnob knob{};
   double from = 0, to = 0;
   double ms = 0;                                      ///< change of the mean frame
   double ms_low_quartile = 0, ms_high_quartile = 0;   ///< of the changes of frames at the same instants
@@ -82,7 +82,7 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
 /// What tells a setting from its method's usual one: "n_* 512, projections 8".
-std::string in_words(const SweepSetting& setting);
+std::string in_words(const SolverSetting& setting);
 /// "counts as converged" and the like, of an error's reference.
 std::string convergence(const PriceList& list, SweepError error);
 

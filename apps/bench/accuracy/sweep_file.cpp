@@ -23,7 +23,7 @@ constexpr const char* sample_columns =
 
 std::string knob_columns(const char* after) {
   std::string out;
-  for (const auto& traits : sweep_knobs()) out += std::string(traits.column) + after + ", ";
+  for (const auto& traits : solver_knobs()) out += std::string(traits.column) + after + ", ";
   return out;
 }
 
@@ -119,7 +119,7 @@ bool insert(Connection& database, const StoredCell& stored) {
   if (there.step()) return false;
   const auto& setting = stored.cell.setting;
   std::string marks = "?";
-  for (std::size_t i = 1; i < columns_before_knobs + sweep_knob_count + 6; ++i) marks += ", ?";
+  for (std::size_t i = 1; i < columns_before_knobs + solver_knob_count + 6; ++i) marks += ", ?";
   Statement cell(database, "INSERT INTO cell (" + cell_columns() + ") VALUES (" + marks + ")");
   int at = 0;
   for (const std::string& text :

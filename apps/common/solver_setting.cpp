@@ -1,4 +1,4 @@
-#include "apps/bench/accuracy/setting.hpp"
+#include "apps/common/solver_setting.hpp"
 
 #include <fmt/core.h>
 #include <cmath>
@@ -7,24 +7,63 @@
 
 namespace apps {
 
-const std::array<SweepKnobTraits, sweep_knob_count>& sweep_knobs() {
-  using enum SweepKnob;
+const std::array<SolverKnobTraits, solver_knob_count>& solver_knobs() {
+  using enum SolverKnob;
   static const auto tuned = sim::readings_of(sim::Preset::Tuned);
-  static const std::array<SweepKnobTraits, sweep_knob_count> all{{
-      {.knob = Size, .column = "n_star", .words = "n_*", .usual = 32768, .others = {0.25, 0.5, 2}},
-      {.knob = Rate, .column = "frames_per_s", .words = "frames/s", .usual = 60, .others = {90, 120}},
-      {.knob = Iterations, .column = "iterations", .words = "projections", .usual = 4, .others = {2, 8, 16}},
-      {.knob = Substeps, .column = "substeps", .words = "substeps", .usual = 0, .others = {1, 2, 4}},
+  static const std::array<SolverKnobTraits, solver_knob_count> all{{
+      {.knob = Size,
+       .column = "n_star",
+       .words = "n_*",
+       .least = 1,
+       .most = 1e9,
+       .whole = true,
+       .usual = 32768,
+       .others = {0.25, 0.5, 2}},
+      {.knob = Rate,
+       .column = "frames_per_s",
+       .words = "frames/s",
+       .least = 1,
+       .most = 1e5,
+       .usual = 60,
+       .others = {90, 120}},
+      {.knob = Iterations,
+       .column = "iterations",
+       .words = "projections",
+       .least = 1,
+       .most = 64,
+       .whole = true,
+       .usual = 4,
+       .others = {2, 8, 16}},
+      {.knob = Substeps,
+       .column = "substeps",
+       .words = "substeps",
+       .least = 0,
+       .most = 64,
+       .whole = true,
+       .usual = 0,
+       .others = {1, 2, 4}},
       {.knob = CoarseCycles,
        .column = "coarse_cycles",
        .words = "coarse cycles",
+       .least = 0,
+       .most = 16,
+       .whole = true,
        .usual = 2,
        .others = {0, 1, 4}},
-      {.knob = Momentum, .column = "momentum", .words = "momentum", .usual = 0.4, .others = {0, 0.2, 0.6}},
+      {.knob = Momentum,
+       .column = "momentum",
+       .words = "momentum",
+       .least = 0,
+       .most = 100,
+       .usual = 0.4,
+       .others = {0, 0.2, 0.6}},
       {.knob = Levels,
        .column = "levels",
        .words = "levels",
        .of_levels = true,
+       .least = 1,
+       .most = 4,
+       .whole = true,
        .usual = 4,
        .others = {2, 3}},
       {.knob = Alpha,
@@ -32,51 +71,57 @@ const std::array<SweepKnobTraits, sweep_knob_count>& sweep_knobs() {
        .words = "alpha",
        .of_levels = true,
        .of_saliency = true,
+       .least = 0,
+       .most = 1,
        .usual = tuned.alpha,
        .others = {0, 1.0 / 3, 1}},
       {.knob = Fovea,
        .column = "fovea_deg",
        .words = "fovea, deg",
        .of_levels = true,
+       .least = 0,
+       .most = 180,
        .usual = tuned.fovea_half_angle_deg,
        .others = {5, 15, 30}},
       {.knob = Beta,
        .column = "beta",
        .words = "beta",
        .of_levels = true,
+       .least = 1e-6,
+       .most = 1,
        .usual = 1,
        .others = {0.9, 0.67, 0.5}},
   }};
   return all;
 }
 
-const SweepKnobTraits& traits_of(SweepKnob knob) { return sweep_knobs()[static_cast<std::size_t>(knob)]; }
+const SolverKnobTraits& traits_of(SolverKnob knob) { return solver_knobs()[static_cast<std::size_t>(knob)]; }
 
-SweepSetting usual_setting(const std::string& scene, sim::MethodKind method, std::int64_t n_star) {
-  SweepSetting out{.scene = scene, .method = method};
-  for (const auto& traits : sweep_knobs()) out[traits.knob] = traits.usual;
-  out[SweepKnob::Size] = static_cast<double>(n_star);
+SolverSetting usual_setting(const std::string& scene, sim::MethodKind method, std::int64_t n_star) {
+  SolverSetting out{.scene = scene, .method = method};
+  for (const auto& traits : solver_knobs()) out[traits.knob] = traits.usual;
+  out[SolverKnob::Size] = static_cast<double>(n_star);
   return out;
 }
 
-bool turns(SweepKnob knob, sim::MethodKind method) {
+bool turns(SolverKnob knob, sim::MethodKind method) {
   const auto& method_traits = sim::traits_of(method);
   const auto& traits = traits_of(knob);
   if (traits.of_saliency) return method_traits.target == sim::TargetSource::Saliency;
   return !traits.of_levels || method_traits.adaptive();
 }
 
-std::string to_text(const SweepSetting& setting) {
+std::string to_text(const SolverSetting& setting) {
   std::string out = setting.scene + " " + sim::method_name(setting.method);
-  for (const auto& traits : sweep_knobs()) {
+  for (const auto& traits : solver_knobs()) {
     if (turns(traits.knob, setting.method))
       out += fmt::format(" {}={:.6g}", traits.column, setting[traits.knob]);
   }
   return out;
 }
 
-sim::SimulationOptions to_options(const SweepSetting& setting, sim::Backend backend, std::uint32_t seed) {
-  using enum SweepKnob;
+sim::SimulationOptions to_options(const SolverSetting& setting, sim::Backend backend, std::uint32_t seed) {
+  using enum SolverKnob;
   sim::SimulationOptions out;
   out.method = setting.method;
   out.n_star = std::llround(setting[Size]);

@@ -1,0 +1,39 @@
+#pragma once
+/// The setting of least error whose frames keep a budget of time.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/common/setting_file.hpp"
+
+namespace apps {
+
+/// Milliseconds from "11.1ms". base::Error that names --budget.
+double parse_budget(const std::string& words);
+/// From "front", "centre", "kinetic" or "density".
+SweepError parse_sweep_error(const std::string& word);
+const std::vector<std::string>& sweep_error_names();
+
+/// Settings whose 95th percentile is within the budget, in the order in which to try them: the least error
+/// first; of those whose error's range meets the least one's range, the cheapest. Places in `settings`.
+std::vector<std::size_t> within_budget(const std::vector<SettingResult>& settings, double budget_ms,
+                                       SweepError error);
+
+struct BudgetWish {
+  SweepPlan plan;
+  double budget_ms = 0;
+  SweepError error = SweepError::Centre;
+  double tank_length_m = 0;
+};
+
+/// Tries the settings of `cells` that keep the budget: each is run from two fresh starts, and the first that
+/// keeps it again is the choice. Its error is over all starts, its milliseconds are of the fresh ones.
+/// `said` hears of each that is tried and does not. base::Error where none keeps the budget: what comes
+/// nearest, and what it lacks.
+SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
+                           const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
+                           const std::function<void(const std::string&)>& said);
+
+}  // namespace apps

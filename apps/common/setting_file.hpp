@@ -1,0 +1,45 @@
+#pragma once
+/// best.toml: the setting that `vip-bench accuracy --budget` chose, on its way to the programs that run it.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "apps/common/solver_setting.hpp"
+
+namespace apps {
+
+struct SettingFile {
+  static constexpr int format_version = 1;
+
+  /// Why the setting was chosen, and what it cost where it was measured.
+  struct Measured {
+    std::string machine, program, scene_sha256;
+    std::string picture;   ///< size of what was drawn in each frame; "none" = the solver alone was timed
+    double seconds = 0;    ///< of content
+    double budget_ms = 0;  ///< that 95 % of the frames were to keep
+    double ms_mean = 0;    ///< of a whole frame, from fresh starts
+    double ms_p95 = 0;     ///< the same, 95th percentile
+    std::string error;     ///< which was to be least: "centre_pct"
+    double error_pct = 0;  ///< mean over all starts, against the sweep's reference
+    double error_low_pct = 0, error_high_pct = 0;  ///< least and largest of the starts
+    int seeds = 0;                                 ///< starts
+    std::string date_utc;
+  };
+
+  SolverSetting setting;
+  Measured measured;
+};
+
+/// One line: the setting, its milliseconds, its error and the machine.
+std::string describe(const SettingFile& file);
+/// Says that the figures hold for another scene file; empty where they do not.
+std::string other_scene(const SettingFile& file, const std::string& scene_sha256);
+
+/// Errors (base::Error at file:line:column): unknown key, wrong type or range, newer format.
+SettingFile parse_setting_file(std::string_view text, const std::string& name);
+SettingFile read_setting_file(const std::filesystem::path& path);
+/// The text of a file that parse_setting_file reads back to the same values.
+std::string format_setting_file(const SettingFile& file);
+
+}  // namespace apps
