@@ -111,11 +111,15 @@ bool turns(SolverKnob knob, sim::MethodKind method) {
   return !traits.of_levels || method_traits.adaptive();
 }
 
+std::string value_words(SolverKnob knob, double value) {
+  return traits_of(knob).whole ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+}
+
 std::string to_text(const SolverSetting& setting) {
   std::string out = setting.scene + " " + sim::method_name(setting.method);
   for (const auto& traits : solver_knobs()) {
     if (turns(traits.knob, setting.method))
-      out += fmt::format(" {}={:.6g}", traits.column, setting[traits.knob]);
+      out += fmt::format(" {}={}", traits.column, value_words(traits.knob, setting[traits.knob]));
   }
   return out;
 }

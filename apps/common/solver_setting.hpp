@@ -56,6 +56,9 @@ SolverSetting usual_setting(const std::string& scene, sim::MethodKind method, st
 /// Whether the knob means anything to the method.
 bool turns(SolverKnob knob, sim::MethodKind method);
 
+/// A knob's value for a reader and for programs: "16384", "0.7866".
+std::string value_words(SolverKnob knob, double value);
+
 /// "SingleDam Ours n_star=32768 frames_per_s=60 ...", with the knobs that mean something to the method: equal
 /// texts run alike.
 std::string to_text(const SolverSetting& setting);

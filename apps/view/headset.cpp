@@ -55,13 +55,13 @@ class HeadsetViewer {
                display.session().eye_gaze ? "the eye tracker" : "the head's direction");
     PreparedFluid prepared = prepare_fluid(options);
     prepared.scene.view = prepared.camera;
-    frame_ns_ = std::llround(1e9 * prepared.scene.frame_dt_s);
+    frame_ns_ = std::llround(1e9 * prepared.frame_dt_s);
     Viewing viewing;
     viewing.ray = [this] { return recorder_.ray(); };
     // It begins once: no step is behind another.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
     const auto make = [fluid] { return std::move(*fluid); };
-    fluid_.emplace(prepared.scene, prepared.scene.frame_dt_s, prepared.scene.name, make, viewing);
+    fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing);
   }
 
   Shown run() {

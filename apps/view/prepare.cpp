@@ -65,6 +65,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   // In a window they may be chosen later.
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
+  prepared.frame_dt_s = choice.frame_dt_s > 0 ? choice.frame_dt_s : prepared.scene.frame_dt_s;
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;

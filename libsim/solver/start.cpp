@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "libsim/scene/fill.hpp"
@@ -126,9 +127,17 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
                 const Resolution& resolution, int frame) {
   const auto f = [](double value) { return static_cast<float>(value); };
   auto& jets = state.jets;
-  jets.nozzles = scene.nozzles;
   jets.finest_spacing_m = resolution.finest_spacing_m;
   jets.frame_dt_s = frame_dt_of(scene, options);
+  jets.nozzles = scene.nozzles;
+  for (Nozzle& nozzle : jets.nozzles) {
+    // A scene counts in frames of its own: a pulse is as long in a run whose frames are not.
+    const auto in_the_run = [&](int frames) {
+      return static_cast<int>(std::lround(frames * scene.frame_dt_s / jets.frame_dt_s));
+    };
+    nozzle.on_frames = std::max(1, in_the_run(nozzle.on_frames));
+    nozzle.off_frames = in_the_run(nozzle.off_frames);
+  }
   jets.level = resolution.level;
   jets.by_target = state.particles.has(Column::Target);
   jets.before.clear();

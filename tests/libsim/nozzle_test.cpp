@@ -165,6 +165,36 @@ void counts_flow_and_walls_hold(Backend backend) {
 TEST(Nozzle, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cpu); }
 TEST(NozzleGpu, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cuda); }
 
+/// Volume poured by each 60th of a second that is a frame's end, in m_*.
+std::vector<std::int64_t> poured_over_time(const sim::Scene& scene, double frame_dt_s, int frames) {
+  auto options = small(Backend::Cpu, MethodKind::LoRes);
+  options.frame_dt_s = frame_dt_s;
+  options.substeps = 1;
+  const auto fluid = sim::make_simulation(scene, options);
+  std::vector<std::int64_t> out;
+  for (int frame = 1; frame <= frames; ++frame) {
+    fluid->step_frame();
+    if (frame * 60 % frames == 0) out.push_back(fluid->report().poured);
+  }
+  return out;
+}
+
+TEST(Nozzle, PulsesLastAsLongWhateverTheRunsFrames) {
+  auto scene = faucet();
+  scene.settle_frames = 0;
+  scene.nozzles.front().on_frames = 20;
+  scene.nozzles.front().off_frames = 30;
+  const auto usual = poured_over_time(scene, 0, 60);
+  ASSERT_EQ(usual.size(), 60u);
+  EXPECT_GT(usual[19], 0);
+  EXPECT_EQ(usual[49], usual[19]) << "off from frame 20 to 50";
+  EXPECT_GT(usual[59], usual[49]);
+  EXPECT_EQ(poured_over_time(scene, 1.0 / 120, 120), usual);
+  const auto at_90 = poured_over_time(scene, 1.0 / 90, 90);  // every 30th of a second
+  ASSERT_EQ(at_90.size(), 30u);
+  for (std::size_t i = 0; i < at_90.size(); ++i) EXPECT_EQ(at_90[i], usual[2 * i + 1]) << i;
+}
+
 bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
            return p.id == q.id && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&

@@ -235,7 +235,8 @@ std::string in_words(const SolverSetting& setting) {
   for (const auto& traits : solver_knobs()) {
     const bool own = traits.knob == SolverKnob::Size || setting[traits.knob] != traits.usual;
     if (own && turns(traits.knob, setting.method))
-      out += fmt::format("{}{} {:.4g}", out.empty() ? "" : ", ", traits.words, setting[traits.knob]);
+      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", traits.words,
+                         value_words(traits.knob, setting[traits.knob]));
   }
   return out;
 }
@@ -291,8 +292,8 @@ TextTable price_table(const PriceList& list) {
            list.origin.program,
            sim::method_name(price.method),
            traits_of(price.knob).column,
-           shortest(price.from),
-           shortest(price.to),
+           value_words(price.knob, price.from),
+           value_words(price.knob, price.to),
            number(price.ms, 3),
            number(price.ms_low_quartile, 3),
            number(price.ms_high_quartile, 3),
@@ -323,7 +324,7 @@ TextTable prices_to_read(const PriceList& list) {
   for (const auto& price : list.prices) {
     auto& row = out.rows.emplace_back();
     row = {sim::method_name(price.method), traits_of(price.knob).words,
-           shortest(price.from) + " to " + shortest(price.to),
+           value_words(price.knob, price.from) + " to " + value_words(price.knob, price.to),
            price.free() ? "free"
                         : fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", price.ms, price.ms_low_quartile,
                                       price.ms_high_quartile)};
