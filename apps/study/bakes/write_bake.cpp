@@ -1,6 +1,7 @@
 #include "apps/study/bakes/write_bake.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "apps/common/finite_water.hpp"
@@ -21,11 +22,15 @@ std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
 }
 
 /// The point of the picture where the scene's keys lie at each frame.
-auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::int64_t& frame) {
+auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::int64_t& frame,
+                  double frame_dt_s) {
   const sim::Camera camera = order.fluid.overview ? scene.overview : scene.view;
-  return [&frame, scene, camera, viewing = order.fluid.viewing](int width, int height) {
+  // The keys count the scene's own frames.
+  return [&frame, scene, camera, share = frame_dt_s / scene.frame_dt_s, viewing = order.fluid.viewing](
+             int width, int height) {
     const sim::View view = framed_view(camera, viewing, width, height);
-    return place_in(view, sim::gaze_point(scene, static_cast<int>(frame)));
+    return place_in(
+        view, sim::gaze_point(scene, static_cast<int>(std::lround(static_cast<double>(frame) * share))));
   };
 }
 
@@ -37,7 +42,8 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
   StimulusChoice choice = order.fluid;
   std::int64_t frame = 0;
   if (header.view.gaze == "scene")
-    choice.viewing.gaze = gaze_by_keys(order, sim::parse_scene(header.scene_text, header.scene_name), frame);
+    choice.viewing.gaze =
+        gaze_by_keys(order, sim::parse_scene(header.scene_text, header.scene_name), frame, header.frame_dt_s);
   std::optional<sim::Offscreen> target;
   if (draws(header)) {
     header.view.renderer = sim::gl_description();
