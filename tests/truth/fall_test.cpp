@@ -1,5 +1,6 @@
 /// Free fall, and a column at rest.
 
+#include "stats/inference/linear_fit.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
@@ -41,6 +42,39 @@ void particles_fall(Backend backend) {
 }
 TEST(TruthFall, EqualsSymplecticEuler) { particles_fall(Backend::Cpu); }
 TEST(TruthFallGpu, EqualsSymplecticEuler) { particles_fall(Backend::Cuda); }
+
+/// A projectile after 0.8 s, at four frame steps: its distance from the parabola, and the order at which that
+/// falls with the step. Theory has symplectic Euler of order 1.
+void projectile_is_of_first_order(Run run) {
+  constexpr double end_s = 0.8, up = 4, along = 3;
+  const auto scene = fluid_test::tank({10, 10, 10}, {});
+  const State start{{0, 0, 2, 5, 5, static_cast<float>(along), static_cast<float>(up), 0}};
+  std::vector<double> log_dt, log_error;
+  for (const int rate : {30, 60, 120, 240}) {
+    sim::SimulationOptions options;
+    options.substeps = 1;
+    options.frame_dt_s = 1.0 / rate;
+    const auto fluid = start_from(run, scene, 0.15, start, options);
+    for (int frame = 0; frame < end_s * rate - 0.5; ++frame) fluid->step_frame();
+    const auto at = place(fluid->read_state()[0]);
+    const double error =
+        std::hypot(at[0] - (2 + along * end_s), at[1] - (5 + up * end_s - gravity * end_s * end_s / 2));
+    EXPECT_NEAR(error, gravity * end_s / (2 * rate), 2e-5) << rate;
+    log_dt.push_back(-std::log(rate));
+    log_error.push_back(std::log(error));
+  }
+  const auto fit = stats::fit_linear({log_dt}, log_error);
+  ASSERT_TRUE(fit);
+  std::printf("projectile, %s: %.4f m off at 30 frames/s, %.4f m at 240; order %.4f\n", run.name().c_str(),
+              std::exp(log_error.front()), std::exp(log_error.back()), fit->coefficients[1]);
+  EXPECT_NEAR(fit->coefficients[1], 1, 0.005);
+}
+TEST(TruthProjectile, IsOfFirstOrderInTheStep) {
+  for (const auto method : methods) projectile_is_of_first_order({Backend::Cpu, method});
+}
+TEST(TruthProjectileGpu, IsOfFirstOrderInTheStep) {
+  for (const auto method : methods) projectile_is_of_first_order({Backend::Cuda, method});
+}
 
 /// Mean pressure on the floor and on bands of one wall, by their impulse, against rho g (H - z).
 void column_rests(Run run, const TruthFile& file, int layers, const State& rest, double d) {
