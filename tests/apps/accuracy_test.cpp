@@ -161,6 +161,25 @@ TEST(AccuracyFront, HoldsWhatNoneBeats) {
   EXPECT_TRUE(pareto_front({}, SweepError::Kinetic).empty());
 }
 
+TEST(AccuracyFront, MoreSeedsAreOfItsSettingsOnly) {
+  auto sweep = small_sweep();
+  auto worse = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
+  worse[SolverKnob::Substeps] = 4;
+  sweep.push_back(stored(worse, 1, run_with(2, 20, 50, 0.01)));
+  const auto list = price_list(sweep, small_plan, origin, 10);
+  std::set<std::string> on_front, asked;
+  for (std::size_t e = 0; e < sweep_error_count; ++e)
+    for (const auto i : pareto_front(list.settings, static_cast<SweepError>(e)))
+      on_front.insert(to_text(list.settings[i].setting));
+  EXPECT_FALSE(on_front.contains(to_text(worse)));
+  const auto cells = more_seeds_of_fronts(list, small_plan, 5);
+  EXPECT_EQ(cells.size(), 5 * on_front.size());
+  for (const auto& cell : cells) asked.insert(to_text(cell.setting));
+  EXPECT_EQ(asked, on_front);
+  EXPECT_EQ(cells[4].seed, 5);
+  EXPECT_EQ(cells[4].seconds, small_plan.seconds);
+}
+
 TEST(LogAxis, EndsOutsideTheValues) {
   EXPECT_EQ(log_ticks(3, 40), (std::vector<double>{2, 5, 10, 20, 50}));
   EXPECT_EQ(log_ticks(10, 10), (std::vector<double>{10, 20}));

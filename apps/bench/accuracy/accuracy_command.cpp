@@ -30,7 +30,7 @@ struct AccuracyOptions {
   std::string budget, error = "centre";
   std::optional<PictureSize> size;
   double seconds = 2;
-  int seeds = 2;
+  int seeds = 2, front_seeds = 0;
   bool quick = false, list = false, table_only = false;
   std::vector<std::string> shards;
 };
@@ -97,10 +97,10 @@ void run_one(const Job& job, const AccuracyOptions& options) {
 }
 
 /// Each cell is kept when it is done: a run that is cut short goes on with the rest.
-void run_missing(const Job& job, SweepFile& file) {
+void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& cells) {
   const auto done = file.keys(job.origin.machine);
   std::vector<SweepCell> missing;
-  for (const auto& cell : job.cells)
+  for (const auto& cell : cells)
     if (!done.contains(job.key(cell))) missing.push_back(cell);
   if (missing.empty()) return;
   Progress progress("cells", missing.size());
@@ -111,8 +111,12 @@ void run_missing(const Job& job, SweepFile& file) {
   }
 }
 
+PriceList prices_of(const Job& job, SweepFile& file) {
+  return price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
+}
+
 void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& options) {
-  const auto list = price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
+  const auto list = prices_of(job, file);
   std::printf("%s", to_markdown(list).c_str());
   if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(setting_table(list)));
   if (!options.prices_csv.empty()) base::write_file_atomically(options.prices_csv, to_csv(price_table(list)));
@@ -151,7 +155,11 @@ void run_accuracy(const AccuracyOptions& options) {
   if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
   if (!options.budget.empty()) return run_budget(job, options);
   SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
-  if (!options.table_only) run_missing(job, file);
+  if (!options.table_only) {
+    run_missing(job, file, job.cells);
+    if (options.front_seeds > 0)
+      run_missing(job, file, more_seeds_of_fronts(prices_of(job, file), job.plan, options.front_seeds));
+  }
   write_tables(job, file, options);
 }
 
@@ -183,6 +191,8 @@ void add_accuracy_command(CLI::App& app) {
       ->check(number_in(0.1, 60))
       ->capture_default_str();
   add_count(*command, "--seeds", options->seeds, 1, 100, "Starts of a setting, an ulp apart");
+  add_count(*command, "--front-seeds", options->front_seeds, 0, 100,
+            "Then so many starts of the settings that none beats in some error; 0 = no more than the others");
   add_size(*command, options->size, "Also draw each frame so large, px; saliency then sees the picture");
   command->add_flag("--quick", options->quick, "A dozen cells of 256 n_* and half a second");
   auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "apps/bench/timing.hpp"
 #include "stats/base/error.hpp"
@@ -227,6 +228,17 @@ std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings
   std::vector<std::size_t> out;
   for (const std::size_t i : order)
     if (out.empty() || value(i) < value(out.back())) out.push_back(i);
+  return out;
+}
+
+std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPlan& plan, int seeds) {
+  std::set<std::size_t> places;
+  for (std::size_t e = 0; e < sweep_error_count; ++e)
+    for (const std::size_t i : pareto_front(list.settings, static_cast<SweepError>(e))) places.insert(i);
+  std::vector<SweepCell> out;
+  for (const std::size_t i : places)
+    for (int seed = 1; seed <= seeds; ++seed)
+      out.push_back({list.settings[i].setting, seed, plan.seconds, plan.size});
   return out;
 }
 

@@ -81,6 +81,9 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
 /// PriceList::settings.
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
+/// Cells with seeds 1 to `seeds` of each setting that is on the front of any error, in the sweep's order.
+std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPlan& plan, int seeds);
+
 /// What tells a setting from its method's usual one: "n_* 512, projections 8".
 std::string in_words(const SolverSetting& setting);
 /// "counts as converged" and the like, of an error's reference.
