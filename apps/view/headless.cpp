@@ -115,7 +115,8 @@ void run_headless(const ViewOptions& options) {
   Progress progress("frames", static_cast<std::size_t>(frames));
   for (int frame = 0; frame < frames; ++frame) {
     if (frame > 0) {
-      const sim::Vec3d at = sim::gaze_point(prepared.scene, prepared.scene_frame(frame));
+      const sim::Vec3d at =
+          sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, frame, prepared.frame_dt_s));
       picture.look(*prepared.fluid, view, gaze_at(prepared.camera, at));
     }
     const double start = seconds_now();

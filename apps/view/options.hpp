@@ -45,9 +45,6 @@ struct PreparedFluid {
   double finest_spacing_m = 0;   ///< 2 r_*
   bool follows_picture = false;  ///< levels come from what was drawn last
   double frame_dt_s = 0;         ///< of the fluid
-
-  /// The scene's own frame at the time of the fluid's, for its gaze keys.
-  int scene_frame(int frame) const { return static_cast<int>(frame * frame_dt_s / scene.frame_dt_s + 0.5); }
 };
 /// Takes over what best.toml names: method, n_star, levels, alpha, iterations and tau. Its other numbers hold
 /// for as long as method, n_star, levels and preset stay as it has them.

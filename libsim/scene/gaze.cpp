@@ -1,6 +1,7 @@
 #include "libsim/scene/gaze.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sim {
 
@@ -16,6 +17,10 @@ Vec3d gaze_point(const Scene& scene, int frame) {
   Vec3d out{};
   for (std::size_t k = 0; k < 3; ++k) out[k] = from[k] + t * (key->point_m[k] - from[k]);
   return out;
+}
+
+int scene_frame(const Scene& scene, std::int64_t frame, double frame_dt_s) {
+  return static_cast<int>(std::lround(static_cast<double>(frame) * frame_dt_s / scene.frame_dt_s));
 }
 
 }  // namespace sim

@@ -1,6 +1,7 @@
 /// Nozzles and recirculation: the timetable, the scenes that have them, and their ledger.
 
 #include "libsim/scene/nozzle.hpp"
+#include "libsim/scene/gaze.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -177,6 +178,13 @@ std::vector<std::int64_t> poured_over_time(const sim::Scene& scene, double frame
     if (frame * 60 % frames == 0) out.push_back(fluid->report().poured);
   }
   return out;
+}
+
+TEST(Nozzle, GazeKeysCountTheScenesFramesToo) {
+  const auto scene = faucet();
+  EXPECT_EQ(sim::scene_frame(scene, 45, scene.frame_dt_s), 45);
+  EXPECT_EQ(sim::scene_frame(scene, 45, scene.frame_dt_s / 1.5), 30);
+  EXPECT_EQ(sim::scene_frame(scene, 45, 2 * scene.frame_dt_s), 90);
 }
 
 TEST(Nozzle, PulsesLastAsLongWhateverTheRunsFrames) {

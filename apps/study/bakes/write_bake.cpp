@@ -1,7 +1,6 @@
 #include "apps/study/bakes/write_bake.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "apps/common/finite_water.hpp"
@@ -25,12 +24,9 @@ std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
 auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::int64_t& frame,
                   double frame_dt_s) {
   const sim::Camera camera = order.fluid.overview ? scene.overview : scene.view;
-  // The keys count the scene's own frames.
-  return [&frame, scene, camera, share = frame_dt_s / scene.frame_dt_s, viewing = order.fluid.viewing](
-             int width, int height) {
+  return [&frame, scene, camera, frame_dt_s, viewing = order.fluid.viewing](int width, int height) {
     const sim::View view = framed_view(camera, viewing, width, height);
-    return place_in(
-        view, sim::gaze_point(scene, static_cast<int>(std::lround(static_cast<double>(frame) * share))));
+    return place_in(view, sim::gaze_point(scene, sim::scene_frame(scene, frame, frame_dt_s)));
   };
 }
 

@@ -162,8 +162,9 @@ void Viewer::follow_choices() {
 
 void Viewer::step(const sim::View& view) {
   const PreparedFluid& prepared = fluid_->prepared;
-  sim::Gaze gaze =
-      gaze_at(prepared.camera, sim::gaze_point(prepared.scene, prepared.scene_frame(figures_.frame + 1)));
+  sim::Gaze gaze = gaze_at(
+      prepared.camera, sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, figures_.frame + 1,
+                                                                        prepared.frame_dt_s)));
   if (controls_.mouse_gaze) {
     // Nowhere when the mouse is at the panel or outside: the gaze counts as lost.
     double x = 0, y = 0;
