@@ -18,14 +18,6 @@ namespace apps {
 
 namespace {
 
-struct NamedScene {
-  const char* name;
-  const char* file;
-};
-constexpr NamedScene named_scenes[] = {{"SingleDam", "data/scenes/single_dam.toml"},
-                                       {"JetImpact", "data/scenes/jet_impact.toml"},
-                                       {"Faucet", "data/scenes/faucet.toml"}};
-
 std::vector<std::string> split(const std::string& words, char by) {
   std::vector<std::string> out;
   std::istringstream stream(words);
@@ -72,18 +64,6 @@ void add_table_options(CLI::App& command, TableOptions& options) {
       ->check(output_folder());
 }
 
-std::vector<CellScene> scenes_of(const std::string& word) {
-  std::vector<CellScene> out;
-  for (const auto& [name, file] : named_scenes) {
-    if (word == "all" || word == name) out.push_back({name, sim::read_scene(file)});
-  }
-  if (out.empty()) {
-    throw base::Error("--scene " + word, "is not a scene of the tables",
-                      "use all, SingleDam, JetImpact or Faucet");
-  }
-  return out;
-}
-
 std::vector<CellSize> sizes_of(const std::string& words) {
   std::vector<CellSize> out;
   for (const auto& word : split(words, ',')) out.push_back({word, sim::parse_n_star(word)});
@@ -107,44 +87,6 @@ stats::PtpeModel load_model(const std::string& path) {
   const auto file = sim::read_ptpe_file(path);
   std::printf("ptpe   %s\n", sim::describe(file).c_str());
   return file.model;
-}
-
-std::string number(double value, int digits) {
-  if (std::isnan(value)) return "-";
-  if (std::isinf(value)) return "inf";
-  return fmt::format("{:.{}f}", value, digits);
-}
-
-std::string shortest(double value) { return fmt::format("{:.4g}", value); }
-
-std::string in_a_cell(std::string text) {
-  std::replace(text.begin(), text.end(), ',', ';');
-  std::replace(text.begin(), text.end(), '|', '/');
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
-std::string to_csv(const TextTable& table) {
-  std::string out;
-  const auto line = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + cells[i];
-    out += "\n";
-  };
-  line(table.head);
-  for (const auto& row : table.rows) line(row);
-  return out;
-}
-
-std::string to_markdown(const TextTable& table) {
-  std::string out;
-  const auto line = [&](const std::vector<std::string>& cells) {
-    for (const auto& cell : cells) out += "| " + cell + " ";
-    out += "|\n";
-  };
-  line(table.head);
-  line(std::vector<std::string>(table.head.size(), "---"));
-  for (const auto& row : table.rows) line(row);
-  return out;
 }
 
 }  // namespace apps

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/named_scenes.hpp"
+#include "apps/common/text_table.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/simulation.hpp"
 
@@ -25,13 +27,6 @@ struct TableOptions {
 };
 void add_table_options(CLI::App& command, TableOptions& options);
 
-struct CellScene {
-  std::string name;  ///< as in the paper's tables
-  sim::Scene scene;
-};
-/// base::Error naming the known scenes.
-std::vector<CellScene> scenes_of(const std::string& word);
-
 struct CellSize {
   std::string word;
   std::int64_t n_star = 0;
@@ -47,22 +42,5 @@ std::optional<double> tau_of(const std::string& word, const std::string& scene, 
 stats::PtpeModel load_model(const std::string& path);
 inline constexpr const char* ptpe_help =
     "fitted.toml of vip-stats fit-ptpe, by which tau and beta go; without: the paper's model";
-
-/// For a cell of a table; "-" for NaN, "inf" for either infinity.
-std::string number(double value, int digits);
-
-/// With as many digits as tell it from others, at most four: "0.01667", "4".
-std::string shortest(double value);
-
-/// Free text as one cell of either kind of table.
-std::string in_a_cell(std::string text);
-
-/// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
-struct TextTable {
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;
-};
-std::string to_csv(const TextTable& table);
-std::string to_markdown(const TextTable& table);
 
 }  // namespace apps

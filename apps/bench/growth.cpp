@@ -9,10 +9,10 @@
 #include "apps/bench/commands.hpp"
 #include "apps/bench/growth_table.hpp"
 #include "apps/bench/timed_run.hpp"
-#include "apps/bench/timing.hpp"
 #include "apps/common/finite_water.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
+#include "apps/common/timing.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 

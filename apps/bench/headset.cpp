@@ -12,12 +12,12 @@
 
 #include "apps/bench/commands.hpp"
 #include "apps/bench/pass_table.hpp"
-#include "apps/bench/timing.hpp"
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/common/headset/headset_session.hpp"
 #include "apps/common/headset/system.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
+#include "apps/common/timing.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "apps/bench/timing.hpp"
+#include "apps/common/timing.hpp"
 
 namespace apps {
 

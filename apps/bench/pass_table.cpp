@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/bench/timing.hpp"
+#include "apps/common/timing.hpp"
 
 namespace apps {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/bench/pass_table.hpp"
-#include "apps/bench/timing.hpp"
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/timing.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "apps/bench/accuracy/matrix.hpp"
-#include "apps/bench/cells.hpp"
+#include "apps/common/named_scenes.hpp"
+#include "apps/common/sweep/matrix.hpp"
 
 namespace apps {
 namespace {

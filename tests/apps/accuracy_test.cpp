@@ -7,6 +7,7 @@
 #include <set>
 
 #include "apps/bench/accuracy/accuracy_page.hpp"
+#include "apps/bench/accuracy/run_cell.hpp"
 #include "apps/bench/accuracy/work_precision.hpp"
 #include "apps/bench/log_axis.hpp"
 #include "stats/base/error.hpp"

@@ -143,6 +143,7 @@ const Rooms rooms{
 
     {"apps/common", 0},
     {"apps/common/headset", 1},
+    {"apps/common/sweep", 1},
     {"apps/common/window", 1, {"apps/common/headset"}},
     {"apps/bench", 2},
     {"apps/bench/accuracy", 3},

@@ -10,8 +10,10 @@
 
 #include "apps/bench/accuracy/accuracy_page.hpp"
 #include "apps/bench/accuracy/budget.hpp"
+#include "apps/bench/accuracy/run_cell.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/timed_run.hpp"
+#include "apps/common/named_scenes.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/solver/settled_state.hpp"

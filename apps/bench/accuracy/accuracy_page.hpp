@@ -1,7 +1,7 @@
 #pragma once
 /// What a sweep says as one HTML page that needs no other file.
 
-#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/common/sweep/price_list.hpp"
 
 namespace apps {
 

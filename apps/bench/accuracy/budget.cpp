@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "apps/bench/timing.hpp"
+#include "apps/common/timing.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 

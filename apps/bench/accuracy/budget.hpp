@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/accuracy/price_list.hpp"
 #include "apps/common/setting_file.hpp"
+#include "apps/common/sweep/price_list.hpp"
 
 namespace apps {
 

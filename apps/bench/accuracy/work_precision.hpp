@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "apps/bench/accuracy/price_list.hpp"
 #include "apps/common/svg.hpp"
+#include "apps/common/sweep/price_list.hpp"
 
 namespace apps {
 

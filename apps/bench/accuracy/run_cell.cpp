@@ -1,4 +1,4 @@
-#include "apps/bench/accuracy/cell_run.hpp"
+#include "apps/bench/accuracy/run_cell.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "apps/bench/checkpoint.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timed_run.hpp"
-#include "apps/bench/timing.hpp"
 #include "apps/common/finite_water.hpp"
+#include "apps/common/timing.hpp"
 
 namespace apps {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/accuracy/sweep_file.hpp"
-#include "apps/bench/cells.hpp"
+#include "apps/common/sweep/sweep_file.hpp"
+#include "apps/common/text_table.hpp"
 
 namespace apps {
 

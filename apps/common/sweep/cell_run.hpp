@@ -1,11 +1,9 @@
 #pragma once
-/// Runs one cell of a sweep: what the water did, and what each frame took.
+/// What one cell of a sweep gave: what the water did, and what each frame took.
 
+#include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
-
-#include "apps/bench/accuracy/matrix.hpp"
 
 namespace apps {
 
@@ -18,7 +16,6 @@ struct WaterSample {
   double density_error = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;    ///< rho / rho_0
 };
-WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
 
 struct FrameCost {
   double solve_ms = 0;            ///< with the hand-over of the picture that saliency sees
@@ -32,8 +29,5 @@ struct CellRun {
   double particles_mean = 0, substeps_mean = 0;
   std::int64_t braked = 0;  ///< particle-substeps
 };
-
-/// base::Error when the water breaks. The state is measured between frames, which is not timed.
-CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-#include "apps/bench/accuracy/sweep_file.hpp"
+#include "apps/common/sweep/sweep_file.hpp"
 
 #include <fmt/core.h>
 #include <string_view>

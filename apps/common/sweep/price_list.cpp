@@ -1,4 +1,4 @@
-#include "apps/bench/accuracy/price_list.hpp"
+#include "apps/common/sweep/price_list.hpp"
 
 #include <fmt/core.h>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "apps/bench/timing.hpp"
+#include "apps/common/timing.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {

@@ -1,4 +1,4 @@
-#include "apps/bench/accuracy/matrix.hpp"
+#include "apps/common/sweep/matrix.hpp"
 
 #include <fmt/core.h>
 #include <algorithm>

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/accuracy/cell_run.hpp"
+#include "apps/common/sweep/cell_run.hpp"
+#include "apps/common/sweep/matrix.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace apps {
