@@ -1,6 +1,9 @@
 #include "apps/bench/film.hpp"
 
+#include <functional>
+
 #include "apps/bench/checkpoint.hpp"
+#include "apps/bench/masks.hpp"
 #include "apps/bench/onlooker.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/scene/gaze.hpp"
@@ -10,6 +13,8 @@
 namespace apps {
 
 namespace {
+
+constexpr double periphery_deg = 20;
 
 /// One simulation with its own eye, frame by frame.
 class Reel {
@@ -30,10 +35,11 @@ class Reel {
 
   sim::MethodKind method() const { return method_; }
   const sim::Simulation& fluid() const { return *fluid_; }
+  const Onlooker& eye() const { return eye_; }
   const Picture& now() const { return now_; }
   stats::FrameStep change() const { return {before_.view(), now_.view()}; }
 
-  double ssim = 0, flicker = 0;  ///< sums over frames
+  double ssim = 0, flicker = 0, flicker_periphery = 0;  ///< sums over frames
 
  private:
   sim::MethodKind method_;
@@ -42,46 +48,85 @@ class Reel {
   Picture before_, now_;
 };
 
-void compare(const Reel& reference, Reel& reel, int frame) {
+void compare(const Reel& reference, Reel& reel, int frame, const Mask& periphery) {
   reel.ssim += stats::ssim_map(reel.now().view(), reference.now().view()).mean().value;
-  if (frame >= 2) reel.flicker += stats::flicker(reel.change(), reference.change()).value;
+  if (frame < 2) return;
+  reel.flicker += stats::flicker(reel.change(), reference.change()).value;
+  reel.flicker_periphery += stats::flicker(reel.change(), reference.change(), periphery).value;
 }
+
+Mask beyond(Mask mask) {
+  for (auto& on : mask) on = on == 0;
+  return mask;
+}
+
+/// One start of all methods; their sums over frames.
+class Film {
+ public:
+  Film(const CellScene& scene, const CellSize& size, const Table1Options& options, const ScoreBlock& block,
+       int start)
+      : scene_(scene),
+        choose_(
+            [&](sim::MethodKind method) { return run_options(options, scene, size, block.preset, method); }),
+        reference_(scene, options, choose_(sim::MethodKind::HiRes)) {
+    const auto settled = reference_.fluid().read_state();
+    for (const auto& scores : block.methods) {
+      auto choice = choose_(scores.method);
+      // LoRes fills and settles for itself; the others begin with HiRes' particles.
+      if (scores.method == sim::MethodKind::LoRes) {
+        if (start > 1)
+          choice.start = perturbed(sim::make_simulation(scene.scene, choice)->read_state(), start);
+      } else {
+        const bool moved = start > 1 || (scores.method == sim::MethodKind::HiRes && !options.unperturbed);
+        choice.start = perturbed(settled, moved ? start : 0);
+      }
+      reels_.push_back(std::make_unique<Reel>(scene, options, choice));
+    }
+  }
+
+  void step(int frame) {
+    const sim::Vec3d gaze = sim::gaze_point(scene_.scene, frame);
+    const auto& eye = reference_.eye();
+    const Mask periphery = beyond(fovea_mask(eye.view(), gaze_at(eye.camera(), gaze), periphery_deg));
+    reference_.step(gaze);
+    for (auto& reel : reels_) {
+      reel->step(gaze);
+      compare(reference_, *reel, frame, periphery);
+    }
+  }
+
+  void put(int frames, ScoreBlock& block) const {
+    const auto pixels = reference_.now().view().pixels();
+    for (std::size_t m = 0; m < reels_.size(); ++m) {
+      const auto add = [&](Metric metric, double value) {
+        block.methods[m].of(metric).cells.push_back({value, pixels});
+      };
+      add(Metric::SsimCumul, reels_[m]->ssim / frames);
+      if (frames < 2) continue;
+      add(Metric::Flicker, reels_[m]->flicker / (frames - 1));
+      add(Metric::FlickerPeriphery, reels_[m]->flicker_periphery / (frames - 1));
+    }
+  }
+
+ private:
+  const CellScene& scene_;
+  std::function<sim::SimulationOptions(sim::MethodKind)> choose_;
+  Reel reference_;
+  std::vector<std::unique_ptr<Reel>> reels_;
+};
 
 }  // namespace
 
 void run_film(const CellScene& scene, const CellSize& size, const Table1Options& options, ScoreBlock& block) {
-  const auto choose = [&](sim::MethodKind method) {
-    return run_options(options, scene, size, block.preset, method);
-  };
-  Reel reference(scene, options, choose(sim::MethodKind::HiRes));
-  const auto settled = reference.fluid().read_state();
-  std::vector<std::unique_ptr<Reel>> reels;
-  for (const auto& scores : block.methods) {
-    auto choice = choose(scores.method);
-    // LoRes fills and settles for itself; the others begin with HiRes' particles.
-    if (scores.method != sim::MethodKind::LoRes)
-      choice.start =
-          perturbed(settled, scores.method == sim::MethodKind::HiRes && !options.unperturbed ? 1 : 0);
-    reels.push_back(std::make_unique<Reel>(scene, options, choice));
-  }
   const int frames = options.cumul_frames;
-  Progress progress("frames of the film", static_cast<std::size_t>(frames));
-  for (int frame = 1; frame <= frames; ++frame) {
-    const sim::Vec3d gaze = sim::gaze_point(scene.scene, frame);
-    reference.step(gaze);
-    for (auto& reel : reels) {
-      reel->step(gaze);
-      compare(reference, *reel, frame);
+  Progress progress("frames of the film", static_cast<std::size_t>(frames * options.film_starts));
+  for (int start = 1; start <= options.film_starts; ++start) {
+    Film film(scene, size, options, block, start);
+    for (int frame = 1; frame <= frames; ++frame) {
+      film.step(frame);
+      progress.update(static_cast<std::size_t>((start - 1) * frames + frame));
     }
-    progress.update(static_cast<std::size_t>(frame));
-  }
-  const auto pixels = reference.now().view().pixels();
-  for (std::size_t m = 0; m < reels.size(); ++m) {
-    const auto put = [&](Metric metric, double value) {
-      block.methods[m].of(metric) = {{{value, pixels}}, 1};
-    };
-    put(Metric::SsimCumul, reels[m]->ssim / frames);
-    if (frames >= 2) put(Metric::Flicker, reels[m]->flicker / (frames - 1));
+    film.put(frames, block);
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// SSIM-cumul and flicker of Table 1: all methods from frame 0 on, each frame against HiRes.
+/// SSIM-cumul and both flickers of Table 1: all methods from frame 0 on, each frame against HiRes.
 
 #include "apps/bench/scores.hpp"
 #include "apps/bench/table1_options.hpp"
@@ -7,8 +7,10 @@
 namespace apps {
 
 /// Runs the methods in step, the gaze following the scene's keys, and adds Metric::SsimCumul (mean SSIM of
-/// frames 1 .. cumul_frames) and Metric::Flicker (mean over frames 2 .. cumul_frames) to the block's methods.
-/// HiRes is compared with itself from a perturbed settled state. Needs a current context.
+/// frames 1 .. cumul_frames), Metric::Flicker and Metric::FlickerPeriphery (means over frames 2 ..
+/// cumul_frames) to the block's methods, a cell for each of film_starts. HiRes is compared with itself from a
+/// perturbed settled state; from the second start on all methods start from perturbed ones. Needs a current
+/// context.
 void run_film(const CellScene& scene, const CellSize& size, const Table1Options& options, ScoreBlock& block);
 
 }  // namespace apps

@@ -86,15 +86,16 @@ const MethodScores* find(const ScoreBlock& block, Method method) {
 
 }  // namespace
 
-const std::array<MetricTraits, 7>& all_metrics() {
-  static constexpr std::array<MetricTraits, 7> metrics{
+const std::array<MetricTraits, metric_count>& all_metrics() {
+  static constexpr std::array<MetricTraits, metric_count> metrics{
       {{Metric::PsnrFov, "psnr_fov", "PSNR@fov, dB", 2},
        {Metric::PsnrSalient, "psnr_salient", "PSNR@salient, dB", 2},
        {Metric::PsnrOverall, "psnr_overall", "PSNR@overall, dB", 2},
        {Metric::PsnrFluid, "psnr_fluid", "PSNR@fluid, dB", 2},
        {Metric::SsimStatic, "ssim_static", "SSIM-static", 4},
        {Metric::SsimCumul, "ssim_cumul", "SSIM-cumul", 4},
-       {Metric::Flicker, "flicker", "flicker, 8-bit steps squared", 2}}};
+       {Metric::Flicker, "flicker", "flicker, 8-bit steps squared", 2},
+       {Metric::FlickerPeriphery, "flicker_periphery", "flicker beyond 20°", 2}}};
   return metrics;
 }
 

@@ -10,7 +10,17 @@
 
 namespace apps {
 
-enum class Metric { PsnrFov, PsnrSalient, PsnrOverall, PsnrFluid, SsimStatic, SsimCumul, Flicker };
+enum class Metric {
+  PsnrFov,
+  PsnrSalient,
+  PsnrOverall,
+  PsnrFluid,
+  SsimStatic,
+  SsimCumul,
+  Flicker,
+  FlickerPeriphery  ///< beyond 20 degrees from the gaze
+};
+inline constexpr std::size_t metric_count = 8;
 
 struct MetricTraits {
   Metric metric{};
@@ -18,7 +28,7 @@ struct MetricTraits {
   const char* title = "";  ///< with unit, for tables and figures
   int digits = 2;          ///< behind the point
 };
-const std::array<MetricTraits, 7>& all_metrics();
+const std::array<MetricTraits, metric_count>& all_metrics();
 
 /// One metric of one method: cells in the order checkpoint, gaze point, repeat. A value is infinite where the
 /// pictures were equal and NaN where the mask was too small.
@@ -29,7 +39,7 @@ struct Series {
 
 struct MethodScores {
   sim::MethodKind method{};
-  std::array<Series, 7> series;
+  std::array<Series, metric_count> series;
   Series& of(Metric metric) { return series[static_cast<std::size_t>(metric)]; }
   const Series& of(Metric metric) const { return series[static_cast<std::size_t>(metric)]; }
 };

@@ -166,6 +166,7 @@ void add_table1_command(CLI::App& app) {
             "Frames from a checkpoint to its picture");
   add_count(*command, "--cumul-frames", words->cumul_frames, 0, 100000,
             "Frames of SSIM-cumul and flicker; 0 = neither");
+  add_count(*command, "--film-starts", words->film_starts, 1, 100, "Starts of these frames, an ulp apart");
   add_count(*command, "--projections", words->projections, 1, 10000,
             "Density projections of a start, at most");
   command->add_flag("--unperturbed", words->unperturbed,

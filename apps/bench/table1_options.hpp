@@ -15,6 +15,7 @@ struct Table1Options : TableOptions {
   int repeats = 5;           ///< perturbed starts of each
   int frames_after = 5;      ///< from a checkpoint to the picture that is compared
   int cumul_frames = 200;    ///< of the film; 0 = no film
+  int film_starts = 1;       ///< of the film, an ulp apart
   int projections = 50;      ///< of a start, at most
   bool unperturbed = false;  ///< starts are not moved: HiRes must then equal itself
   PictureSize size{1280, 720};

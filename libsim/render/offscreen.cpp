@@ -27,24 +27,43 @@ Offscreen::~Offscreen() {
   glDeleteTextures(1, &texture_);
 }
 
-Image Offscreen::read() const { return read_framebuffer(framebuffer_, width_, height_); }
+namespace {
+
+Image black(int width, int height) {
+  return {width, height,
+          std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+}
+
+/// GL counts rows from the bottom.
+Image from_the_top(Image image) {
+  const auto row = [&](int y) { return image.rgba.begin() + std::ptrdiff_t{4} * image.width * y; };
+  for (int low = 0, high = image.height - 1; low < high; ++low, --high)
+    std::swap_ranges(row(low), row(low + 1), row(high));
+  return image;
+}
+
+}  // namespace
+
+/// Not through the framebuffer: what compute shaders stored took a driver sixty times as long that way
+/// (docs/performance.md).
+Image Offscreen::read() const {
+  Image image = black(width_, height_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(texture_, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.rgba.size()),
+                    image.rgba.data());
+  return from_the_top(std::move(image));
+}
 
 Image read_framebuffer(unsigned framebuffer, int width, int height) {
-  const std::size_t row_bytes = 4 * static_cast<std::size_t>(width);
-  Image image{width, height, std::vector<std::uint8_t>(row_bytes * static_cast<std::size_t>(height))};
+  Image image = black(width, height);
   GLint previous = 0;
   glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &previous);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(previous));
-  // GL counts rows from the bottom.
-  for (int low = 0, high = height - 1; low < high; ++low, --high) {
-    std::swap_ranges(image.rgba.begin() + static_cast<std::ptrdiff_t>(row_bytes) * low,
-                     image.rgba.begin() + static_cast<std::ptrdiff_t>(row_bytes) * (low + 1),
-                     image.rgba.begin() + static_cast<std::ptrdiff_t>(row_bytes) * high);
-  }
-  return image;
+  return from_the_top(std::move(image));
 }
 
 }  // namespace sim

@@ -15,11 +15,11 @@ constexpr std::size_t max_file_bytes = std::size_t{1} << 30;
 constexpr png_uint_32 max_side_px = 16384;
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string png_bytes(const Image& image, const std::string& place) {
   const std::size_t row_bytes = 4 * static_cast<std::size_t>(image.width);
   if (image.width < 1 || image.height < 1 ||
       image.rgba.size() != row_bytes * static_cast<std::size_t>(image.height)) {
-    throw base::Error(path.string(), "no picture to write", "");
+    throw base::Error(place, "no picture to write", "");
   }
   png_image header;
   std::memset(&header, 0, sizeof header);
@@ -31,24 +31,23 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr)) {
-    throw base::Error(path.string(), std::string("PNG encoding failed: ") + header.message, "");
+    throw base::Error(place, std::string("PNG encoding failed: ") + header.message, "");
   }
   bytes.resize(size);
-  base::write_file_atomically(path, bytes);
+  return bytes;
 }
 
-Image read_png(const std::filesystem::path& path) {
-  const std::string bytes = base::read_file(path, max_file_bytes);
+Image png_of(std::string_view bytes, const std::string& place) {
   const std::string mend = "use an intact PNG file";
   png_image header;
   std::memset(&header, 0, sizeof header);
   header.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&header, bytes.data(), bytes.size())) {
-    throw base::Error(path.string(), std::string("not a readable PNG: ") + header.message, mend);
+    throw base::Error(place, std::string("not a readable PNG: ") + header.message, mend);
   }
   if (header.width > max_side_px || header.height > max_side_px) {
     png_image_free(&header);
-    throw base::Error(path.string(), "larger than 16384 px a side", "use a smaller picture");
+    throw base::Error(place, "larger than 16384 px a side", "use a smaller picture");
   }
   header.format = PNG_FORMAT_RGBA;
   Image image;
@@ -56,9 +55,17 @@ Image read_png(const std::filesystem::path& path) {
   image.height = static_cast<int>(header.height);
   image.rgba.resize(PNG_IMAGE_SIZE(header));
   if (!png_image_finish_read(&header, nullptr, image.rgba.data(), 0, nullptr)) {
-    throw base::Error(path.string(), std::string("damaged PNG: ") + header.message, mend);
+    throw base::Error(place, std::string("damaged PNG: ") + header.message, mend);
   }
   return image;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  base::write_file_atomically(path, png_bytes(image, path.string()));
+}
+
+Image read_png(const std::filesystem::path& path) {
+  return png_of(base::read_file(path, max_file_bytes), path.string());
 }
 
 }  // namespace sim

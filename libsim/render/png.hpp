@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sim {
@@ -14,11 +16,16 @@ struct Image {
   std::vector<std::uint8_t> rgba;  ///< 4 * width * height bytes
 };
 
+/// The bytes of a PNG file. Errors (base::Error, at `place`): no picture.
+std::string png_bytes(const Image& image, const std::string& place);
+/// Of the bytes of a PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px a side. Errors
+/// (base::Error, at `place`): truncated, not a PNG.
+Image png_of(std::string_view bytes, const std::string& place);
+
 /// Written to a temporary neighbour and renamed. Errors (base::Error): no picture, not writable, disk full.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// Any PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px a side. Errors (base::Error):
-/// missing, truncated, not a PNG.
+/// png_of a file. Errors (base::Error): also missing.
 Image read_png(const std::filesystem::path& path);
 
 }  // namespace sim

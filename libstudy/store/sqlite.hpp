@@ -123,6 +123,11 @@ class Connection {
   std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
 };
 
+/// Bytes that are no text.
+struct Blob {
+  std::string_view bytes;
+};
+
 /// A prepared statement: bind_all, step, reset. Indices count from 0.
 class Statement {
  public:
@@ -132,7 +137,7 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  /// A value for each parameter, in their order: whole numbers of 32 or 64 bits, real ones, texts,
+  /// A value for each parameter, in their order: whole numbers of 32 or 64 bits, real ones, texts, blobs,
   /// std::nullopt for NULL, and optionals of these. std::logic_error unless there are as many as parameters.
   template <class... Values>
   Statement& bind_all(const Values&... values) {
@@ -150,6 +155,7 @@ class Statement {
   Statement& bind_at(int index, std::string_view value);
   Statement& bind_at(int index, const std::string& value) { return bind_at(index, std::string_view(value)); }
   Statement& bind_at(int index, const char* value) { return bind_at(index, std::string_view(value)); }
+  Statement& bind_at(int index, Blob value);
   Statement& bind_at(int index, std::nullopt_t);
   /// The value of a column of another statement's row.
   Statement& bind_from(int index, const Statement& row, int column);
@@ -172,6 +178,7 @@ class Statement {
   std::int64_t integer(int index) const;
   double real(int index) const;
   std::string text(int index) const;
+  std::string blob(int index) const;
 
  private:
   void expect_parameters(std::size_t given) const;

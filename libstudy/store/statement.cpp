@@ -36,6 +36,12 @@ Statement& Statement::bind_at(int index, std::string_view value) {
   return *this;
 }
 
+Statement& Statement::bind_at(int index, Blob value) {
+  connection_->check(sqlite3_bind_blob64(handle_, index + 1, value.bytes.data() ? value.bytes.data() : "",
+                                         value.bytes.size(), SQLITE_TRANSIENT));
+  return *this;
+}
+
 Statement& Statement::bind_at(int index, std::nullopt_t) {
   connection_->check(sqlite3_bind_null(handle_, index + 1));
   return *this;
@@ -93,6 +99,12 @@ double Statement::real(int index) const { return sqlite3_column_double(handle_, 
 
 std::string Statement::text(int index) const {
   const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_, index));
+  return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_, index)))
+               : std::string();
+}
+
+std::string Statement::blob(int index) const {
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(handle_, index));
   return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_, index)))
                : std::string();
 }

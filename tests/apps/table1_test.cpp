@@ -21,7 +21,7 @@ class Table1E2e : public apps::test::TableTest {
 TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
   const auto ended = table1(
       "--scene SingleDam --n-star 128 --checkpoints 1 --gazes 2 --repeats 1 --frames-after 2 --cumul-frames 2"
-      " --size 400x225 --csv " +
+      " --film-starts 2 --size 400x225 --csv " +
       path("t1.csv") + " --markdown " + path("t1.md") + " --svg " + path("figures") + " --pictures " +
       path("pictures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
@@ -29,12 +29,10 @@ TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
   for (const auto& row : rows("t1.csv")) table[row.at("method")][row.at("metric")] = row;
   ASSERT_EQ(table.size(), 5u);
   for (const auto& [method, metrics] : table) {
-    ASSERT_EQ(metrics.size(), 7u) << method;
+    ASSERT_EQ(metrics.size(), 8u) << method;
     for (const auto& [name, row] : metrics) {
-      const bool film = name == "ssim_cumul" || name == "flicker";
-      EXPECT_EQ(std::stoi(row.at("cells")) + std::stoi(row.at("equal")) + std::stoi(row.at("skipped")),
-                film ? 1 : 2)
-          << method << ' ' << name;
+      EXPECT_EQ(std::stoi(row.at("cells")) + std::stoi(row.at("equal")) + std::stoi(row.at("skipped")), 2)
+          << method << ' ' << name << ": two gaze points, or two starts of the film";
     }
     EXPECT_EQ(metrics.at("psnr_overall").at("pixels"), "90000");
     // Masks come from HiRes and are the same for all.
@@ -43,6 +41,8 @@ TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
       EXPECT_EQ(metrics.at(mask).at("skipped"), "0") << method;
     }
     EXPECT_LE(std::stod(metrics.at("ssim_cumul").at("mean")), 1) << method;
+    EXPECT_GT(std::stod(metrics.at("flicker_periphery").at("mean")), 0) << method;
+    EXPECT_NE(metrics.at("flicker_periphery").at("mean"), metrics.at("flicker").at("mean")) << method;
   }
   // An ulp in two frames moves a picture less than coarse particles do.
   const auto floor_db = table["HiRes"]["psnr_overall"]["mean"];

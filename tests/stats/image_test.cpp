@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stats/image/flicker.hpp"
+#include "stats/image/flip.hpp"
 #include "stats/image/psnr.hpp"
 #include "stats/image/ssim.hpp"
 
@@ -244,6 +245,64 @@ TEST(Ssim, MasksTheMapAndNotThePictures) {
   EXPECT_TRUE(std::isnan(map.mean(std::vector<std::uint8_t>(900, 0)).value));
   EXPECT_THROW(map.mean(std::vector<std::uint8_t>(400, 1)), std::invalid_argument);
   EXPECT_THROW(stats::ssim_map(flat(10, 11, 1).view(), flat(10, 11, 1).view()), std::invalid_argument);
+}
+
+// Values of tests/stats/oracle/flip.py; its inverse of the colour matrix has more digits than the published
+// one.
+TEST(Flip, AgreesWithAnIndependentProgram) {
+  const Image a = noise(40, 30, 1), b = noise(40, 30, 2);
+  const Image slope = rough(a), other = rough(b);
+  EXPECT_NEAR(stats::flip(a.view(), b.view(), 10).value, 0.8972553839736255, 1e-7);
+  EXPECT_NEAR(stats::flip(slope.view(), other.view(), 10).value, 0.2903733181690857, 1e-7);
+  EXPECT_NEAR(stats::flip(a.view(), b.view(), 67).value, 0.4355385531337233, 1e-7);
+  EXPECT_NEAR(stats::flip(slope.view(), other.view(), 67).value, 0.10019177591211693, 1e-7);
+}
+
+TEST(Flip, NothingIsSeenBetweenEqualPicturesAndAllBetweenGreenAndBlue) {
+  const Image a = rough(noise(40, 30, 1));
+  EXPECT_EQ(stats::flip(a.view(), a.view(), 30).value, 0);
+  Image green = flat(40, 30, 0), blue = green;
+  for (std::size_t i = 0; i < green.rgb.size(); i += 3) green.rgb[i + 1] = blue.rgb[i + 2] = 255;
+  EXPECT_NEAR(stats::flip(green.view(), blue.view(), 30).value, 1, 1e-6);
+}
+
+TEST(Flip, EitherPictureMayComeFirst) {
+  const Image a = noise(20, 20, 1), b = noise(20, 20, 2);
+  EXPECT_EQ(stats::flip(a.view(), b.view(), 30).value, stats::flip(b.view(), a.view(), 30).value);
+}
+
+// An eye does not resolve single pixels at 67 a degree: noise averages out.
+TEST(Flip, FineNoiseIsSeenLessThanCoarse) {
+  const Image a = rough(noise(40, 30, 1)), b = rough(noise(40, 30, 2));
+  EXPECT_LT(stats::flip(a.view(), b.view(), 67).value, 0.5 * stats::flip(a.view(), b.view(), 10).value);
+}
+
+TEST(Flip, LooksAtTheMaskOnly) {
+  const Image a = flat(30, 20, 100);
+  Image b = a;
+  std::vector<std::uint8_t> far(600, 0), none(600, 0);
+  for (std::size_t p = 0; p < 600; ++p) {
+    if (p % 30 < 5) b.rgb[3 * p] = 250;  // the left edge alone differs
+    far[p] = p % 30 >= 20;
+  }
+  EXPECT_GT(stats::flip(a.view(), b.view(), 20).value, 0.05);
+  EXPECT_EQ(stats::flip(a.view(), b.view(), 20, far).value, 0);
+  EXPECT_EQ(stats::flip(a.view(), b.view(), 20, far).pixels, 200u);
+  EXPECT_TRUE(std::isnan(stats::flip(a.view(), b.view(), 20, none).value));
+}
+
+// Weights far from a pixel are below the smallest number there.
+TEST(Flip, TellsOfPicturesWithFewPixelsADegree) {
+  const double seen = stats::flip(noise(40, 30, 1).view(), noise(40, 30, 2).view(), 1).value;
+  EXPECT_GT(seen, 0.5);
+  EXPECT_LE(seen, 1);
+}
+
+TEST(Flip, RefusesWhatIsNoVisualAngle) {
+  const Image a = flat(4, 4, 0);
+  for (const double wrong : {0.0, -1.0, 201.0, std::nan("")})
+    EXPECT_THROW(stats::flip(a.view(), a.view(), wrong), std::invalid_argument) << wrong;
+  EXPECT_THROW(stats::flip(a.view(), flat(5, 4, 0).view(), 30), std::invalid_argument);
 }
 
 }  // namespace

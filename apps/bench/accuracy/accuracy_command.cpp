@@ -29,7 +29,7 @@ using study::sqlite::Open;
 struct AccuracyOptions {
   std::string scene = "SingleDam", n_star = "4k", backend = "auto";
   std::string database, cell, out, csv, prices_csv, markdown, html;
-  std::string budget, error = "centre";
+  std::string budget, error = "centre", kept = "240x135";
   std::optional<PictureSize> size;
   double seconds = 2;
   int seeds = 2, front_seeds = 0;
@@ -37,12 +37,23 @@ struct AccuracyOptions {
   std::vector<std::string> shards;
 };
 
+/// Of "240x135", or "none".
+std::string kept_size(const std::string& words) {
+  if (words == "none") return "";
+  const auto size = parse_picture_size(words, "--pictures");
+  if (std::min(size.width, size.height) < 32)
+    throw base::Error("--pictures " + words, "is too small to be compared",
+                      "use 32 px a side or more, or none");
+  return size_words(size);
+}
+
 SweepPlan plan_of(const AccuracyOptions& options) {
   SweepPlan out{.scene = options.scene,
                 .n_star = sim::parse_n_star(options.n_star),
                 .seconds = options.seconds,
                 .seeds = options.seeds,
                 .size = options.size ? size_words(*options.size) : "",
+                .kept = kept_size(options.kept),
                 .quick = options.quick};
   if (out.quick) out.n_star = std::min<std::int64_t>(out.n_star, 256);
   if (out.quick) out.seconds = std::min(out.seconds, 0.5);
@@ -196,6 +207,11 @@ void add_accuracy_command(CLI::App& app) {
   add_count(*command, "--front-seeds", options->front_seeds, 0, 100,
             "Then so many starts of the settings that none beats in some error; 0 = no more than the others");
   add_size(*command, options->size, "Also draw each frame so large, px; saliency then sees the picture");
+  command
+      ->add_option("--pictures", options->kept,
+                   "Size, px, of pictures that are kept and compared, drawn apart from what is timed; none = "
+                   "no errors of pictures")
+      ->capture_default_str();
   command->add_flag("--quick", options->quick, "A dozen cells of 256 n_* and half a second");
   auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");
   auto* cell = command->add_option("--cell", options->cell, "Only run the cell of this key, into --out");
@@ -214,7 +230,11 @@ void add_accuracy_command(CLI::App& app) {
                      ->excludes(list)
                      ->excludes(cell)
                      ->excludes(table);
-  command->add_option("--error", options->error, "That is to be least: front, centre, kinetic or density")
+  command
+      ->add_option(
+          "--error", options->error,
+          "That is to be least: front, centre, kinetic, density; picture, fovea, salient, ssim, flip, "
+          "film or flicker")
       ->check(CLI::IsMember(sweep_error_names()))
       ->capture_default_str()
       ->needs(budget);

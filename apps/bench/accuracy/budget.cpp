@@ -27,7 +27,7 @@ std::vector<StoredCell> run_afresh(const SolverSetting& setting, const std::vect
   for (const auto& cell : cells) last = std::max(last, cell.cell.seed);
   std::vector<StoredCell> out;
   for (int start = 1; start <= fresh_starts; ++start)
-    out.push_back(run({setting, last + start, plan.seconds, plan.size}));
+    out.push_back(run({setting, last + start, plan.seconds, plan.size, plan.kept}));
   return out;
 }
 
@@ -92,16 +92,17 @@ double parse_budget(const std::string& words) {
 }
 
 const std::vector<std::string>& sweep_error_names() {
-  static const std::vector<std::string> out{"front", "centre", "kinetic", "density"};
+  static const std::vector<std::string> out = [] {
+    std::vector<std::string> names;
+    for (const std::string column : sweep_error_columns) names.push_back(column.substr(0, column.find('_')));
+    return names;
+  }();
   return out;
 }
 
 SweepError parse_sweep_error(const std::string& word) {
   const auto& names = sweep_error_names();
-  const auto found = std::find(names.begin(), names.end(), word);
-  if (found == names.end())
-    throw base::Error("--error " + word, "is no error of a sweep", "use front, centre, kinetic or density");
-  return static_cast<SweepError>(found - names.begin());
+  return static_cast<SweepError>(std::find(names.begin(), names.end(), word) - names.begin());
 }
 
 std::vector<std::size_t> within_budget(const std::vector<SettingResult>& settings, double budget_ms,
@@ -109,7 +110,8 @@ std::vector<std::size_t> within_budget(const std::vector<SettingResult>& setting
   const auto of = [&](std::size_t i) { return settings[i].errors[static_cast<std::size_t>(error)]; };
   std::vector<std::size_t> left, out;
   for (std::size_t i = 0; i < settings.size(); ++i)
-    if (settings[i].ms_p95 > 0 && settings[i].ms_p95 <= budget_ms) left.push_back(i);
+    if (settings[i].ms_p95 > 0 && settings[i].ms_p95 <= budget_ms && !std::isnan(of(i).mean))
+      left.push_back(i);
   while (!left.empty()) {
     const std::size_t least = *std::min_element(
         left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return of(a).mean < of(b).mean; });
@@ -126,6 +128,9 @@ SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrig
                            const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
                            const std::function<void(const std::string&)>& said) {
   const auto list = price_list(cells, wish.plan, origin, wish.tank_length_m);
+  if (static_cast<std::size_t>(wish.error) >= water_error_count && !list.pictures()) {
+    throw base::Error("--error", "is of pictures, and the sweep kept none", "sweep with --pictures 240x135");
+  }
   const auto order = within_budget(list.settings, wish.budget_ms, wish.error);
   if (order.empty()) {
     const SettingResult* nearest = nullptr;

@@ -12,9 +12,10 @@ namespace apps {
 
 /// Milliseconds from "11.1ms". base::Error that names --budget.
 double parse_budget(const std::string& words);
-/// From "front", "centre", "kinetic" or "density".
-SweepError parse_sweep_error(const std::string& word);
+/// "front", "centre" and so on, in SweepError's order: columns without their unit.
 const std::vector<std::string>& sweep_error_names();
+/// Of one of these names.
+SweepError parse_sweep_error(const std::string& word);
 
 /// Settings whose 95th percentile is within the budget, in the order in which to try them: the least error
 /// first; of those whose error's range meets the least one's range, the cheapest. Places in `settings`.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/bench/accuracy/picture_keeper.hpp"
 #include "apps/bench/checkpoint.hpp"
 #include "apps/bench/render_timer.hpp"
 #include "apps/bench/timed_run.hpp"
@@ -25,10 +26,23 @@ std::unique_ptr<sim::Simulation> start(const SweepCell& cell, const sim::Scene& 
   return sim::make_simulation(scene, options);
 }
 
+/// Of the samples: pairs of neighbours.
+bool keeps_picture(std::size_t sample) { return sample % 3 != 2; }
+
 std::unique_ptr<RenderTimer> pictures(const SweepCell& cell, const sim::Scene& scene) {
   if (cell.size.empty()) return nullptr;
   return std::make_unique<RenderTimer>(sim::GlContext::make_headless(), scene, parse_picture_size(cell.size),
                                        1);
+}
+
+std::unique_ptr<PictureKeeper> kept_pictures(const SweepCell& cell, const sim::Scene& scene) {
+  if (cell.kept.empty()) return nullptr;
+  return std::make_unique<PictureKeeper>(scene, parse_picture_size(cell.kept, "--pictures"),
+                                         !cell.size.empty());
+}
+
+bool is_reference(const SolverSetting& setting) {
+  return setting == reference_setting(setting.scene, std::llround(setting[SolverKnob::Size]));
 }
 
 }  // namespace
@@ -63,11 +77,13 @@ WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& wate
 
 CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend) {
   const auto pictures_of_cell = pictures(cell, scene);
+  const auto keeper = kept_pictures(cell, scene);
   const auto fluid = start(cell, scene, backend);
   if (pictures_of_cell) pictures_of_cell->warm_up(*fluid);
   const int rate = static_cast<int>(cell.setting[SolverKnob::Rate]);
   const int frames = std::max(1, static_cast<int>(std::lround(cell.seconds * rate)));
   CellRun out;
+  if (keeper) out.pixels_per_degree = keeper->pixels_per_degree();
   Substeps substeps;
   for (int frame = 1; frame <= frames; ++frame) {
     FrameCost cost;
@@ -84,6 +100,13 @@ CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend ba
     substeps.add(fluid->substeps());
     out.particles_mean += static_cast<double>(fluid->particle_count()) / frames;
     if (frame * samples_per_s % rate != 0) continue;
+    const std::size_t sample = out.samples.size();
+    if (keeper && keeps_picture(sample)) {
+      const bool masks = is_reference(cell.setting) && sample % 3 == 0;
+      out.pictures.push_back(keeper->keep(*fluid, frame, 1.0 / rate, masks));
+      // GL's buffers of the timed picture come back into use before the next timed frame.
+      if (pictures_of_cell) pictures_of_cell->draw(*fluid);
+    }
     const auto report = fluid->report();
     out.samples.push_back(sample_of(static_cast<double>(frame) / rate, fluid->read_state()));
     out.samples.back().density_error = report.density_error_mean;

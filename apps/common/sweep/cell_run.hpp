@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "apps/common/sweep/kept_picture.hpp"
+
 namespace apps {
 
 /// The water at one instant. Energies are a kilogram's, J/kg.
@@ -26,6 +28,9 @@ struct FrameCost {
 struct CellRun {
   std::vector<WaterSample> samples;  ///< every 1/30 s, from the first after the gate opened
   std::vector<FrameCost> frames;     ///< without the first five, in which buffers grow
+  /// Ten times a second two pictures 1/30 s apart, where the cell asks for them.
+  std::vector<KeptPicture> pictures = {};
+  double pixels_per_degree = 0;  ///< of the pictures, at their middle
   double particles_mean = 0, substeps_mean = 0;
   std::int64_t braked = 0;  ///< particle-substeps
 };

@@ -69,8 +69,9 @@ std::vector<SolverSetting> quarter_factorial(const SweepPlan& plan) {
 }  // namespace
 
 std::string to_text(const SweepCell& cell) {
-  return fmt::format("{} seed={} seconds={:.6g} picture={}", to_text(cell.setting), cell.seed, cell.seconds,
-                     cell.size.empty() ? "none" : cell.size);
+  const auto named = [](const std::string& size) { return size.empty() ? "none" : size; };
+  return fmt::format("{} seed={} seconds={:.6g} picture={} kept={}", to_text(cell.setting), cell.seed,
+                     cell.seconds, named(cell.size), named(cell.kept));
 }
 
 std::string key_of(const SweepCell& cell, const std::string& scene_sha256, const std::string& program) {
@@ -97,7 +98,7 @@ std::vector<SweepCell> cells_of(const SweepPlan& plan) {
   std::vector<SweepCell> out;
   const auto add = [&](const SolverSetting& setting, int seeds) {
     for (int seed = 1; seed <= seeds; ++seed) {
-      const SweepCell cell{setting, seed, plan.seconds, plan.size};
+      const SweepCell cell{setting, seed, plan.seconds, plan.size, plan.kept};
       if (std::find(out.begin(), out.end(), cell) == out.end()) out.push_back(cell);
     }
   };

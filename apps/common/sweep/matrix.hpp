@@ -13,6 +13,7 @@ struct SweepCell {
   int seed = 1;           ///< 1 = the settled state itself; others move it by an ulp
   double seconds = 2;     ///< of content, from the opening of the gate
   std::string size = {};  ///< picture in which water is drawn and looked at; empty = none
+  std::string kept = {};  ///< pictures that are kept, drawn apart; empty = none
   bool operator==(const SweepCell&) const = default;
 };
 
@@ -27,7 +28,8 @@ struct SweepPlan {
   std::int64_t n_star = 4096;
   double seconds = 2;
   int seeds = 2;
-  std::string size = {};  ///< of the pictures; empty = none
+  std::string size = {};  ///< of the timed pictures; empty = none
+  std::string kept = {};  ///< of the pictures that are kept to be compared; empty = none
   bool quick = false;     ///< few cells
 };
 

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <map>
 #include <set>
 
 #include "apps/common/timing.hpp"
 #include "stats/base/error.hpp"
+#include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
 
@@ -44,6 +45,14 @@ double mean(const std::vector<double>& values) {
   return out;
 }
 
+double tau_of(const Group& group) {
+  std::vector<double> intervals_s;
+  const double period_ms = 1000 / group.front()->cell.setting[SolverKnob::Rate];
+  for (const double ms : frame_ms(group)) intervals_s.push_back(std::max(ms, period_ms) / 1000);
+  return intervals_s.empty() ? std::numeric_limits<double>::quiet_NaN()
+                             : stats::ptpe_tolerance({}, stats::fps_moments(intervals_s));
+}
+
 /// For each frame of `from` the difference to the frame of `to` at the same share of the content.
 std::vector<double> paired_differences(const Group& from, const Group& to) {
   std::vector<double> out;
@@ -59,6 +68,8 @@ struct Sweep {
   const CellRun* reference = nullptr;
   double tank_length_m = 0;
   std::vector<Group> groups = {};
+  std::map<const CellRun*, SweepErrors> errors_of = {};
+  double parting_s = 0;
 
   const Group* find(const SolverSetting& setting) const {
     const auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
@@ -68,17 +79,32 @@ struct Sweep {
   }
   std::vector<SweepErrors> errors(const Group& group) const {
     std::vector<SweepErrors> out;
-    for (const auto* cell : group) out.push_back(errors_of(cell->run, *reference, tank_length_m));
+    for (const auto* cell : group) out.push_back(errors_of.at(&cell->run));
     return out;
   }
 };
+
+/// Errors of all runs, each computed once.
+void measure(Sweep& sweep, const CellRun& twin) {
+  std::vector<const CellRun*> runs;
+  for (const auto& group : sweep.groups)
+    for (const auto* cell : group) runs.push_back(&cell->run);
+  const auto pictures = score_pictures(runs, *sweep.reference, twin);
+  sweep.parting_s = pictures.parting_s;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    auto& errors = sweep.errors_of[runs[i]];
+    const auto water = water_errors(*runs[i], *sweep.reference, sweep.tank_length_m);
+    std::copy(water.begin(), water.end(), errors.begin());
+    std::copy(pictures.errors[i].begin(), pictures.errors[i].end(), errors.begin() + water_error_count);
+  }
+}
 
 Sweep sweep_of(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                double tank_length_m) {
   Sweep out{.tank_length_m = tank_length_m};
   for (const auto& cell : cells) {
     if (cell.origin != origin || cell.cell.setting.scene != plan.scene || cell.cell.seconds != plan.seconds ||
-        cell.cell.size != plan.size)
+        cell.cell.size != plan.size || cell.cell.kept != plan.kept)
       continue;
     const bool same =
         !out.groups.empty() && to_text(out.groups.back().front()->cell.setting) == to_text(cell.cell.setting);
@@ -93,6 +119,7 @@ Sweep sweep_of(const std::vector<StoredCell>& cells, const SweepPlan& plan, cons
                       "let its first two cells run, or give the plan that it was run with");
   }
   out.reference = &reference->front()->run;
+  measure(out, (*reference)[1]->run);
   return out;
 }
 
@@ -115,6 +142,7 @@ SettingResult result_of(const Sweep& sweep, const Group& group) {
     for (const auto& frame : cell->run.frames)
       draws.push_back(frame.draw_ms.value_or(std::numeric_limits<double>::quiet_NaN()));
   out.draw_ms_mean = mean(draws);
+  out.tau = tau_of(group);
   const auto errors = sweep.errors(group);
   for (std::size_t e = 0; e < sweep_error_count; ++e) {
     std::vector<double> values;
@@ -154,12 +182,67 @@ Price price_of(const Sweep& sweep, const Group& from, const Group& to, SolverKno
   return out;
 }
 
-constexpr std::array<const char*, sweep_error_count> short_errors{"front %", "centre %", "kinetic %",
-                                                                  "density %"};
+double most_kinetic(const CellRun& run) {
+  double out = 0;
+  for (const auto& sample : run.samples) out = std::max(out, sample.kinetic_j_kg);
+  return out;
+}
+
+/// Of runs that grow finer; the steps are over the first one's.
+ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>& runs,
+                       const std::vector<double>& steps, double tank_length_m) {
+  ObservedOrder out{of, steps, {}};
+  for (std::size_t e = 0; e < out.order.size(); ++e) {
+    double count = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
+      const double log_step = std::log(steps[i]);
+      double distance = water_errors(*runs[i], *runs[i + 1], tank_length_m)[e];
+      // That of the energies is over the finer run's largest, which is another one each time.
+      if (e == static_cast<std::size_t>(SweepError::Kinetic)) distance *= most_kinetic(*runs[i + 1]);
+      const double log_distance = std::log(distance);
+      count += 1;
+      x += log_step;
+      y += log_distance;
+      xx += log_step * log_step;
+      xy += log_step * log_distance;
+    }
+    const double slope = (count * xy - x * y) / (count * xx - x * x);
+    out.order[e] = std::isfinite(slope) ? slope : std::numeric_limits<double>::quiet_NaN();
+  }
+  return out;
+}
+
+/// The first seeds of HiRes' usual setting with these values of a knob; empty where one was not run.
+std::vector<const CellRun*> refined(const Sweep& sweep, const SweepPlan& plan, SolverKnob knob,
+                                    const std::vector<double>& values) {
+  std::vector<const CellRun*> out;
+  for (const double value : values) {
+    auto setting = usual_setting(plan.scene, sim::MethodKind::HiRes, plan.n_star);
+    setting[knob] = value;
+    const Group* group = sweep.find(setting);
+    if (!group || group->front()->cell.seed != 1) return {};
+    out.push_back(&group->front()->run);
+  }
+  return out;
+}
+
+std::vector<ObservedOrder> observed_orders(const Sweep& sweep, const SweepPlan& plan) {
+  std::vector<double> sizes, spacings;
+  for (const double share : {0.25, 0.5, 1.0, 2.0}) {
+    sizes.push_back(std::round(share * static_cast<double>(plan.n_star)));
+    spacings.push_back(std::cbrt(sizes.front() / sizes.back()));
+  }
+  std::vector<ObservedOrder> out;
+  if (const auto runs = refined(sweep, plan, SolverKnob::Size, sizes); !runs.empty())
+    out.push_back(order_of("particle spacing", runs, spacings, sweep.tank_length_m));
+  if (const auto runs = refined(sweep, plan, SolverKnob::Substeps, {1, 2, 4}); !runs.empty())
+    out.push_back(order_of("time step", runs, {1, 0.5, 0.25}, sweep.tank_length_m));
+  return out;
+}
 
 }  // namespace
 
-SweepErrors errors_of(const CellRun& run, const CellRun& reference, double tank_length_m) {
+WaterErrors water_errors(const CellRun& run, const CellRun& reference, double tank_length_m) {
   const auto &a = run.samples, &b = reference.samples;
   if (a.size() != b.size() || a.empty())
     throw base::Error("the sweep", "has cells of different length",
@@ -185,8 +268,10 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
   PriceList out{.origin = origin, .scene = plan.scene};
   const auto reference = reference_setting(plan.scene, plan.n_star);
   const Group& references = *sweep.find(reference);
-  out.floor = errors_of(references[1]->run, *sweep.reference, tank_length_m);
+  out.floor = sweep.errors_of.at(&references[1]->run);
   out.floor[static_cast<std::size_t>(SweepError::Density)] = 0;
+  out.parting_s = sweep.parting_s;
+  out.orders = observed_orders(sweep, plan);
   const auto finer = finer_references(reference);
   for (const auto& setting : finer)
     if (const Group* group = sweep.find(setting)) out.finer.push_back(result_of(sweep, *group));
@@ -207,21 +292,18 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
     double smallest = std::numeric_limits<double>::infinity(), moved = 0;
     for (const auto& setting : out.settings)
       if (setting.errors[e].mean > out.floor[e]) smallest = std::min(smallest, setting.errors[e].mean);
-    const double own = errors_of(*sweep.reference, *sweep.reference, tank_length_m)[e];
+    const double own = sweep.errors_of.at(sweep.reference)[e];
     for (const auto& one : out.finer) moved = std::max(moved, std::abs(one.errors[e].mean - own));
-    out.converged[e] = out.finer.size() == finer.size() && moved < smallest / 3;
+    out.converged[e] = out.finer.size() == finer.size() && std::isfinite(smallest) && moved < smallest / 3;
   }
   return out;
 }
 
-std::string in_words(const Spread& spread) {
-  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.mean, spread.low, spread.high);
-}
-
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error) {
   const auto value = [&](std::size_t i) { return settings[i].errors[static_cast<std::size_t>(error)].mean; };
-  std::vector<std::size_t> order(settings.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    if (!std::isnan(value(i))) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(settings[a].ms_mean, value(a)) < std::pair(settings[b].ms_mean, value(b));
   });
@@ -239,121 +321,6 @@ std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPl
   for (const std::size_t i : places)
     for (int seed = 1; seed <= seeds; ++seed)
       out.push_back({list.settings[i].setting, seed, plan.seconds, plan.size});
-  return out;
-}
-
-std::string in_words(const SolverSetting& setting) {
-  std::string out;
-  for (const auto& traits : solver_knobs()) {
-    const bool own = traits.knob == SolverKnob::Size || setting[traits.knob] != traits.usual;
-    if (own && turns(traits.knob, setting.method))
-      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", traits.words,
-                         value_words(traits.knob, setting[traits.knob]));
-  }
-  return out;
-}
-
-std::string convergence(const PriceList& list, SweepError error) {
-  return list.finer.empty()                                ? "was not held against finer ones"
-         : list.converged[static_cast<std::size_t>(error)] ? "counts as converged"
-                                                           : "does not count as converged";
-}
-
-TextTable setting_table(const PriceList& list) {
-  TextTable out{.head = {"scene", "machine", "program", "method", "setting", "seeds", "particles", "substeps",
-                         "ms_mean", "ms_q25", "ms_median", "ms_q75", "ms_p95", "draw_ms_mean"},
-                .rows = {}};
-  for (const char* error : sweep_error_columns) {
-    for (const char* end : {"", "_low", "_high"}) out.head.push_back(std::string(error) + end);
-  }
-  for (const auto* part : {&list.finer, &list.settings}) {
-    for (const auto& one : *part) {
-      auto& row = out.rows.emplace_back();
-      row = {list.scene,
-             in_a_cell(list.origin.machine),
-             list.origin.program,
-             sim::method_name(one.setting.method),
-             in_a_cell(in_words(one.setting)),
-             std::to_string(one.seeds),
-             number(one.particles, 0),
-             number(one.substeps, 2),
-             number(one.ms_mean, 3),
-             number(one.ms_low_quartile, 3),
-             number(one.ms_median, 3),
-             number(one.ms_high_quartile, 3),
-             number(one.ms_p95, 3),
-             number(one.draw_ms_mean, 3)};
-      for (const auto& error : one.errors)
-        for (const double value : {error.mean, error.low, error.high}) row.push_back(number(value, 4));
-    }
-  }
-  return out;
-}
-
-TextTable price_table(const PriceList& list) {
-  TextTable out{.head = {"scene", "machine", "program", "method", "knob", "from", "to", "ms", "ms_q25",
-                         "ms_q75", "free"},
-                .rows = {}};
-  for (const char* error : sweep_error_columns) {
-    for (const char* end : {"", "_low", "_high", "_per_ms"}) out.head.push_back(std::string(error) + end);
-  }
-  for (const auto& price : list.prices) {
-    auto& row = out.rows.emplace_back();
-    row = {list.scene,
-           in_a_cell(list.origin.machine),
-           list.origin.program,
-           sim::method_name(price.method),
-           traits_of(price.knob).column,
-           value_words(price.knob, price.from),
-           value_words(price.knob, price.to),
-           number(price.ms, 3),
-           number(price.ms_low_quartile, 3),
-           number(price.ms_high_quartile, 3),
-           price.free() ? "yes" : "no"};
-    for (const auto& error : price.errors) {
-      for (const double value : {error.mean, error.low, error.high}) row.push_back(number(value, 4));
-      row.push_back(price.free() ? "-" : number(error.mean / price.ms, 4));
-    }
-  }
-  return out;
-}
-
-TextTable settings_to_read(const PriceList& list) {
-  TextTable out{.head = {"method", "setting", "particles", "ms mean", "p95"}, .rows = {}};
-  for (const char* error : short_errors) out.head.emplace_back(error);
-  for (const auto& one : list.settings) {
-    auto& row = out.rows.emplace_back();
-    row = {sim::method_name(one.setting.method), in_words(one.setting), number(one.particles, 0),
-           number(one.ms_mean, 2), number(one.ms_p95, 2)};
-    for (const auto& error : one.errors) row.push_back(in_words(error));
-  }
-  return out;
-}
-
-TextTable prices_to_read(const PriceList& list) {
-  TextTable out{.head = {"method", "knob", "change", "ms [quartiles]"}, .rows = {}};
-  for (const char* error : short_errors) out.head.emplace_back(error);
-  for (const auto& price : list.prices) {
-    auto& row = out.rows.emplace_back();
-    row = {sim::method_name(price.method), traits_of(price.knob).words,
-           value_words(price.knob, price.from) + " to " + value_words(price.knob, price.to),
-           price.free() ? "free"
-                        : fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", price.ms, price.ms_low_quartile,
-                                      price.ms_high_quartile)};
-    for (const auto& error : price.errors) row.push_back(in_words(error));
-  }
-  return out;
-}
-
-std::string to_markdown(const PriceList& list) {
-  std::string out = fmt::format("{} on {}\n\n{}\n{}\n", list.scene, list.origin.machine,
-                                to_markdown(settings_to_read(list)), to_markdown(prices_to_read(list)));
-  out += fmt::format("a reference moved by an ulp: front {:.3g} %, centre {:.3g} %, kinetic {:.3g} %\n",
-                     list.floor[0], list.floor[1], list.floor[2]);
-  for (std::size_t e = 0; e < sweep_error_count; ++e) {
-    out += fmt::format("{}: the reference {}\n", sweep_error_columns[e],
-                       convergence(list, static_cast<SweepError>(e)));
-  }
   return out;
 }
 

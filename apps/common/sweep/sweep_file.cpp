@@ -16,7 +16,7 @@ using study::sqlite::Transaction;
 
 namespace {
 
-constexpr std::int64_t schema_version = 1;
+constexpr std::int64_t schema_version = 2;
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
 constexpr const char* sample_columns =
     "time_s, front_m, centre_x_m, centre_y_m, centre_z_m, kinetic_j_kg, density_error, density_max";
@@ -30,22 +30,27 @@ std::string knob_columns(const char* after) {
 /// Of a cell without its id, in the order in which they are bound and read.
 std::string cell_columns() {
   return "key, machine, program, scene_sha256, scene, method, " + knob_columns("") +
-         "seed, seconds, picture, particles_mean, substeps_mean, braked";
+         "seed, seconds, picture, kept, particles_mean, substeps_mean, braked, pixels_per_degree";
 }
-constexpr int columns_before_knobs = 6;
+constexpr int columns_before_knobs = 6, columns_after_knobs = 8;
 
 std::string schema() {
   return "CREATE TABLE cell (id INTEGER PRIMARY KEY, key TEXT NOT NULL, machine TEXT NOT NULL, program TEXT "
          "NOT NULL, scene_sha256 TEXT NOT NULL, scene TEXT NOT NULL, method TEXT NOT NULL, " +
          knob_columns(" REAL NOT NULL") +
-         "seed INTEGER NOT NULL, seconds REAL NOT NULL, picture TEXT NOT NULL, particles_mean REAL NOT NULL, "
-         "substeps_mean REAL NOT NULL, braked INTEGER NOT NULL, UNIQUE (key, machine)) STRICT;"
+         "seed INTEGER NOT NULL, seconds REAL NOT NULL, picture TEXT NOT NULL, kept TEXT NOT NULL, "
+         "particles_mean REAL NOT NULL, substeps_mean REAL NOT NULL, braked INTEGER NOT NULL, "
+         "pixels_per_degree REAL NOT NULL, UNIQUE (key, machine)) STRICT;"
          "CREATE TABLE sample (cell_id INTEGER NOT NULL REFERENCES cell, time_s REAL NOT NULL, front_m REAL "
          "NOT NULL, centre_x_m REAL NOT NULL, centre_y_m REAL NOT NULL, centre_z_m REAL NOT NULL, "
          "kinetic_j_kg REAL NOT NULL, density_error REAL NOT NULL, density_max REAL NOT NULL, PRIMARY KEY "
          "(cell_id, time_s)) STRICT, WITHOUT ROWID;"
          "CREATE TABLE frame (cell_id INTEGER NOT NULL REFERENCES cell, number INTEGER NOT NULL, "
-         "solve_ms REAL NOT NULL, draw_ms REAL, PRIMARY KEY (cell_id, number)) STRICT, WITHOUT ROWID;";
+         "solve_ms REAL NOT NULL, draw_ms REAL, PRIMARY KEY (cell_id, number)) STRICT, WITHOUT ROWID;"
+         "CREATE TABLE picture (id INTEGER PRIMARY KEY, cell_id INTEGER NOT NULL REFERENCES cell, time_s "
+         "REAL "
+         "NOT NULL, png BLOB NOT NULL, fovea BLOB NOT NULL, salient BLOB NOT NULL, UNIQUE (cell_id, time_s)) "
+         "STRICT;";
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path) {
@@ -68,6 +73,13 @@ void recognise(Connection& database, Open how) {
                                   version, schema_version),
                       "use the newer vip-bench; the file was left as it is");
   }
+  // Cells of different programs are never compared, so that there is nothing to take over.
+  if (version > 0 && version < schema_version) {
+    throw base::Error(database.path().string(),
+                      fmt::format("was written by an older program (schema {}, this program writes {})",
+                                  version, schema_version),
+                      "name a new file; the older one was left as it is");
+  }
 }
 
 /// No salvage is offered: what a sweep holds can be computed anew.
@@ -86,9 +98,11 @@ StoredCell read_cell(const Statement& row) {
   out.cell.seed = static_cast<int>(row.integer(column++));
   out.cell.seconds = row.real(column++);
   out.cell.size = row.text(column++);
+  out.cell.kept = row.text(column++);
   out.run.particles_mean = row.real(column++);
   out.run.substeps_mean = row.real(column++);
-  out.run.braked = row.integer(column);
+  out.run.braked = row.integer(column++);
+  out.run.pixels_per_degree = row.real(column);
   return out;
 }
 
@@ -110,6 +124,11 @@ void read_run(Connection& database, std::int64_t id, CellRun& run) {
     run.frames.push_back({frames.real(0), {}});
     if (!frames.is_null(1)) run.frames.back().draw_ms = frames.real(1);
   }
+  Statement pictures(database,
+                     "SELECT time_s, png, fovea, salient FROM picture WHERE cell_id = ? ORDER BY time_s");
+  pictures.bind_all(id);
+  while (pictures.step())
+    run.pictures.push_back({pictures.real(0), pictures.blob(1), pictures.blob(2), pictures.blob(3)});
 }
 
 /// Within a transaction. False where the machine's row for this key is there.
@@ -119,7 +138,8 @@ bool insert(Connection& database, const StoredCell& stored) {
   if (there.step()) return false;
   const auto& setting = stored.cell.setting;
   std::string marks = "?";
-  for (std::size_t i = 1; i < columns_before_knobs + solver_knob_count + 6; ++i) marks += ", ?";
+  for (std::size_t i = 1; i < columns_before_knobs + solver_knob_count + columns_after_knobs; ++i)
+    marks += ", ?";
   Statement cell(database, "INSERT INTO cell (" + cell_columns() + ") VALUES (" + marks + ")");
   int at = 0;
   for (const std::string& text :
@@ -130,9 +150,11 @@ bool insert(Connection& database, const StoredCell& stored) {
   cell.bind_at(at++, stored.cell.seed);
   cell.bind_at(at++, stored.cell.seconds);
   cell.bind_at(at++, stored.cell.size);
+  cell.bind_at(at++, stored.cell.kept);
   cell.bind_at(at++, stored.run.particles_mean);
   cell.bind_at(at++, stored.run.substeps_mean);
-  cell.bind_at(at, stored.run.braked);
+  cell.bind_at(at++, stored.run.braked);
+  cell.bind_at(at, stored.run.pixels_per_degree);
   const auto id = cell.run();
   Statement sample(
       database,
@@ -147,6 +169,13 @@ bool insert(Connection& database, const StoredCell& stored) {
   for (const auto& cost : stored.run.frames) {
     frame.bind_all(id, number++, cost.solve_ms, cost.draw_ms);
     frame.run();
+  }
+  Statement picture(database,
+                    "INSERT INTO picture (cell_id, time_s, png, fovea, salient) VALUES (?, ?, ?, ?, ?)");
+  for (const auto& kept : stored.run.pictures) {
+    picture.bind_all(id, kept.time_s, study::sqlite::Blob{kept.png}, study::sqlite::Blob{kept.fovea},
+                     study::sqlite::Blob{kept.salient});
+    picture.run();
   }
   return true;
 }
@@ -196,7 +225,7 @@ std::vector<StoredCell> SweepFile::cells() {
   std::vector<StoredCell> out;
   Statement rows(*database_, "SELECT id, " + cell_columns() +
                                  " FROM cell ORDER BY machine, program, scene_sha256, scene, method, " +
-                                 knob_columns("") + "seconds, picture, seed");
+                                 knob_columns("") + "seconds, picture, kept, seed");
   while (rows.step()) {
     out.push_back(read_cell(rows));
     read_run(*database_, rows.integer(0), out.back().run);
