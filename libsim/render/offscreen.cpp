@@ -49,7 +49,6 @@ Image from_the_top(Image image) {
 Image Offscreen::read() const {
   Image image = black(width_, height_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glGetTextureImage(texture_, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.rgba.size()),
                     image.rgba.data());
   return from_the_top(std::move(image));
