@@ -23,7 +23,7 @@ void main() {
     return;
   }
   // Never wider than the particle: droplets of a few px keep their shape.
-  const float sigma = min(1.5, 0.5 * radius / (centre * rays.x));
+  const float sigma = min(1.5, 0.5 * radius * centre / rays.x);
   const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);
   const ivec2 room = min(pixel, size.xy - 1 - pixel);
   Range range = start_range(centre, radius);
@@ -33,11 +33,11 @@ void main() {
     const int jump = away.y * size.x + away.x;
     add_pair(range, source[at - jump], source[at + jump], exp2(falloff * float(away.x * away.x + away.y * away.y)));
   }
-  float depth = range.sum / range.weight;
+  float nearness = filtered(range);
   if (tank.w > 0.0) {
     // Smoothing must not lead out of the tank either.
     const vec2 within = tank_range(slope_at(vec2(pixel) + 0.5));
-    if (within.x < within.y) depth = clamp(depth, max(within.x, origin.z), within.y);
+    if (within.x < within.y) nearness = clamp(nearness, 1.0 / within.y, 1.0 / max(within.x, origin.z));
   }
-  target[at] = depth;
+  target[at] = nearness;
 }

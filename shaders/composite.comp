@@ -2,7 +2,7 @@
 #include "view.glsl"
 #include "room.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 0) readonly buffer Nearness { float nearness[]; };
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
@@ -43,7 +43,7 @@ float outline_cover(ivec2 pixel) {
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       const ivec2 near = clamp(pixel + ivec2(x, y), ivec2(0), size.xy - 1);
-      fluid += int(is_fluid(depth[near.y * size.x + near.x]));
+      fluid += int(nearness[near.y * size.x + near.x] > 0.0);
     }
   }
   return mix(0.4, 1.0, float(fluid - 1) / 8.0);
@@ -68,12 +68,12 @@ void main() {
   float frame_at;
   float cover = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
-  const float z = depth[at];
-  const float water_cover = is_fluid(z) ? outline_cover(pixel) : 0.0;
+  const bool is_water = nearness[at] > 0.0;
+  const float water_cover = is_water ? outline_cover(pixel) : 0.0;
   vec3 light = vec3(0.0);
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
-  if (is_fluid(z)) {
-    const float distance_m = z * per_depth;
+  if (is_water) {
+    const float distance_m = per_depth / nearness[at];
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
     const vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);

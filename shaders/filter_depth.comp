@@ -22,7 +22,7 @@ void main() {
     target[at] = centre;
     return;
   }
-  float sigma = narrow_range.x * radius / (centre * (direction.x == 1 ? rays.x : rays.z));
+  float sigma = narrow_range.x * radius * centre / (direction.x == 1 ? rays.x : rays.z);
   float reach = 3.0 * sigma;
   if (reach > narrow_range.w) {
     if (counts == 1) atomicAdd(filter_capped, 1u);
@@ -45,5 +45,5 @@ void main() {
     if (away > room) break;
     add_pair(range, source[at - away * jump], source[at + away * jump], exp2(falloff * float(away * away)));
   }
-  target[at] = range.sum / range.weight;
+  target[at] = filtered(range);
 }

@@ -5,7 +5,7 @@
 #include "counters.glsl"
 #include "wide_list.glsl"
 #include "occlusion.glsl"
-layout(std430, binding = 2) readonly buffer Last { float last_depth[]; };  // of the last picture, smoothed
+layout(std430, binding = 2) readonly buffer Last { float last_nearness[]; };  // of the last picture, smoothed
 layout(std430, binding = 7) readonly buffer Blocks { uint farthest[]; };
 layout(local_size_x = 64) in;
 uniform int thread_limit;  // px a side that one invocation splats
@@ -55,7 +55,7 @@ bool goes_first(Sphere s) {
   if (crosses_near(s)) return true;
   const vec2 xy = (s.centre.xy / s.centre.z - rays.yw) / rays.xz;
   const ivec2 pixel = ivec2(clamp(xy, vec2(0), vec2(size.xy - 1)));
-  return s.centre.z - 3.0 * s.radius <= last_depth[pixel.y * size.x + pixel.x];
+  return (s.centre.z - 3.0 * s.radius) * last_nearness[pixel.y * size.x + pixel.x] <= 1.0;
 }
 
 // False when this round has nothing to do with particle i.

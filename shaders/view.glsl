@@ -15,6 +15,9 @@ vec2 slope_at(vec2 xy) { return xy * rays.xz + rays.yw; }
 
 const float no_depth = uintBitsToFloat(0x7f800000u);
 bool is_fluid(float depth) { return floatBitsToUint(depth) < 0x7f800000u; }
+// The depth filter works on nearness, 1 / depth. It is linear over the picture on every plane, so that means of
+// mirror images keep planes, however they are turned. 0: no water.
+float nearness_of(float depth) { return is_fluid(depth) ? 1.0 / depth : 0.0; }
 
 // Direction in the world for one unit of eye depth, never along a wall. `precise`: passes must agree.
 vec3 world_ray(vec2 slope, mat3 to_world) {

@@ -1,5 +1,5 @@
 // Which tiles of 16 x 8 px hold water, and the radius of the particle in front of each pixel: one work group a tile.
-// See wet_tiles.glsl.
+// See wet_tiles.glsl. Starts the filter.
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
@@ -8,6 +8,7 @@ layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
 layout(std430, binding = 2) readonly buffer Front { uint front[]; };
 layout(std430, binding = 3) writeonly buffer Radius { float radii[]; };  // 0: no water, or no particle in front
 layout(std430, binding = 5) buffer Wet { uint wet[]; };
+layout(std430, binding = 6) writeonly buffer Nearness { float nearness[]; };
 shared uint holds_water;
 
 void main() {
@@ -26,6 +27,7 @@ void main() {
     if (fluid && front[at] != 0xffffffffu) radius = particles[front[at]].w;
     if (fluid && radius == 0.0) atomicAdd(front_missing, 1u);
     radii[at] = radius;
+    nearness[at] = nearness_of(depth[at]);
   }
   barrier();
   if (gl_LocalInvocationIndex == 0u) wet[tile] = state;

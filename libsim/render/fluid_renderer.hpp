@@ -1,7 +1,7 @@
 #pragma once
 /// Screen-space fluid rendering in compute shaders (van der Laan et al. 2009; narrow-range filter of Truong
-/// and Yuksel 2018). Particles in a GL buffer go in; a picture in any framebuffer and a readable G-buffer
-/// come out.
+/// and Yuksel 2018, on nearness = 1 / depth and on pairs of samples). Particles in a GL buffer go in; a
+/// picture in any framebuffer and a readable G-buffer come out.
 
 #include <array>
 #include <cstdint>
@@ -28,7 +28,8 @@ struct RenderOptions {
   /// one that is sqrt(n) times as wide.
   float filter_sigma_r = 1.1F;
   /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
-  /// layers of water and smears droplets over what lies behind them, so the default is two layers.
+  /// layers of water and smears droplets over what lies behind them, so the default is two layers. Water that
+  /// is seen at a slant is wider in depth; pairs of samples follow it (shaders/narrow_range.glsl).
   float filter_delta_r = 4;
   float filter_mu_r = 1;  ///< what is far behind counts as this far behind
   /// How often the filter goes through both directions (Truong and Yuksel iterate too). One round leaves

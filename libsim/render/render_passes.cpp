@@ -175,7 +175,8 @@ void FluidRenderer::State::find_front() {
 void FluidRenderer::State::smooth_depth() {
   wet_tiles.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(), t.wet.name()});
+    bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(), t.wet.name(),
+                  t.filter_b.name()});
     dispatch_pixels(t.width, t.height);
   });
   timer.mark("wet tiles");
@@ -186,7 +187,7 @@ void FluidRenderer::State::smooth_depth() {
     glUniform1i(filter_depth.uniform("counts"), pass < 2);
     glUniform2i(filter_depth.uniform("direction"), pass % 2 == 0, pass % 2 == 1);
     each_view([&](const ViewTargets& t) {
-      const GlBuffer& from = pass == 0 ? t.depth : pass % 2 == 0 ? t.filter_b : t.filter_a;
+      const GlBuffer& from = pass % 2 == 0 ? t.filter_b : t.filter_a;
       const GlBuffer& to = pass % 2 == 0 ? t.filter_a : t.filter_b;
       bind_storage({0, from.name(), t.radii.name(), to.name(), counters.name(), t.wet.name()});
       dispatch_pixels(t.width, t.height);

@@ -64,6 +64,7 @@ GBuffer ViewTargets::read_gbuffer(const RenderOptions& options) const {
     buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
   };
   fetch(filter_a, g.filtered_depth, pixels());
+  for (float& nearness : g.filtered_depth) nearness = 1 / nearness;  // no water: infinite
   fetch(front, g.front, pixels());
   std::vector<float> with_radii;
   std::vector<std::uint32_t> cells;

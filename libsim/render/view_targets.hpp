@@ -17,7 +17,7 @@ struct ViewTargets {
   GlBuffer block;               ///< the shaders' ViewBlock
   GlBuffer depth, front;        ///< splatted depth (float bits), particle in front
   GlBuffer radii;               ///< of the particle in front; 0: none
-  GlBuffer filter_a, filter_b;  ///< filtered depth ends in filter_a
+  GlBuffer filter_a, filter_b;  ///< nearness, 1 / depth; filtered it ends in filter_a
   GlBuffer normals;
   GlBuffer touched;                   ///< a word a particle: what occlusion.glsl remembers of it
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
