@@ -14,6 +14,8 @@ packages=(
   libegl1 libgl1 libgl1-mesa-dri
   # type of the participant's window
   fonts-dejavu-core
+  # scripts/sweep.smk: many cells on many cores or a cluster
+  snakemake
   # tests
   sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy
 )

@@ -14,6 +14,7 @@
 #include "libstudy/session/machine.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/program.hpp"
 
 namespace apps {
 
@@ -69,7 +70,7 @@ std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, 
   if (const auto& rate = choice.fixed_rate; rate && one.temporal)
     key << "; tau " << stats::ptpe_tolerance(choice.model, rate->mean, rate->sd);
   key << "; " << study::describe_machine() << "; " << sim::gl_description() << "; program "
-      << sim::program_digest();
+      << base::program_digest();
   return key.str();
 }
 

@@ -9,6 +9,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/program.hpp"
 
 namespace sim {
 
@@ -48,11 +49,6 @@ void forget_old(const fs::path& folder) {
 
 }  // namespace
 
-const std::string& program_digest() {
-  static const std::string digest = base::sha256_hex(base::read_file("/proc/self/exe", std::size_t{1} << 32));
-  return digest;
-}
-
 fs::path default_cache_folder() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
@@ -66,7 +62,7 @@ fs::path default_cache_folder() {
 
 std::string settled_key(const Scene& scene, const SimulationOptions& options) {
   std::ostringstream text;
-  text << std::hexfloat << program_digest() << ' ' << scene.sha256 << ' ' << method_name(options.method)
+  text << std::hexfloat << base::program_digest() << ' ' << scene.sha256 << ' ' << method_name(options.method)
        << ' ' << options.n_star << ' ' << backend_name(options.backend) << ' ' << options.iterations << ' '
        << options.substeps << ' ' << options.frame_dt_s << ' ' << options.relaxation << ' ' << options.tensile
        << ' ' << options.viscosity_m2_s << ' ' << options.momentum << ' ' << options.courant << ' '

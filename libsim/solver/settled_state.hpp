@@ -14,9 +14,6 @@ namespace sim {
 /// VIP_CACHE_DIR is empty.
 std::filesystem::path default_cache_folder();
 
-/// SHA-256 of the running program's own bytes: another build has another.
-const std::string& program_digest();
-
 /// Names everything that a settled state depends on: scene file, method, n_*, back end, step, solver numbers,
 /// and the program's own bytes, so that a changed solver never reads an old state.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);

@@ -10,15 +10,16 @@
 
 #include "apps/bench/accuracy/accuracy_page.hpp"
 #include "apps/bench/accuracy/budget.hpp"
+#include "apps/bench/accuracy/machine_lock.hpp"
 #include "apps/bench/accuracy/run_cell.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/timed_run.hpp"
 #include "apps/common/named_scenes.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
-#include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/program.hpp"
 
 namespace apps {
 
@@ -84,13 +85,13 @@ Job job_of(const AccuracyOptions& options) {
   if (options.scene == "all")
     throw base::Error("--scene all", "is more than one sweep", "name one scene; a file may hold several");
   Job out{scenes_of(options.scene).front(), plan_of(options), {}, sim::choose_backend(options.backend), {}};
-  out.origin = {machine(out.backend), base::version() + " " + sim::program_digest().substr(0, 16),
-                out.scene.scene.sha256};
+  out.origin = {machine(out.backend), base::program_words(), out.scene.scene.sha256};
   out.cells = cells_of(out.plan);
   return out;
 }
 
 StoredCell run(const Job& job, const SweepCell& cell) {
+  const MachineLock alone;
   return {cell, job.origin, run_cell(cell, job.scene.scene, job.backend)};
 }
 

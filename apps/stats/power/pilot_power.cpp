@@ -1,7 +1,6 @@
 #include "apps/stats/power/pilot_power.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -13,18 +12,6 @@
 namespace apps {
 
 namespace {
-
-/// One pilot's estimate of one coefficient.
-struct Estimate {
-  double value = 0, se = 0;
-  std::array<double, 2> ci{};
-  double half_width() const { return (ci[1] - ci[0]) / 2; }
-};
-
-struct Pilot {
-  bool fitted = false, interval = false;
-  Estimate a, b;
-};
 
 const study::Question& rating_of(const study::Protocol& protocol) {
   for (const auto& block : protocol.blocks) {
@@ -38,8 +25,9 @@ const study::Question& rating_of(const study::Protocol& protocol) {
 }
 
 /// `level`: the scale's midpoint, where the observer's curve runs.
-Pilot estimate(std::span<const stats::PilotRating> ratings, double level, const PowerRequest& request) {
-  Pilot out;
+PilotOutcome estimate(std::span<const stats::PilotRating> ratings, double level,
+                      const PowerRequest& request) {
+  PilotOutcome out;
   const auto observations = stats::PilotTable(ratings).observations(stats::PilotMean::Harmonic);
   stats::BootstrapOptions options;
   options.resamples = 0;
@@ -67,11 +55,11 @@ Estimated sd_of(std::span<const double> values) {
   return {sd, sd > 0 ? std::sqrt(std::max(0.0, m4 - m2 * m2) / n) / (2 * sd) : 0};
 }
 
-using Coefficient = std::function<const Estimate&(const Pilot&)>;
+using Coefficient = std::function<const PilotEstimate&(const PilotOutcome&)>;
 
-std::optional<CoefficientPoint> describe(const std::vector<Pilot>& pilots, const Coefficient& coefficient,
-                                         double truth, std::optional<double> precision,
-                                         const PowerRequest& request) {
+std::optional<CoefficientPoint> describe(const std::vector<PilotOutcome>& pilots,
+                                         const Coefficient& coefficient, double truth,
+                                         std::optional<double> precision, const PowerRequest& request) {
   std::vector<double> values, errors, widths;
   std::int64_t held = 0, reached = 0;
   for (const auto& pilot : pilots) {
@@ -95,17 +83,17 @@ std::optional<CoefficientPoint> describe(const std::vector<Pilot>& pilots, const
   return out;
 }
 
-PilotPoint describe(const std::vector<Pilot>& pilots, const PowerRequest& request) {
+PilotPoint describe(const std::vector<PilotOutcome>& pilots, const PowerRequest& request) {
   const auto count = [&](auto has) { return std::count_if(pilots.begin(), pilots.end(), has); };
   const int studies = static_cast<int>(pilots.size());
-  return {share_of(count([](const Pilot& one) { return one.fitted; }), studies),
-          share_of(count([](const Pilot& one) { return one.interval; }), studies),
+  return {share_of(count([](const PilotOutcome& one) { return one.fitted; }), studies),
+          share_of(count([](const PilotOutcome& one) { return one.interval; }), studies),
           describe(
-              pilots, [](const Pilot& one) -> const Estimate& { return one.a; }, request.observer.a,
-              request.precision_a, request),
+              pilots, [](const PilotOutcome& one) -> const PilotEstimate& { return one.a; },
+              request.observer.a, request.precision_a, request),
           describe(
-              pilots, [](const Pilot& one) -> const Estimate& { return one.b; }, request.observer.b,
-              request.precision_b, request)};
+              pilots, [](const PilotOutcome& one) -> const PilotEstimate& { return one.b; },
+              request.observer.b, request.precision_b, request)};
 }
 
 /// The first n from which `reached` holds to the end.
@@ -133,15 +121,14 @@ void find_n(PilotPower& power, const PowerRequest& request) {
 
 }  // namespace
 
-PilotPower simulate_pilot_power(const PowerRequest& request) {
+PilotOutcomes simulate_pilots(const PowerRequest& request, StudyRange studies) {
   const auto& question = rating_of(request.protocol);
   const double level = 0.5 * (question.scale_min + question.scale_max);
   const auto settings = realised_settings(request.protocol);
   const std::uint64_t own =
       study::random_key(request.protocol.sha256 + "\npower " + std::to_string(request.seed));
-  std::vector<std::vector<Pilot>> pilots(request.n.size());
-  for (auto& one : pilots) one.resize(static_cast<std::size_t>(request.studies));
-  for_each_study(request.studies, "pilots", [&](int study) {
+  PilotOutcomes out(request.n.size(), std::vector<PilotOutcome>(static_cast<std::size_t>(studies.count)));
+  for_each_study(studies, "pilots", [&](int study) {
     const std::uint64_t key = study::counter_random(own, static_cast<std::uint64_t>(study));
     const auto trials = planned_trials(request.protocol, key, request.n.back());
     const auto ratings =
@@ -150,13 +137,22 @@ PilotPower simulate_pilot_power(const PowerRequest& request) {
       const auto end = std::partition_point(
           ratings.begin(), ratings.end(),
           [&](const stats::PilotRating& rating) { return rating.participant < request.n[i]; });
-      pilots[i][static_cast<std::size_t>(study)] = estimate({ratings.begin(), end}, level, request);
+      out[i][static_cast<std::size_t>(study - studies.first)] =
+          estimate({ratings.begin(), end}, level, request);
     }
   });
+  return out;
+}
+
+PilotPower pilot_power(const PowerRequest& request, const PilotOutcomes& pilots) {
   PilotPower out;
   for (const auto& of_n : pilots) out.curve.push_back(describe(of_n, request));
   find_n(out, request);
   return out;
+}
+
+PilotPower simulate_pilot_power(const PowerRequest& request) {
+  return pilot_power(request, simulate_pilots(request, {0, request.studies}));
 }
 
 }  // namespace apps

@@ -2,6 +2,7 @@
 /// How precisely a pilot determines a and b: the direct estimate (stats/ptpe/direct_fit.hpp) of simulated
 /// pilots on the protocol's own plan.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,21 @@
 #include "apps/stats/power/studies.hpp"
 
 namespace apps {
+
+/// One pilot's estimate of one coefficient, with the jackknife's interval.
+struct PilotEstimate {
+  double value = 0, se = 0;
+  std::array<double, 2> ci{};
+  double half_width() const { return (ci[1] - ci[0]) / 2; }
+};
+
+struct PilotOutcome {
+  bool fitted = false, interval = false;  ///< has an estimate; has an interval too
+  PilotEstimate a, b;                     ///< where there is an interval
+};
+
+/// By number of participants as PowerRequest::n, then by study.
+using PilotOutcomes = std::vector<std::vector<PilotOutcome>>;
 
 /// One coefficient at one number of participants. All but `sd` and `mean` are of the jackknife's interval and
 /// over the pilots that have one.
@@ -37,7 +53,14 @@ struct PilotPower {
   std::optional<int> n_for_a_median, n_for_b_median;
 };
 
-/// Equal for any number of threads. base::Error unless the protocol asks one scale about each setting.
+/// Simulates these pilots with each number of participants. Equal for any number of threads. base::Error
+/// unless the protocol asks one scale about each setting.
+PilotOutcomes simulate_pilots(const PowerRequest& request, StudyRange studies);
+
+/// What all of the request's pilots say.
+PilotPower pilot_power(const PowerRequest& request, const PilotOutcomes& pilots);
+
+/// Both, in one process.
 PilotPower simulate_pilot_power(const PowerRequest& request);
 
 }  // namespace apps

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "stats/base/file.hpp"
+#include "stats/base/program.hpp"
 
 namespace apps {
 
@@ -153,6 +154,17 @@ void add_lines(std::string& out, const std::string& lead, const Json& point, con
 }
 
 }  // namespace
+
+Json studies_json(const PowerRequest& request) {
+  const auto kind = power_kind(request.protocol);
+  Json out{{"program", base::program_words()},
+           {"protocol", request.protocol.sha256},
+           {"plan", format_plan(request.plan.plan, {})},
+           {"worlds", request.worlds}};
+  out.update(settings_json(request, kind));
+  for (const char* name : {"n", "studies", "power", "precision_a", "precision_b"}) out.erase(name);
+  return out;
+}
 
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds) {
   Json out = head_json(request, power_kind(request.protocol));

@@ -11,6 +11,9 @@
 
 namespace apps {
 
+/// What simulated studies depend on besides their number and n: program, protocol, plan, worlds, settings.
+Json studies_json(const PowerRequest& request);
+
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);
 Json power_json(const PowerRequest& request, const PilotPower& pilot);
 

@@ -13,14 +13,14 @@
 
 namespace apps {
 
-void for_each_study(int studies, const std::string& label, const std::function<void(int)>& simulate) {
-  Progress progress(label, static_cast<std::size_t>(studies));
+void for_each_study(StudyRange studies, const std::string& label, const std::function<void(int)>& simulate) {
+  Progress progress(label, static_cast<std::size_t>(studies.count));
   std::atomic<int> done = 0;
   std::atomic<bool> failed = false;
   std::exception_ptr failure;
   std::mutex guard;
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int study = 0; study < studies; ++study) {
+  for (int study = studies.first; study < studies.first + studies.count; ++study) {
     if (failed) continue;
     try {
       simulate(study);

@@ -8,9 +8,14 @@
 
 namespace apps {
 
+/// Studies with numbers in a row. A study is known by its number, whoever simulates it and beside whom.
+struct StudyRange {
+  int first = 0, count = 0;
+};
+
 /// Runs `simulate` for each study, on all threads, in any order, with a progress bar. The first exception
 /// ends it and is thrown on.
-void for_each_study(int studies, const std::string& label, const std::function<void(int)>& simulate);
+void for_each_study(StudyRange studies, const std::string& label, const std::function<void(int)>& simulate);
 
 /// A figure and its Monte-Carlo standard error.
 struct Estimated {

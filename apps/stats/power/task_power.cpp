@@ -1,7 +1,6 @@
 #include "apps/stats/power/task_power.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "apps/stats/power/answers.hpp"
@@ -13,73 +12,13 @@ namespace apps {
 
 namespace {
 
-/// Sums of whole numbers do not depend on their order, and so not on threads.
-constexpr double estimate_unit = 1e-9;
-
-struct TestCount {
-  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0, estimates = 0, estimate_units = 0;
-  int participants_least = 1 << 30, participants_most = 0;
-
-  void add(const TestCount& other) {
-    holds += other.holds;
-    uncorrected += other.uncorrected;
-    against += other.against;
-    refused += other.refused;
-    estimates += other.estimates;
-    estimate_units += other.estimate_units;
-    participants_least = std::min(participants_least, other.participants_least);
-    participants_most = std::max(participants_most, other.participants_most);
-  }
-};
-
-struct HypothesisCount {
-  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;
-  std::vector<TestCount> tests;
-};
-
 /// One hypothesis of one scenario. Its words and tests come from the analysis itself.
 struct Judged {
   const Scenario* scenario = nullptr;
   stats::Hypothesis hypothesis;
   std::vector<double> truths;
   std::vector<bool> claims;
-  std::vector<HypothesisCount> counts;  ///< by n
 };
-
-TestCount count_test(const stats::HypothesisTest& test) {
-  TestCount out;
-  out.holds = test.holds_holm ? 1 : 0;
-  out.uncorrected = test.holds_alone ? 1 : 0;
-  out.against = test.against ? 1 : 0;
-  out.refused = test.p ? 0 : 1;
-  out.participants_least = out.participants_most = static_cast<int>(test.n);
-  if (test.estimate) {
-    out.estimates = 1;
-    out.estimate_units = std::llround(*test.estimate / estimate_unit);
-  }
-  return out;
-}
-
-HypothesisCount count_hypothesis(const stats::Hypothesis& hypothesis, const std::vector<bool>& claims) {
-  HypothesisCount out;
-  out.supported = hypothesis.status == stats::HypothesisStatus::Supported ? 1 : 0;
-  out.any = hypothesis.confirmed_holm > 0 ? 1 : 0;
-  out.paper = hypothesis.paper_supported ? 1 : 0;
-  for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
-    out.tests.push_back(count_test(hypothesis.tests[i]));
-    if (hypothesis.tests[i].holds_holm && !claims[i]) out.any_false = 1;
-  }
-  return out;
-}
-
-void add_count(HypothesisCount& sum, const HypothesisCount& one) {
-  sum.supported += one.supported;
-  sum.any += one.any;
-  sum.any_false += one.any_false;
-  sum.paper += one.paper;
-  sum.tests.resize(one.tests.size());
-  for (std::size_t i = 0; i < one.tests.size(); ++i) sum.tests[i].add(one.tests[i]);
-}
 
 /// True difference a - b, or preference for a.
 double truth_of(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test) {
@@ -114,22 +53,25 @@ class Simulation {
     prepare();
   }
 
-  std::vector<WorldPower> run() {
+  TaskCounts count(StudyRange studies) const {
+    TaskCounts out(request_.n.size(), none());
     std::mutex guard;
-    for_each_study(request_.studies, "studies", [&](int study) {
+    for_each_study(studies, "studies", [&](int study) {
       const auto counts = simulate(study);
       const std::lock_guard lock(guard);
-      for (std::size_t i = 0; i < judged_.size(); ++i) {
-        for (std::size_t n = 0; n < request_.n.size(); ++n) add_count(judged_[i].counts[n], counts[i][n]);
-      }
+      add(out, counts);
     });
+    return out;
+  }
+
+  std::vector<WorldPower> describe(const TaskCounts& counts) const {
     std::vector<WorldPower> out;
-    auto next = judged_.begin();
+    std::size_t next = 0;
     for (const auto& world : worlds_) {
       out.push_back({world.id, world.words, {}});
       for (const auto& scenario : world.scenarios) {
         for (std::size_t i = 0; i < scenario.hypotheses.size(); ++i)
-          out.back().hypotheses.push_back(describe(*next++));
+          out.back().hypotheses.push_back(describe(counts, next++));
       }
     }
     return out;
@@ -141,7 +83,7 @@ class Simulation {
     for (const auto& world : worlds_) {
       for (const auto& scenario : world.scenarios) {
         for (auto& hypothesis : analyse(scenario, {}, 0)) {
-          Judged one{&scenario, std::move(hypothesis), {}, {}, {}};
+          Judged one{&scenario, std::move(hypothesis), {}, {}};
           for (auto& test : one.hypothesis.tests) {
             if (one.hypothesis.kind == stats::HypothesisKind::Equivalence ||
                 one.hypothesis.kind == stats::HypothesisKind::NonInferiority)
@@ -150,7 +92,6 @@ class Simulation {
             one.truths.push_back(truth_of(scenario, factors_, test));
             one.claims.push_back(claim_is_true(one.hypothesis.kind, test, one.truths.back()));
           }
-          one.counts.resize(request_.n.size());
           judged_.push_back(std::move(one));
         }
       }
@@ -197,21 +138,25 @@ class Simulation {
     return stats::task2_hypotheses(pairs, factors_.methods, plan, "");
   }
 
-  /// Counts by judged hypothesis and n.
-  std::vector<std::vector<HypothesisCount>> simulate(int study) const {
+  /// Counts of no study.
+  std::vector<HypothesisCount> none() const {
+    std::vector<HypothesisCount> out;
+    for (const auto& one : judged_) out.push_back({.tests = std::vector<TestCount>(one.claims.size())});
+    return out;
+  }
+
+  TaskCounts simulate(int study) const {
     const std::uint64_t key = study::counter_random(key_, static_cast<std::uint64_t>(study));
     const auto trials = planned_trials(request_.protocol, key, request_.n.back());
-    std::vector<std::vector<HypothesisCount>> out(judged_.size());
+    TaskCounts out(request_.n.size());
     std::size_t first = 0;
     for (const auto& world : worlds_) {
       for (const auto& scenario : world.scenarios) {
         const Answers answers = answer(scenario, trials, key);
-        for (const int n : request_.n) {
+        for (std::size_t n = 0; n < request_.n.size(); ++n) {
           std::size_t judged = first;
-          for (const auto& hypothesis : analyse(scenario, answers, n)) {
-            out[judged].push_back(count_hypothesis(hypothesis, judged_[judged].claims));
-            ++judged;
-          }
+          for (const auto& hypothesis : analyse(scenario, answers, request_.n[n]))
+            out[n].push_back(count_hypothesis(hypothesis, judged_[judged++].claims));
         }
         first += scenario.hypotheses.size();
       }
@@ -219,21 +164,20 @@ class Simulation {
     return out;
   }
 
-  TestPower describe_test(const Judged& judged, std::size_t index) const {
+  TestPower describe_test(const TaskCounts& counts, std::size_t of, std::size_t index) const {
+    const Judged& judged = judged_[of];
     const auto& test = judged.hypothesis.tests[index];
     TestPower out{test.label,           test.score,           test.n_star, test.a, test.b,
                   judged.truths[index], judged.claims[index], test.margin, {},     {}};
     const int studies = request_.studies;
     for (std::size_t n = 0; n < request_.n.size(); ++n) {
-      const auto& count = judged.counts[n].tests[index];
+      const auto& count = counts[n][of].tests[index];
       TestPoint point;
       point.holds = share_of(count.holds, studies);
       point.uncorrected = share_of(count.uncorrected, studies);
       point.against = share_of(count.against, studies);
       point.refused = share_of(count.refused, studies);
-      if (count.estimates > 0)
-        point.mean_estimate =
-            static_cast<double>(count.estimate_units) * estimate_unit / static_cast<double>(count.estimates);
+      point.mean_estimate = count.mean_estimate();
       point.participants_least = count.participants_least;
       point.participants_most = count.participants_most;
       if (count.participants_least == count.participants_most)
@@ -245,7 +189,8 @@ class Simulation {
     return out;
   }
 
-  HypothesisPower describe(const Judged& judged) const {
+  HypothesisPower describe(const TaskCounts& counts, std::size_t of) const {
+    const Judged& judged = judged_[of];
     const auto& hypothesis = judged.hypothesis;
     HypothesisPower out;
     out.id = hypothesis.id;
@@ -254,13 +199,15 @@ class Simulation {
     out.paper_rule = hypothesis.paper_rule;
     out.kind = hypothesis.kind;
     for (std::size_t i = 0; i < hypothesis.tests.size(); ++i) {
-      out.tests.push_back(describe_test(judged, i));
+      out.tests.push_back(describe_test(counts, of, i));
       out.claims_true += judged.claims[i] ? 1 : 0;
     }
-    for (const auto& count : judged.counts)
+    for (const auto& at : counts) {
+      const auto& count = at[of];
       out.curve.push_back({share_of(count.supported, request_.studies), share_of(count.any, request_.studies),
                            share_of(count.any_false, request_.studies),
                            share_of(count.paper, request_.studies)});
+    }
     if (out.claims_true == static_cast<int>(out.tests.size()))
       out.n_for_power = lasting([&](std::size_t n) { return out.curve[n].supported.value; });
     return out;
@@ -284,6 +231,16 @@ class Simulation {
 
 }  // namespace
 
-std::vector<WorldPower> simulate_task_power(const PowerRequest& request) { return Simulation(request).run(); }
+TaskCounts count_task_studies(const PowerRequest& request, StudyRange studies) {
+  return Simulation(request).count(studies);
+}
+
+std::vector<WorldPower> task_power(const PowerRequest& request, const TaskCounts& counts) {
+  return Simulation(request).describe(counts);
+}
+
+std::vector<WorldPower> simulate_task_power(const PowerRequest& request) {
+  return task_power(request, count_task_studies(request, {0, request.studies}));
+}
 
 }  // namespace apps

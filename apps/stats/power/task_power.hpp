@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/stats/power/studies.hpp"
+#include "apps/stats/power/task_counts.hpp"
 #include "apps/stats/power/worlds.hpp"
 #include "stats/analysis/hypotheses.hpp"
 
@@ -57,8 +58,15 @@ struct WorldPower {
   std::vector<HypothesisPower> hypotheses;
 };
 
-/// Task 1 or 2. Equal for any number of threads. Studies of different size share their first participants,
+/// Task 1 or 2: simulates these studies with each number of participants. Equal for any number of threads.
+/// Studies of different size share their first participants,
 /// and worlds share their random numbers, so that curves are smooth and differences between worlds sharp.
+TaskCounts count_task_studies(const PowerRequest& request, StudyRange studies);
+
+/// What counts over all of the request's studies say.
+std::vector<WorldPower> task_power(const PowerRequest& request, const TaskCounts& counts);
+
+/// Both, in one process.
 std::vector<WorldPower> simulate_task_power(const PowerRequest& request);
 
 }  // namespace apps
