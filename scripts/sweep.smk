@@ -60,7 +60,7 @@ if "accuracy" in config:
     results.append(f"{OUT}/accuracy/accuracy.html")
     # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was measured on, so
     # that the table is made with as many.
-    timed_threads = int(config.get("threads", workflow.cores or 1))
+    timed_threads = int(config["threads"] if "threads" in config else workflow.cores)
     exclusive = str(config.get("slurm", "--exclusive"))
 
     rule accuracy_cells:

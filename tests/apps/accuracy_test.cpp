@@ -303,22 +303,42 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
 class AccuracyE2e : public test::TableTest {
  protected:
   const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
-  /// A table's rows without what a clock gave.
-  std::vector<test::Row> timeless(const std::string& name) const {
-    auto out = rows(name);
-    for (auto& row : out)
-      std::erase_if(row, [](const auto& cell) {
-        return cell.first.find("ms_") != std::string::npos || cell.first == "tau";
-      });
+  /// What the clock gave for each cell of a sweep file, by key; nothing while another program writes to it.
+  std::map<std::string, std::vector<double>> times_of(const std::string& name) const {
+    std::map<std::string, std::vector<double>> out;
+    try {
+      for (const auto& cell : SweepFile(path(name), Open::Read).cells())
+        for (const auto& frame : cell.run.frames) out[cell.key()].push_back(frame.solve_ms);
+    } catch (const base::Error&) {
+      return {};
+    }
     return out;
   }
 };
 
+TEST_F(AccuracyE2e, AKilledSweepGoesOnAndKeepsItsCells) {
+  const std::string command = sweep + " --db " + path("killed.db");
+  std::map<std::string, std::vector<double>> kept;
+  {
+    std::vector<std::string> words{VIP_BIN_DIR "/vip-bench"};
+    std::istringstream stream(command + " --backend cpu");
+    for (std::string word; stream >> word;) words.push_back(word);
+    test::Process killed(words, [] { ::setenv("VIP_CACHE_DIR", "", 1); });
+    while ((kept = times_of("killed.db")).size() < 3 && ::kill(killed.pid(), 0) == 0) ::usleep(10'000);
+    killed.send(SIGKILL);
+    ASSERT_EQ(killed.wait().signal, SIGKILL);
+  }
+  kept = times_of("killed.db");
+  ASSERT_GE(kept.size(), 3u);
+  ASSERT_LT(kept.size(), 13u);
+  const auto again = table(command);
+  ASSERT_EQ(again.exit_code, 0) << again.out;
+  const auto all = times_of("killed.db");
+  EXPECT_EQ(all.size(), 13u);
+  for (const auto& [key, times] : kept) EXPECT_EQ(all.at(key), times) << key << " was run again";
+}
+
 TEST_F(AccuracyE2e, CellsRunApartAndMergedGiveTheSerialRunsTable) {
-  // Killed after some cells, and given again.
-  const auto killed = table("accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --db " + path("serial.db") +
-                            " & sleep 2; kill -9 $!; true; #");
-  EXPECT_EQ(killed.exit_code, 0) << killed.out;
   const auto serial = table(sweep + " --db " + path("serial.db") + " --csv " + path("serial.csv") +
                             " --html " + path("serial.html"));
   ASSERT_EQ(serial.exit_code, 0) << serial.out;

@@ -34,6 +34,13 @@ class OutputOptionsE2e : public ::testing::Test {
                               .wait();
       EXPECT_EQ(ended.exit_code, 0) << ended.err;
     }
+    const std::string cell = power_ + " --cell " + first_cell(power_) + " --out " + shard_;
+    EXPECT_EQ(run_shell(VIP_BIN_DIR "/" + cell).exit_code, 0) << cell;
+  }
+
+  /// The key that the command lists first.
+  static std::string first_cell(const std::string& command) {
+    return run_shell(VIP_BIN_DIR "/" + command + " --list").out.substr(0, 16);
   }
 
   /// Commands with the option at their ends, by what is asked for there.
@@ -51,13 +58,16 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-stats report " + database_ + " --html ",
             "vip-stats report " + database_ + " --html " + page_ + " --json ",
             "vip-stats task2 " + database_ + " --json ",
-            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --json ",
-            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --csv ",
-            "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10 --svg ",
+            power_ + " --json ",
+            power_ + " --csv ",
+            power_ + " --svg ",
+            power_ + " --cell " + first_cell(power_) + " --out ",
+            "vip-stats power merge" + power_.substr(power_.find(" protocols")) + " " + shard_ + " --json ",
             bench + " --json ",
             growth_ + " --csv ",
             growth_ + " --svg ",
             accuracy_ + " --db ",
+            accuracy_ + " --cell " + first_cell(accuracy_) + " --out ",
             accuracy_ + " --db " + sweep_ + " --csv ",
             accuracy_ + " --db " + sweep_ + " --prices-csv ",
             accuracy_ + " --db " + sweep_ + " --markdown ",
@@ -100,13 +110,15 @@ class OutputOptionsE2e : public ::testing::Test {
       "--cumul-frames 2 --projections 1 --size 64x36";
   inline static const std::string accuracy_ =
       "vip-bench accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
+  inline static const std::string power_ =
+      "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10";
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
   inline static const std::string table2_ =
       "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
   const TemporaryFolder folder_;
   const std::string database_ = folder_ / "s.db", sweep_ = folder_ / "sweep.db",
-                    page_ = folder_ / "page.html";
+                    page_ = folder_ / "page.html", shard_ = folder_ / "shard.json";
 };
 
 TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {

@@ -125,6 +125,15 @@ void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& 
   }
 }
 
+/// What is not there, also because another machine ran it, leaves tables and choices smaller.
+void tell_missing(const Job& job, SweepFile& file) {
+  const auto done = file.keys(job.origin.machine);
+  const auto there = std::count_if(job.cells.begin(), job.cells.end(),
+                                   [&](const auto& cell) { return done.contains(job.key(cell)); });
+  if (static_cast<std::size_t>(there) < job.cells.size())
+    std::printf("%td of the sweep's %zu cells are there\n", there, job.cells.size());
+}
+
 PriceList prices_of(const Job& job, SweepFile& file) {
   return price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
 }
@@ -138,16 +147,12 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
   if (!options.html.empty()) base::write_file_atomically(options.html, accuracy_page(list, job.plan));
 }
 
-/// Cells of the sweep that are not there leave the choice smaller; the setting itself is run anew.
+/// The setting that is chosen is run anew.
 void run_budget(const Job& job, const AccuracyOptions& options) {
   const BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
                         job.scene.scene.tank_size_m[0]};
   SweepFile file(options.database, Open::Read);
-  const auto done = file.keys(job.origin.machine);
-  const auto there = std::count_if(job.cells.begin(), job.cells.end(),
-                                   [&](const auto& cell) { return done.contains(job.key(cell)); });
-  if (static_cast<std::size_t>(there) < job.cells.size())
-    std::printf("%td of the sweep's %zu cells are there\n", there, job.cells.size());
+  tell_missing(job, file);
   const auto choice = choose_setting(
       file.cells(), job.origin, wish, [&](const SweepCell& cell) { return run(job, cell); },
       [](const std::string& words) { std::printf("%s\n", words.c_str()); });
@@ -169,7 +174,9 @@ void run_accuracy(const AccuracyOptions& options) {
   if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
   if (!options.budget.empty()) return run_budget(job, options);
   SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
-  if (!options.table_only) {
+  if (options.table_only) {
+    tell_missing(job, file);
+  } else {
     run_missing(job, file, job.cells);
     if (options.front_seeds > 0)
       run_missing(job, file, more_seeds_of_fronts(prices_of(job, file), job.plan, options.front_seeds));

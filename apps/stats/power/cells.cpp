@@ -10,9 +10,9 @@ namespace apps {
 namespace {
 
 int studies_of_cell(const PowerRequest& request, int n) {
-  constexpr int participants = 100000, participants_by_model = 5000;
+  constexpr int participants = 100000, participants_by_model = 5000, most = 10000;
   const bool by_model = request.plan.plan.tests == stats::ScoreTests::Mixed;
-  return std::max(1, (by_model ? participants_by_model : participants) / n);
+  return std::clamp((by_model ? participants_by_model : participants) / n, 1, most);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ struct PowerCell {
 /// "26 participants, studies 1 to 192".
 std::string to_text(const PowerCell& cell);
 
-/// All of a request, by n and study. A cell has about 100,000 participants, all its studies together; 5,000
-/// where the plan fits the mixed model, which takes an order of magnitude longer. So no cell takes more than
-/// minutes.
+/// All of a request, by n and study. A cell has about 100,000 participants, all its studies together, and no
+/// more than 10,000 studies; 5,000 participants where the plan fits the mixed model, which takes an order of
+/// magnitude longer. So no cell takes more than minutes.
 std::vector<PowerCell> power_cells(const PowerRequest& request);
 
 /// What simulated studies gave: of Task 1 or 2, or of the pilot.

@@ -1,0 +1,245 @@
+/// vip-stats power in cells: they make up the calculation, and their shards give what one run gives.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "apps/stats/power/shard.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+PowerRequest request_for(const std::string& protocol, std::vector<int> n, int studies,
+                         std::vector<std::string> worlds) {
+  PowerRequest out;
+  out.file = protocol;
+  out.protocol = study::read_protocol(base::resource(protocol));
+  out.n = std::move(n);
+  out.studies = studies;
+  out.worlds = std::move(worlds);
+  return out;
+}
+
+/// Two blocks of studies of 24 people, by the mixed model.
+PowerRequest by_model() {
+  auto out = request_for("protocols/task1.toml", {24}, 220, {"null"});
+  out.plan.plan.tests = stats::ScoreTests::Mixed;
+  return out;
+}
+PowerRequest pairs() { return request_for("protocols/task2.toml", {8, 10}, 40, {"null", "paper"}); }
+PowerRequest pilot() { return request_for("protocols/ptpe_pilot.toml", {6, 8}, 12, {}); }
+
+std::set<std::string> keys_of(const PowerRequest& request) {
+  std::set<std::string> out;
+  for (const auto& cell : power_cells(request)) out.insert(cell.key);
+  return out;
+}
+
+TEST(PowerCells, MakeUpTheCalculation) {
+  auto request = request_for("protocols/task1.toml", {2, 26, 2000}, 2000, {"null"});
+  for (const auto tests : {stats::ScoreTests::Paired, stats::ScoreTests::Mixed}) {
+    request.plan.plan.tests = tests;
+    std::map<int, int> next;  // study by n
+    for (const auto& cell : power_cells(request)) {
+      EXPECT_EQ(cell.studies.first, next[cell.n]) << to_text(cell);
+      EXPECT_GT(cell.studies.count, 0);
+      next[cell.n] += cell.studies.count;
+    }
+    EXPECT_EQ(next, (std::map<int, int>{{2, 2000}, {26, 2000}, {2000, 2000}}));
+    EXPECT_EQ(keys_of(request).size(), power_cells(request).size());
+  }
+  EXPECT_EQ(to_text(power_cells(by_model())[1]), "24 participants, studies 209 to 220");
+}
+
+TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
+  const auto usual = keys_of(pairs());
+  const auto differs = [&](auto change) {
+    auto request = pairs();
+    change(request);
+    std::vector<std::string> common;
+    std::ranges::set_intersection(keys_of(request), usual, std::back_inserter(common));
+    return common.empty();
+  };
+  EXPECT_TRUE(differs([](auto& request) { request.seed = 2; }));
+  EXPECT_TRUE(differs([](auto& request) { request.worlds = {"null"}; }));
+  EXPECT_TRUE(differs([](auto& request) { request.interval_bias = 1; }));
+  EXPECT_TRUE(differs([](auto& request) { request.effect = 0.7; }));
+  EXPECT_TRUE(differs([](auto& request) { request.plan.plan.alpha = 0.01; }));
+  EXPECT_TRUE(differs([](auto& request) { request.protocol.sha256[0] ^= 1; }));
+  EXPECT_TRUE(differs([](auto& request) { request.studies = 41; })) << "a block of 41 is another one";
+  EXPECT_FALSE(differs([](auto& request) { request.power = 0.9; }));
+  EXPECT_FALSE(differs([](auto& request) { request.n.push_back(12); }));
+}
+
+class PowerShards : public ::testing::Test {
+ protected:
+  /// One file a cell, from the last to the first.
+  std::vector<std::filesystem::path> run_apart(const PowerRequest& request) const {
+    std::vector<std::filesystem::path> out;
+    auto cells = power_cells(request);
+    std::ranges::reverse(cells);
+    for (const auto& cell : cells) {
+      out.push_back(folder_ / (cell.key + ".json"));
+      run_cell(request, cell, out.back());
+    }
+    return out;
+  }
+  static std::string bytes_of(const std::filesystem::path& file) { return base::read_file(file, 1 << 24); }
+  const ::test::TemporaryFolder folder_;
+};
+
+TEST_F(PowerShards, GiveWhatOneRunGivesBitForBit) {
+  for (const auto& request : {by_model(), pairs(), pilot()}) {
+    auto shards = run_apart(request);
+    EXPECT_GE(shards.size(), 2u);
+    shards.push_back(shards.front());  // one twice
+    const auto serial = power_json(request, simulate_studies(request, {0, request.studies}));
+    EXPECT_EQ(power_json(request, join_shards(request, shards)).dump(), serial.dump()) << request.file;
+  }
+}
+
+TEST_F(PowerShards, KeepIntervalsWithoutEnd) {
+  const auto request = pilot();
+  const auto shards = run_apart(request);
+  Json shard = Json::parse(bytes_of(shards[0]));
+  shard["outcomes"][0] = Json::parse(R"([true, true, 24.5, "Inf", "-Inf", "Inf", 0.02, null, 0, 1])");
+  base::write_file_atomically(shards[0], shard.dump());
+  const auto joined = std::get<PilotOutcomes>(join_shards(request, shards));
+  const auto& read = joined[1][0];  // the last cell stands first
+  EXPECT_EQ(read.a.value, 24.5);
+  EXPECT_TRUE(std::isinf(read.a.ci[1]) && std::isinf(read.a.ci[0]) && read.a.ci[0] < 0);
+  EXPECT_TRUE(std::isnan(read.b.se));
+  EXPECT_EQ(read.b.ci[1], 1);
+}
+
+TEST_F(PowerShards, OfOtherStudiesAreRefusedByName) {
+  const auto request = pairs();
+  const auto shards = run_apart(request);
+  const auto refused = [&](const PowerRequest& other, const std::string& what) {
+    EXPECT_THAT([&] { join_shards(other, shards); },
+                ThrowsMessage<base::Error>(AllOf(HasSubstr(shards[0].string()), HasSubstr(what))));
+  };
+  auto other = request;
+  other.seed = 9;
+  refused(other, "another seed (1, here 9)");
+  other = request;
+  other.plan.plan.alpha = 0.01;
+  refused(other, "another plan");
+  other = request;
+  other.worlds = {"paper", "null"};
+  refused(other, "another worlds");
+  refused(pilot(), "another protocol");
+  other = request;
+  other.n = {8};
+  refused(other, "holds \"10 participants, studies 1 to 40\", which is no cell");
+  Json older = Json::parse(bytes_of(shards[0]));
+  older["studies"]["program"] = "0.0.9 feed";
+  base::write_file_atomically(shards[0], older.dump());
+  refused(request, "another program (\"0.0.9 feed\"");
+}
+
+TEST_F(PowerShards, MissingCellsAreNamed) {
+  const auto request = pairs();
+  auto shards = run_apart(request);
+  const auto missing = power_cells(request)[0];
+  shards.pop_back();
+  EXPECT_THAT([&] { join_shards(request, shards); },
+              ThrowsMessage<base::Error>(HasSubstr("1 of 2 cells are missing: " + missing.key +
+                                                   " (8 participants, studies 1 to 40)")));
+}
+
+TEST_F(PowerShards, WhatIsNoneIsRefusedAndLeftAsItIs) {
+  const auto request = pairs();
+  const auto cell = power_cells(request)[0];
+  const auto file = folder_ / "cell.json";
+  run_cell(request, cell, file);
+  const std::string sound = bytes_of(file);
+  const auto refused = [&](const std::string& bytes, const char* why) {
+    base::write_file_atomically(file, bytes);
+    EXPECT_THAT([&] { join_shards(request, {file}); }, ThrowsMessage<base::Error>(HasSubstr(why)));
+    EXPECT_EQ(bytes_of(file), bytes);
+  };
+  refused("", "not a shard");
+  refused("{\"schema\":\"vip-power/1\"}", "not a shard");
+  refused(sound.substr(0, sound.size() / 2), "damaged or cut short");
+  refused(sound.substr(0, 60), "damaged or cut short");
+  auto text = sound;
+  refused(text.replace(text.find("shard/1"), 7, "shard/2"), "newer program");
+  Json fewer = Json::parse(sound);
+  fewer["outcomes"][0][1].erase(0);
+  refused(fewer.dump(), "damaged or cut short");
+  fewer = Json::parse(sound);
+  fewer["outcomes"][0][0][0] = "many";
+  refused(fewer.dump(), "damaged or cut short");
+}
+
+TEST_F(PowerShards, ACellThatIsThereIsNotRunAgainAndNothingElseIsOverwritten) {
+  const auto request = pairs();
+  const auto cells = power_cells(request);
+  const auto file = folder_ / "cell.json";
+  run_cell(request, cells[0], file);
+  const std::string marked = bytes_of(file) + " ";
+  base::write_file_atomically(file, marked);
+  run_cell(request, cells[0], file);
+  EXPECT_EQ(bytes_of(file), marked);
+  EXPECT_THAT([&] { run_cell(request, cells[1], file); },
+              ThrowsMessage<base::Error>(HasSubstr(cells[1].key)));
+  EXPECT_EQ(bytes_of(file), marked);
+  base::write_file_atomically(file, "mine");
+  EXPECT_THROW(run_cell(request, cells[0], file), base::Error);
+  EXPECT_EQ(bytes_of(file), "mine");
+}
+
+using PowerShardsE2e = PowerShards;
+
+TEST_F(PowerShardsE2e, ThroughTheCommandLine) {
+  const std::string power = VIP_BIN_DIR "/vip-stats power ";
+  const std::string plan = "protocols/task2.toml --n 8:10:2 --studies 40 --world null";
+  const auto in = [&](const char* name) { return (folder_ / name).string(); };
+  const auto serial = test::run_program(
+      {"/bin/sh", "-c", power + plan + " --json " + in("s.json") + " --csv " + in("s.csv")});
+  ASSERT_EQ(serial.exit_code, 0) << serial.err;
+  std::istringstream lines(test::run_shell(power + plan + " --list").out);
+  std::string shards;
+  int number = 0;
+  for (std::string key, words; lines >> key && std::getline(lines, words);) {
+    const std::string shard = in(("shard" + std::to_string(number++)).c_str());
+    const auto ended = test::run_shell(power + plan + " --cell " + key + " --out " + shard);
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+    shards = " " + shard + shards;
+  }
+  EXPECT_EQ(number, 2);
+  const auto merged = test::run_program(
+      {"/bin/sh", "-c",
+       power + "merge " + plan + " --json " + in("m.json") + " --csv " + in("m.csv") + shards});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(merged.out, serial.out);
+  EXPECT_EQ(bytes_of(in("m.json")), bytes_of(in("s.json")));
+  EXPECT_EQ(bytes_of(in("m.csv")), bytes_of(in("s.csv")));
+  for (const auto& [words, place] : std::vector<std::pair<std::string, std::string>>{
+           {plan + " --cell 0123 --out " + in("x.json"), "--cell 0123: is no cell"},
+           {"merge " + plan + " --json " + in("x.json") + " " + in("shard0"), "1 of 2 cells are missing"}}) {
+    const auto ended = test::run_shell(power + words);
+    EXPECT_EQ(ended.exit_code, 1) << ended.out;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr(place), HasSubstr("mend:")));
+    EXPECT_FALSE(std::filesystem::exists(in("x.json"))) << words;
+  }
+  for (const std::string& words : {plan + " --cell 0123", plan + " --out " + in("x.json"),
+                                  std::string("--list"), plan + " --list --json " + in("x.json")}) {
+    EXPECT_EQ(test::run_shell(power + words).exit_code, 2) << words;
+  }
+}
+
+}  // namespace
+}  // namespace apps

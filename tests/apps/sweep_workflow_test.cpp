@@ -1,0 +1,191 @@
+/// scripts/sweep.smk: what is killed half-way and goes on gives what the serial run gives.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "tests/apps/table_test_support.hpp"
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A program that runs a cell.
+struct Worker {
+  pid_t pid = 0;
+  fs::path shard;
+};
+
+class SweepWorkflowE2e : public test::TableTest {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0) << "scripts/setup.sh installs Snakemake";
+  }
+
+  /// In a session of its own, from this test's folder, on two cores.
+  test::Process workflow(const std::string& arguments) const {
+    return test::Process(
+        {"/bin/sh", "-c",
+         "cd " + folder.path().string() + " && exec " + environment() + "snakemake -s " + root_ +
+             "/scripts/sweep.smk --cores 2 " + arguments + " bin=" VIP_BIN_DIR " out=out >>log 2>&1"},
+        [] { ::setsid(); });
+  }
+  /// Settled states and locks are this test's own.
+  std::string environment() const {
+    const std::string own = folder.path().string();
+    return "env -u DISPLAY OMP_NUM_THREADS=2 VIP_CACHE_DIR= VIP_LOCK_DIR=" + own + " XDG_CACHE_HOME=" + own +
+           " ";
+  }
+  std::string log() const { return base::read_file(path("log"), 1 << 22); }
+
+  std::vector<Worker> workers() const {
+    std::vector<Worker> out;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string name = entry.path().filename();
+      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::error_code gone;
+      if (fs::read_symlink(entry.path() / "cwd", gone) != folder.path() || gone) continue;
+      std::ifstream line(entry.path() / "cmdline");
+      std::vector<std::string> words;
+      for (std::string word; std::getline(line, word, '\0');) words.push_back(word);
+      const auto out_at = std::find(words.begin(), words.end(), "--out");
+      if (words.empty() || words[0].rfind(VIP_BIN_DIR, 0) != 0 || words.end() - out_at < 2) continue;
+      out.push_back({std::stoi(name), folder / out_at[1]});
+    }
+    return out;
+  }
+
+  /// 'T' once it is stopped; 0 when it is gone.
+  static char state_of(pid_t pid) {
+    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+    std::string text;
+    std::getline(stat, text);
+    const auto name_end = text.rfind(')');
+    return name_end == std::string::npos ? '\0' : text[name_end + 2];
+  }
+  static bool stop(pid_t pid) {
+    ::kill(pid, SIGSTOP);
+    while (state_of(pid) != 'T') {
+      if (state_of(pid) == '\0' || state_of(pid) == 'Z') return false;
+      ::usleep(1000);
+    }
+    return true;
+  }
+
+  /// Once so many jobs are done: a worker in the midst of its cell, stopped. Throws after five minutes.
+  template <class InCell>
+  Worker stop_a_worker(const std::string& kind, std::size_t least_done, InCell in_cell) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (done_shards(kind).size() >= least_done) {
+        for (const Worker& worker : workers()) {
+          if (!stop(worker.pid)) continue;
+          if (in_cell(worker)) return worker;
+          ::kill(worker.pid, SIGCONT);
+        }
+      }
+      ::usleep(5000);
+    }
+    throw std::runtime_error("no worker was met:\n" + log());
+  }
+
+  /// A shard and when it was written.
+  struct Written {
+    fs::file_time_type time;
+    std::string bytes;
+    bool operator==(const Written&) const = default;
+  };
+  static Written written(const fs::path& shard) {
+    return {fs::last_write_time(shard), base::read_file(shard, 1 << 24)};
+  }
+  /// Of jobs that are done, which here are one cell each.
+  std::map<fs::path, Written> done_shards(const std::string& kind) const {
+    std::map<fs::path, Written> out;
+    const fs::path done = folder / ("out/" + kind + "/done");
+    if (!fs::exists(done)) return out;
+    for (const auto& entry : fs::directory_iterator(done)) {
+      const std::string job = entry.path().filename();
+      const fs::path shard =
+          folder / ("out/" + kind + "/shards/" + job.substr(0, 16) + (kind == "power" ? ".json" : ".db"));
+      out[shard] = written(shard);
+    }
+    return out;
+  }
+  static void expect_kept(const std::map<fs::path, Written>& before) {
+    for (const auto& [shard, then] : before) EXPECT_EQ(written(shard), then) << shard << " was run again";
+  }
+
+  const std::string root_ = fs::path(VIP_TEST_DIR).parent_path();
+};
+
+TEST_F(SweepWorkflowE2e, AWorkerThatIsKilledHalfWayLeavesTheSerialRunsTable) {
+  const std::string sweep = "--quick --n-star 64 --seconds 0.1 --seeds 1 --backend cpu";
+  const auto serial = test::run_shell(environment() + VIP_BIN_DIR "/vip-bench accuracy " + sweep + " --db " +
+                                      path("serial.db") + " --csv " + path("serial.csv") + " --prices-csv " +
+                                      path("serial_prices.csv"));
+  ASSERT_EQ(serial.exit_code, 0) << serial.out;
+
+  const std::string arguments = "--config accuracy='" + sweep + "'";
+  auto killed = workflow(arguments + " retries=0");
+  // Who has the machine's lock runs a cell.
+  const Worker worker = stop_a_worker("accuracy", 4, [&](const Worker&) {
+    const int fd = ::open(path("vip-bench.lock").c_str(), O_RDONLY);
+    const bool held = ::flock(fd, LOCK_EX | LOCK_NB) != 0;
+    ::close(fd);
+    return held;
+  });
+  const auto kept = done_shards("accuracy");
+  ::kill(worker.pid, SIGKILL);
+  EXPECT_EQ(killed.wait().exit_code, 1) << log();
+  EXPECT_GE(kept.size(), 4u);
+  EXPECT_LT(kept.size(), 13u);
+  EXPECT_FALSE(kept.contains(worker.shard));
+  EXPECT_FALSE(fs::exists(path("out/accuracy/settings.csv")));
+
+  ASSERT_EQ(workflow(arguments).wait().exit_code, 0) << log();
+  expect_kept(kept);
+  const auto rows = timeless("serial.csv");
+  EXPECT_EQ(rows.size(), 11u);
+  EXPECT_EQ(timeless("out/accuracy/settings.csv"), rows);
+  EXPECT_EQ(timeless("out/accuracy/prices.csv"), timeless("serial_prices.csv"));
+}
+
+TEST_F(SweepWorkflowE2e, PowerGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
+  base::write_file_atomically(path("plan.toml"),
+                              "format = 1\nprotocols = []\ndirectional = false\ntests = \"mixed\"\n");
+  const std::string power =
+      "protocols/task1.toml --n 8:26:2 --studies 120 --world null --plan " + path("plan.toml");
+  const auto serial = test::run_shell(environment() + VIP_BIN_DIR "/vip-stats power " + power + " --json " +
+                                      path("serial.json") + " --csv " + path("serial.csv"));
+  ASSERT_EQ(serial.exit_code, 0) << serial.out;
+
+  const std::string arguments = "--config power='" + power + "'";
+  const auto in_cell = [](const Worker& worker) { return !fs::exists(worker.shard); };
+  auto whole = workflow(arguments);
+  stop_a_worker("power", 2, in_cell);
+  ::kill(-whole.pid(), SIGKILL);
+  EXPECT_EQ(whole.wait().signal, SIGKILL);
+  for (const Worker& left : workers()) ::kill(left.pid, SIGKILL);
+  const auto kept = done_shards("power");
+  EXPECT_GE(kept.size(), 2u);
+  EXPECT_LT(kept.size(), 10u);
+
+  ASSERT_EQ(workflow("--unlock " + arguments).wait().exit_code, 0) << log();
+  auto again = workflow("--rerun-incomplete " + arguments);
+  const Worker worker = stop_a_worker("power", kept.size() + 1, in_cell);
+  ::kill(worker.pid, SIGKILL);
+  ASSERT_EQ(again.wait().exit_code, 0) << log();
+  EXPECT_THAT(log(), ::testing::HasSubstr("Trying to restart job"));
+  expect_kept(kept);
+  for (const char* ending : {".json", ".csv"}) {
+    EXPECT_EQ(base::read_file(path(std::string("out/power/power") + ending), 1 << 24),
+              base::read_file(path(std::string("serial") + ending), 1 << 24));
+  }
+}
+
+}  // namespace
+}  // namespace apps
