@@ -105,7 +105,7 @@ TEST_F(PowerShards, GiveWhatOneRunGivesBitForBit) {
     EXPECT_GE(shards.size(), 2u);
     shards.push_back(shards.front());  // one twice
     const auto serial = power_json(request, simulate_studies(request, {0, request.studies}));
-    EXPECT_EQ(power_json(request, join_shards(request, shards)).dump(), serial.dump()) << request.file;
+    EXPECT_TRUE(power_json(request, join_shards(request, shards)).dump() == serial.dump()) << request.file;
   }
 }
 
@@ -236,7 +236,7 @@ TEST_F(PowerShardsE2e, ThroughTheCommandLine) {
     EXPECT_FALSE(std::filesystem::exists(in("x.json"))) << words;
   }
   for (const std::string& words : {plan + " --cell 0123", plan + " --out " + in("x.json"),
-                                  std::string("--list"), plan + " --list --json " + in("x.json")}) {
+                                   std::string("--list"), plan + " --list --json " + in("x.json")}) {
     EXPECT_EQ(test::run_shell(power + words).exit_code, 2) << words;
   }
 }
