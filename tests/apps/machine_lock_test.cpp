@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "apps/bench/accuracy/machine_lock.hpp"
-#include "apps/bench/accuracy/sweep_file.hpp"
+#include "apps/common/sweep/sweep_file.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"
