@@ -1,7 +1,7 @@
 """The cells of `vip-bench accuracy` and of `vip-stats power` on local cores or on a cluster (Snakemake 7).
 
     snakemake -s scripts/sweep.smk --cores 2 --config accuracy="--quick" out=sweep
-    snakemake -s scripts/sweep.smk --cores 2 --config power="protocols/task2.toml --n 26 --effect 0.7" out=sweep
+    snakemake -s scripts/sweep.smk --cores 2 --config power="protocols/task2.toml --effect 0.7" out=sweep
 
 docs/accuracy.md and docs/statistics.md show both whole. --config takes:
 
@@ -48,9 +48,12 @@ def shards_of(kind, batches, ending):
     return [f"{OUT}/{kind}/shards/{key}.{ending}" for batch in batches.values() for key in batch]
 
 
-# Snakemake deletes what a job that fails has put out. So a shard is no output: finished cells stay, and the programs
-# pass over a cell that its shard holds.
-EACH = "for key in {params.cells}; do {params.command} --cell $key --out {params.shards}/$key.{params.ending}; done"
+# Snakemake deletes what a job that fails has put out. So a shard is no output: finished cells stay, and the
+# programs pass over a cell that its shard holds.
+EACH = (
+    "for key in {params.cells}; do "
+    "{params.command} --cell $key --out {params.shards}/$key.{params.ending}; done"
+)
 
 results = []
 
@@ -58,8 +61,8 @@ if "accuracy" in config:
     accuracy = f"{program('vip-bench')} accuracy {config['accuracy'] or ''}"
     accuracy_batches = batches_of(accuracy)
     results.append(f"{OUT}/accuracy/accuracy.html")
-    # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was measured on, so
-    # that the table is made with as many.
+    # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was measured
+    # on, so that the table is made with as many.
     timed_threads = int(config["threads"] if "threads" in config else workflow.cores)
     exclusive = str(config.get("slurm", "--exclusive"))
 
