@@ -61,8 +61,8 @@ if "accuracy" in config:
     accuracy = f"{program('vip-bench')} accuracy {config['accuracy'] or ''}"
     accuracy_batches = batches_of(accuracy)
     results.append(f"{OUT}/accuracy/accuracy.html")
-    # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was measured
-    # on, so that the table is made with as many.
+    # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was
+    # measured on, so that the table is made with as many.
     timed_threads = int(config["threads"] if "threads" in config else workflow.cores)
     exclusive = str(config.get("slurm", "--exclusive"))
 
