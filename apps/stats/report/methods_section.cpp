@@ -22,6 +22,11 @@ std::string protocols_text(const Field& study) {
     if (!protocol["angles"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by vertical angle: " + counts(protocol["angles"]) + ". ";
+    if (!protocol["settings"].members().empty())
+      out +=
+          "Live fluid of " + title +
+          " ran at these settings of the solver instead of the usual, by sessions with analysed answers: " +
+          counts(protocol["settings"]) + ". ";
     if (!protocol["unblinded"].members().empty())
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
