@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "apps/common/named_scenes.hpp"
-#include "stats/base/error.hpp"
+#include "apps/view/options.hpp"
+#include "tests/apps/small_dam.hpp"
 #include "tests/apps/small_sweep.hpp"
 #include "tests/apps/table_test_support.hpp"
 
@@ -140,6 +141,53 @@ TEST(SettingPrice, OptionsGiveTheSettingThatTheyRun) {
             to_text(usual_setting("SingleDam", sim::MethodKind::Ours, 512)));
   usual.method = sim::MethodKind::OursTsp;
   EXPECT_TRUE(std::isnan(setting_of(scene, usual)[SolverKnob::Beta]));
+}
+
+std::string without_scene(const SolverSetting& setting) {
+  const std::string text = to_text(setting);
+  return text.substr(text.find(' '));
+}
+
+// vip-view's panel and its printed lines are of this setting.
+TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
+  const ::test::TemporaryFolder folder;
+  base::write_file_atomically(folder / "dam.toml", test::small_dam);
+  SettingFile file{usual_setting("SingleDam", sim::MethodKind::FovFluid, 64), {}};
+  file.setting[SolverKnob::Substeps] = 3;
+  file.setting[SolverKnob::Beta] = 0.9;
+  file.measured = {.machine = "a",
+                   .program = "b",
+                   .scene_sha256 = "c",
+                   .picture = "none",
+                   .seconds = 1,
+                   .budget_ms = 1,
+                   .ms_mean = 1,
+                   .ms_p95 = 1,
+                   .error = "centre_pct",
+                   .error_pct = 1,
+                   .error_low_pct = 1,
+                   .error_high_pct = 1,
+                   .seeds = 1,
+                   .date_utc = "d"};
+  base::write_file_atomically(folder / "best.toml", format_setting_file(file));
+  ViewOptions options;
+  options.scene = folder / "dam.toml";
+  options.backend = "cpu";
+  options.display = "headless";
+  take_setting(options, folder / "best.toml");
+  EXPECT_EQ(without_scene(prepare_fluid(options).setting), without_scene(file.setting));
+  options.method = "HiRes";  // as the panel chooses it
+  const auto hires = prepare_fluid(options);
+  EXPECT_EQ(hires.setting.method, sim::MethodKind::HiRes);
+  EXPECT_EQ(hires.setting[SolverKnob::Substeps], 0) << "the file's numbers hold no more";
+  EXPECT_TRUE(price_lines(options, hires.setting, hires.scene).empty()) << "no sweep was given";
+  options.sweep = std::make_shared<const SweepTables>(sweep_tables(small_sweep()));
+  EXPECT_THAT(price_lines(options, hires.setting, hires.scene),
+              ElementsAre(HasSubstr("no table of this scene")));
+  const auto dam = scenes_of("SingleDam").front().scene;
+  EXPECT_THAT(price_lines(options, hires_at(512), dam), SizeIs(4));
+  options.preset = "paper";
+  EXPECT_THAT(price_lines(options, hires_at(512), dam), ElementsAre(HasSubstr("not the paper's")));
 }
 
 class SettingPriceE2e : public test::TableTest {

@@ -39,8 +39,8 @@ std::string error_of(const Field& error) {
 
 std::string costs_table(const Rows& rows, const char* title, bool pairs) {
   Table table(std::string(title) + ": what frames cost, what error they carried, what people said",
-              {"Method", "n*", "Setting", "Made, ms", "Slowest twentieth from, ms", "Shown, ms",
-               "Error of the setting file", said_heading(pairs)});
+              {"Method", "n*", "Setting", "Made, ms", "p95, ms", "Shown, ms", "Error of the setting file",
+               said_heading(pairs)});
   std::string scene;
   for (const Field& row : rows) {
     if (row["scene"].words() != scene) table.group(words(row["scene"]));
@@ -91,7 +91,7 @@ std::string sweep_tables_of(const Field& root, const Rows& rows, const char* tit
       missing.push_back(words(row["method"]) + " at n* " + words(row["n_star"]) + " in " +
                         words(row["scene"]) + ": " + words(row["sweep"]["refused"]) + ".");
   }
-  std::vector<std::string> columns{"Method", "n*", "ms", "Slowest twentieth from, ms", "Times HiRes"};
+  std::vector<std::string> columns{"Method", "n*", "ms", "p95, ms", "Times HiRes"};
   for (const auto& [name, heading] : root["sweep"]["errors"].members()) columns.push_back(words(heading));
   columns.emplace_back(said_heading(pairs));
   std::string out;
