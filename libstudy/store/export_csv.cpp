@@ -58,6 +58,7 @@ struct AddedColumn {
   const char *table, *name, *type, *expression, *meaning;
 };
 constexpr std::array added_columns{
+    AddedColumn{"session", "setting_sha256", "TEXT", setting_sha256_sql, setting_sha256_meaning},
     AddedColumn{"session", "sharing_allowed", "INTEGER",
                 "(SELECT granted FROM sharing h WHERE h.person = session.person)",
                 "1: the participant may stand in public exports (BIDS, Psych-DS); 0: refused in some "
@@ -66,7 +67,6 @@ constexpr std::array added_columns{
         "session", "gaze_allowed", "INTEGER",
         "(SELECT granted FROM permission p WHERE p.session_id = session.session_id AND p.what = 'gaze')",
         "1: gaze may be recorded in this session; 0: refused, or asked and not answered; empty: not asked"},
-    AddedColumn{"session", "setting_sha256", "TEXT", setting_sha256_sql, setting_sha256_meaning},
     AddedColumn{"presentation", "counts", "INTEGER",
                 "(SELECT counts FROM showing w WHERE w.presentation_id = presentation.presentation_id)",
                 showing_counts_meaning},

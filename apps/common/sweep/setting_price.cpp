@@ -13,11 +13,13 @@ namespace apps {
 
 namespace {
 
-/// What the cells of a table have in common.
-using Kind = std::tuple<SweepOrigin, std::string, double, std::string>;  // origin, scene, seconds, picture
+/// What the cells of a table have in common: machine, program, hash of the scene file, scene, seconds,
+/// picture.
+using Kind = std::tuple<std::string, std::string, std::string, std::string, double, std::string>;
 
 Kind kind_of(const StoredCell& cell) {
-  return {cell.origin, cell.cell.setting.scene, cell.cell.seconds, cell.cell.size};
+  const auto& [machine, program, sha256] = cell.origin;
+  return {machine, program, sha256, cell.cell.setting.scene, cell.cell.seconds, cell.cell.size};
 }
 
 /// n_* of each reference that ran from two starts.
@@ -108,7 +110,8 @@ SweepTables sweep_tables(const std::vector<StoredCell>& cells) {
   for (const auto& cell : cells) kinds[kind_of(cell)].push_back(&cell);
   SweepTables out;
   for (const auto& [kind, some] : kinds) {
-    const auto& [origin, scene, seconds, picture] = kind;
+    const auto& [machine, program, sha256, scene, seconds, picture] = kind;
+    const SweepOrigin origin{machine, program, sha256};
     const auto references = references_in(some);
     if (references.empty())
       out.left_out.push_back("the sweep of " + scene + " on " + origin.machine +

@@ -57,7 +57,7 @@ std::string people(const Field& flow) {
 std::string exclusion_rules(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)
-    if (root["flow"][key].there()) parts.push_back(title);
+    if (root["flow"][key].there()) parts.emplace_back(title);
   const Field rules = root["plan"]["exclusions"];
   if (parts.empty() || !rules.there()) return "";
   const std::string timing = rules["timing"].words();
