@@ -293,8 +293,8 @@ inline std::vector<Case> bundle_and_provenance() {
 inline const std::vector<Case>& cases() {
   static const std::vector<Case> list = [] {
     std::vector<Case> out;
-    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), costs(), sickness(),
-                      hypotheses(), bundle_and_provenance()})
+    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), costs(),
+                      sickness(), hypotheses(), bundle_and_provenance()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();
