@@ -15,6 +15,7 @@
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/framing.hpp"
+#include "apps/common/solver_setting.hpp"
 #include "libsim/bake/picture_ring.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/simulation.hpp"
@@ -125,6 +126,9 @@ struct StimulusChoice {
   double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
   /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
   std::optional<sim::FrameRate> fixed_rate;
+  /// Live fluid only: all knobs of the solver, of this method and n_*; tau then follows from its beta and no
+  /// frame rate. None = the usual ones.
+  std::optional<SolverSetting> setting = {};
   stats::PtpeModel model;
   Viewing viewing;                 ///< of a bake with pictures: nothing
   bool overview = false;           ///< live fluid is watched by the scene's camera for figures

@@ -29,18 +29,24 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   sim::Scene scene = sim::read_scene(choice.scene);
   if (choice.overview) scene.view = scene.overview;
   sim::SimulationOptions options;
+  const auto backend = sim::choose_backend(choice.backend);
+  if (choice.setting) {
+    options = to_options(*choice.setting, backend, 1);
+  } else {
+    options.method = sim::parse_method(choice.method);
+    options.n_star = sim::parse_n_star(choice.n_star);
+    options.backend = backend;
+    options.temporal.fixed_rate = choice.fixed_rate;
+    options.temporal.model = choice.model;
+  }
   options.cache = sim::default_cache_folder();
-  options.method = sim::parse_method(choice.method);
-  options.n_star = sim::parse_n_star(choice.n_star);
-  options.backend = sim::choose_backend(choice.backend);
-  options.frame_dt_s = choice.content_step_s;
-  options.temporal.fixed_rate = choice.fixed_rate;
-  options.temporal.model = choice.model;
+  if (choice.content_step_s > 0) options.frame_dt_s = choice.content_step_s;
   options.settling = settling;
-  const double dt = choice.content_step_s > 0 ? choice.content_step_s : scene.frame_dt_s;
+  const double dt = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
   const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
                                   std::to_string(options.n_star) + ", on " +
-                                  sim::backend_name(options.backend) + ", scene " + scene.sha256;
+                                  sim::backend_name(options.backend) + ", scene " + scene.sha256 +
+                                  (choice.setting ? ", at " + to_text(*choice.setting) : "");
   // Settled once; each rewind starts from that state.
   const auto make = [scene, options]() mutable {
     auto simulation = sim::make_simulation(scene, options);

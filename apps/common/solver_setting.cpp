@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <cmath>
+#include <limits>
 
 #include "libsim/solver/settled_state.hpp"
 
@@ -121,6 +122,24 @@ std::string to_text(const SolverSetting& setting) {
     if (turns(traits.knob, setting.method))
       out += fmt::format(" {}={}", traits.column, value_words(traits.knob, setting[traits.knob]));
   }
+  return out;
+}
+
+SolverSetting setting_of(const sim::Scene& scene, const sim::SimulationOptions& options) {
+  using enum SolverKnob;
+  SolverSetting out = usual_setting(scene.name, options.method, options.n_star);
+  out[Rate] = 1 / (options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s);
+  out[Iterations] = options.iterations > 0 ? options.iterations : scene.solver_iterations;
+  out[Substeps] = options.substeps;
+  if (options.coarse_cycles >= 0) out[CoarseCycles] = options.coarse_cycles;
+  if (options.momentum >= 0) out[Momentum] = options.momentum;
+  out[Levels] = options.levels;
+  out[Alpha] = options.readings.alpha;
+  out[Fovea] = options.readings.fovea_half_angle_deg;
+  const auto& temporal = options.temporal;
+  if (!temporal.always && !sim::traits_of(options.method).temporal) return out;
+  out[Beta] = temporal.fixed_tau ? stats::activation_floor(temporal.model, *temporal.fixed_tau)
+                                 : std::numeric_limits<double>::quiet_NaN();
   return out;
 }
 

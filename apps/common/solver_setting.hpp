@@ -63,6 +63,10 @@ std::string value_words(SolverKnob knob, double value);
 /// texts run alike.
 std::string to_text(const SolverSetting& setting);
 
+/// What a program that was given these options runs, as a setting. Beta is NaN where it follows the frame
+/// rate.
+SolverSetting setting_of(const sim::Scene& scene, const sim::SimulationOptions& options);
+
 /// For the solver; `seed` is that of temporal acceleration.
 sim::SimulationOptions to_options(const SolverSetting& setting, sim::Backend backend, std::uint32_t seed);
 

@@ -25,11 +25,15 @@ namespace apps {
 namespace {
 
 struct ReportCommand {
-  std::string database, html, json, csv, plan, bundle;
+  std::string database, html, json, csv, plan, bundle, sweep;
 };
 
 Json document(const ReportCommand& command) {
   ResultsRequest request{command.database, {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", {}};
+  if (!command.sweep.empty()) {
+    request.sweep = std::make_shared<const SweepTables>(read_sweep_tables(command.sweep));
+    request.sweep_file = std::filesystem::path(command.sweep).filename().string();
+  }
   std::optional<report::Bundle> bundle;
   if (!command.bundle.empty()) {
     bundle = report::read_bundle(command.bundle);
@@ -91,6 +95,10 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
+  sub->add_option(
+      "--sweep", command->sweep,
+      "Sweep file of vip-bench accuracy: cost and error of each method's setting stand beside what "
+      "people said");
   auto* plan = add_plan(*sub, command->plan);
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")

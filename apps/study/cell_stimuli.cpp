@@ -32,23 +32,42 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
 }  // namespace
 
 CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& protocol,
-                         const stats::PtpeModel& model, Viewing viewing, SessionBakes bakes)
-    : bakes_(std::move(bakes)), shown_(options.display != "none") {
+                         const stats::PtpeModel& model, Viewing viewing, SessionBakes bakes,
+                         SessionSettings settings)
+    : bakes_(std::move(bakes)), settings_(std::move(settings)), shown_(options.display != "none") {
   choice_.content_step_s = protocol.content.content_step_s;
   choice_.backend = options.backend;
   choice_.model = model;
   choice_.viewing = std::move(viewing);
   if (shown_) check_words(protocol);
+  check_settings_live(protocol);
   description_ = describe(protocol);
+}
+
+/// A bake holds its own setting, and what is not shown has none.
+void CellStimuli::check_settings_live(const study::Protocol& protocol) const {
+  for (const study::Cell& cell : protocol.design.cells) {
+    const SettingFile* setting = settings_.empty() ? nullptr : settings_.of(cell.stimulus);
+    if (!setting || is_live(cell)) continue;
+    const std::string who = cell.stimulus.method + " at n_* " + cell.stimulus.n_star;
+    if (!shown_)
+      throw base::Error("--setting", "is for live fluid, and with --display none nothing is computed",
+                        "leave it out, or use --display headless");
+    throw base::Error("--setting",
+                      "is for " + who + ", which is played from " + bakes_.of(cell)->path.string() +
+                          ": a bake holds the setting that it was computed at",
+                      "leave the setting or that bake out");
+  }
 }
 
 /// One bake for all cells, or nothing at all, describes itself.
 std::string CellStimuli::describe(const study::Protocol& protocol) {
   const bool live = shown_ && !bakes_.whole();
   const std::string bakes = bakes_.description();
-  if (bakes.empty() && live) return describe_live(protocol, choice_.backend);
+  const auto live_words = [&] { return describe_live(protocol, choice_.backend) + settings_.description(); };
+  if (bakes.empty() && live) return live_words();
   if (bakes.empty()) return stimulus(protocol.design.cells.front()).description();
-  return live ? bakes + "; " + describe_live(protocol, choice_.backend) : bakes;
+  return live ? bakes + "; " + live_words() : bakes;
 }
 
 StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
@@ -56,7 +75,9 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   choice.scene = base::find_input(cell.stimulus.scene);
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
-  const bool paced = cell.setting.mean > 0;
+  const SettingFile* setting = settings_.of(cell.stimulus);
+  if (setting) choice.setting = setting->setting;
+  const bool paced = cell.setting.mean > 0 && !setting;
   if (paced) choice.fixed_rate = sim::FrameRate{cell.setting.mean, cell.setting.sd};
   return choice;
 }

@@ -7,6 +7,7 @@
 #include "apps/common/fluid_stimulus.hpp"
 #include "apps/study/bakes/session_bakes.hpp"
 #include "apps/study/run_options.hpp"
+#include "apps/study/session_settings.hpp"
 #include "libstudy/session/session.hpp"
 
 namespace apps {
@@ -15,8 +16,9 @@ namespace apps {
 /// made anew when a cell needs another one than the last.
 class CellStimuli final : public study::StimulusSource {
  public:
+  /// base::Error when a setting is for a cell that is not computed live.
   CellStimuli(const RunOptions& options, const study::Protocol& protocol, const stats::PtpeModel& model,
-              Viewing viewing, SessionBakes bakes = {});
+              Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
   /// Whether the cell is computed while it is shown.
@@ -24,6 +26,7 @@ class CellStimuli final : public study::StimulusSource {
   /// Of all cells, for the record; does not depend on which of them were shown.
   std::string description() const { return description_; }
   const SessionBakes& bakes() const { return bakes_; }
+  const SessionSettings& settings() const { return settings_; }
   /// What live fluid of a cell is made of.
   StimulusChoice choice_of(const study::Cell& cell) const;
 
@@ -38,10 +41,12 @@ class CellStimuli final : public study::StimulusSource {
   };
   Made wanted_for(const study::Cell& cell) const;
   std::unique_ptr<study::Stimulus> make(const study::Cell& cell, const Made& wanted) const;
+  void check_settings_live(const study::Protocol& protocol) const;
   std::string describe(const study::Protocol& protocol);
 
   StimulusChoice choice_;
   SessionBakes bakes_;
+  SessionSettings settings_;
   bool shown_ = false;  ///< cells without a bake run live; else they are nothing
   std::string description_;
   std::optional<Made> made_;

@@ -1,5 +1,6 @@
 /// vip-study resume: finish what a database says is left to do.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "libstudy/session/interruptions.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -40,6 +42,24 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   return protocol;
 }
 
+/// A session keeps the settings that it began with.
+void check_settings(const std::vector<std::string>& files, const RunOptions& recorded,
+                    const std::string& place) {
+  for (const std::string& file : files) {
+    const std::string text = base::read_file(file, 1 << 20);
+    if (std::find(recorded.settings.begin(), recorded.settings.end(), text) != recorded.settings.end())
+      continue;
+    std::string own;
+    for (const std::string& one : recorded.settings)
+      own += (own.empty() ? "" : ", ") + base::sha256_hex(one).substr(0, 12);
+    throw base::Error("--setting " + file,
+                      "is not what the sessions of " + place + " began with (" +
+                          (own.empty() ? "no setting" : own) + "; this is " +
+                          base::sha256_hex(text).substr(0, 12) + ")",
+                      "leave it out: resume takes the recorded setting");
+  }
+}
+
 /// What is shown must be what was shown; a changed station is only noted, and how its display frames the
 /// scenes.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
@@ -63,7 +83,7 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
   }
 }
 
-Played play(const PlayOptions& options) {
+Played play(const PlayOptions& options, const std::vector<std::string>& settings) {
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
@@ -78,8 +98,9 @@ Played play(const PlayOptions& options) {
   for (const study::OpenRun& run : runs) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     const RunOptions chosen = parse_run_options(run.options, place);
+    check_settings(settings, chosen, place);
     check_keys_are_free(chosen.answer, options.console);
-    SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place);
+    SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
     open_mirror(options, setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);
     check_unchanged(store, run, setup, place);
@@ -91,19 +112,25 @@ Played play(const PlayOptions& options) {
   return played;
 }
 
-void resume(const PlayOptions& options) {
+void resume(const PlayOptions& options, const std::vector<std::string>& settings) {
   const StopSignals signals;
-  end_command(options.database, play(options));
+  end_command(options.database, play(options, settings));
 }
 
 }  // namespace
 
 void add_resume_command(CLI::App& app) {
   auto options = std::make_shared<PlayOptions>();
+  auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App& sub = *app.add_subcommand("resume", "Finish what was planned and not answered");
   add_play_options(sub, *options);
+  sub.add_option(
+         "--setting", *settings,
+         "Setting file that must be one which the sessions began with; without: the recorded ones hold "
+         "all the same")
+      ->allow_extra_args(false);
   sub.footer(exit_status_help);
-  sub.callback([options] { resume(*options); });
+  sub.callback([options, settings] { resume(*options, *settings); });
 }
 
 }  // namespace apps

@@ -34,6 +34,7 @@ struct RunCommand {
   std::int64_t seed = 0;
   std::optional<double> trial_seconds;
   std::string bake, ptpe;
+  std::vector<std::string> settings;  ///< files
   std::optional<PictureSize> size;
 };
 
@@ -74,6 +75,17 @@ std::optional<std::string> read_ptpe(const std::string& path) {
   if (path.empty()) return {};
   std::printf("%s: %s\n", path.c_str(), sim::describe(sim::read_ptpe_file(path)).c_str());
   return base::read_file(path, 1 << 20);
+}
+
+/// Read one by one, so that an error names its file.
+std::vector<std::string> read_settings(const std::vector<std::string>& paths,
+                                       const study::Protocol& protocol) {
+  std::vector<std::string> texts;
+  for (const std::string& path : paths) {
+    texts.push_back(base::read_file(path, 1 << 20));
+    SessionSettings({texts.back()}, protocol, path);
+  }
+  return texts;
 }
 
 study::SessionPlan common_plan(const RunCommand& command, const study::Protocol& protocol,
@@ -140,6 +152,7 @@ void run(RunCommand& command) {
   const auto codes = participant_codes(command, protocol);
   for (const std::string& code : codes) study::check_participant_code(code);
   const auto ptpe = read_ptpe(command.ptpe);
+  command.run.settings = read_settings(command.settings, protocol);
   check_keys_are_free(command.run.answer, command.play.console);
   SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
@@ -155,6 +168,8 @@ void run(RunCommand& command) {
   }
   for (const std::string& note : setup.stimuli->bakes().notes(command.protocol))
     std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), note.c_str());
+  for (const std::string& note : setup.stimuli->settings().notes(protocol))
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   for (const std::string& note : framing_notes(protocol, setup.scenes))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
@@ -236,6 +251,11 @@ void add_run_command(CLI::App& app) {
                  "what is there is played and the rest runs live; without: live fluid, or nothing");
   add_backend(sub, command->run.backend, "Computes live fluid");
   sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
+  sub.add_option(
+         "--setting", command->settings,
+         "best.toml of vip-bench accuracy --budget: all numbers of the solver for the live cells of its "
+         "method and n_*, kept with the sessions; may be repeated, for other methods or sizes")
+      ->allow_extra_args(false);
   sub.footer(exit_status_help);
   sub.callback([command] { run(*command); });
 }

@@ -5,6 +5,7 @@
 
 #include "apps/common/picture_size.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -41,25 +42,39 @@ int monitor_of(const nlohmann::json& json, const std::string& place) {
   return found->get<int>();
 }
 
+/// What a damaged record would run at is not what was recorded.
+std::vector<std::string> settings_of(const nlohmann::json& json, const std::string& place) {
+  std::vector<std::string> out;
+  const auto found = json.find("settings");
+  if (found == json.end()) return out;
+  for (const auto& one : *found) {
+    out.push_back(one.at("text"));
+    if (one.at("sha256") != base::sha256_hex(out.back())) unreadable(place);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string format_run_options(const RunOptions& options) {
-  return nlohmann::ordered_json{{"format", format_version},
-                                {"observer", options.observer},
-                                {"clock", options.clock},
-                                {"display", options.display},
-                                {"width_px", options.width_px},
-                                {"height_px", options.height_px},
-                                {"monitor", options.monitor},
-                                {"bake", options.bake},
-                                {"backend", options.backend},
-                                {"answer", options.answer},
-                                {"gaze", options.gaze},
-                                {"accept_slow", options.accept_slow},
-                                {"station", options.station},
-                                {"screen_width_mm", number_or_null(options.screen_width_mm)},
-                                {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}}
-      .dump();
+  nlohmann::ordered_json json{{"format", format_version},
+                              {"observer", options.observer},
+                              {"clock", options.clock},
+                              {"display", options.display},
+                              {"width_px", options.width_px},
+                              {"height_px", options.height_px},
+                              {"monitor", options.monitor},
+                              {"bake", options.bake},
+                              {"backend", options.backend},
+                              {"answer", options.answer},
+                              {"gaze", options.gaze},
+                              {"accept_slow", options.accept_slow},
+                              {"station", options.station},
+                              {"screen_width_mm", number_or_null(options.screen_width_mm)},
+                              {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}};
+  for (const std::string& text : options.settings)
+    json["settings"].push_back({{"sha256", base::sha256_hex(text)}, {"text", text}});
+  return json.dump();
 }
 
 RunOptions parse_run_options(const std::string& text, const std::string& place) {
@@ -84,6 +99,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.station = json.at("station");
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));
     options.viewing_distance_mm = optional_number(json.at("viewing_distance_mm"));
+    options.settings = settings_of(json, place);
     return options;
   } catch (const nlohmann::json::exception&) {
     unreadable(place);

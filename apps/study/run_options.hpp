@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace apps {
 
@@ -20,11 +21,13 @@ struct RunOptions {
   bool accept_slow = false;  ///< live cells that this machine does not show at their setting are played
   std::string station;
   std::optional<double> screen_width_mm, viewing_distance_mm;
+  std::vector<std::string> settings;  ///< solver settings of live cells (SessionSettings), each file in full
 
   bool operator==(const RunOptions&) const = default;
 };
 
-/// JSON.
+/// JSON. "settings" holds an object for each, with its text and its sha256, as the exports read them
+/// (libstudy/store/run_settings.hpp); without any the key is absent.
 std::string format_run_options(const RunOptions& options);
 /// base::Error naming `place` for anything that format_run_options() does not write.
 RunOptions parse_run_options(const std::string& text, const std::string& place);

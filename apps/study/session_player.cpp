@@ -18,6 +18,7 @@
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/store/frame_costs.hpp"
 #include "libstudy/store/names.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/session_counts.hpp"
@@ -258,6 +259,9 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
     if (options.mirror) log_mirror(store, session, setup, options.mirror_reveal);
     if (!setup.rates.cells.empty())
       store.log(session.id, "live rates", measured_table(setup.rates), setup.clock->now_ns());
+    if (const auto costs = frame_costs(setup.rates); !costs.empty())
+      store.log(session.id, study::frame_costs_event, study::format_frame_costs(costs),
+                setup.clock->now_ns());
     play(session);
     while (steering.take_reopened()) {
       if (const auto again = read_again(store, session.id)) play(*again);

@@ -176,8 +176,10 @@ std::string SessionSetup::departure() const {
 }
 
 SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
-                                const std::optional<std::string>& ptpe, const std::string& ptpe_place) {
+                                const std::optional<std::string>& ptpe, const std::string& ptpe_place,
+                                const std::string& setting_place) {
   check_together(options, protocol);
+  SessionSettings settings(options.settings, protocol, setting_place);
   SessionSetup setup;
   setup.virtual_clock = options.clock == "virtual";
   setup.clock = make_clock(options.clock);
@@ -215,8 +217,8 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
   }
   check_visible(setup.scenes);
   check_one_picture(protocol, setup.scenes);
-  setup.stimuli =
-      std::make_unique<CellStimuli>(options, protocol, model, std::move(viewing), std::move(bakes));
+  setup.stimuli = std::make_unique<CellStimuli>(options, protocol, model, std::move(viewing),
+                                                std::move(bakes), std::move(settings));
   if (!options.observer.empty()) {
     setup.features = make_features(options, protocol, *setup.stimuli);
     setup.participant = study::make_observer(options.observer, *setup.features);

@@ -44,8 +44,10 @@ struct SessionSetup {
 bool asks_gaze(const study::Protocol& protocol);
 
 /// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives
-/// temporal acceleration. base::Error naming what is missing, wrong or does not go together.
+/// temporal acceleration. `setting_place` names the options' settings in errors. base::Error naming what is
+/// missing, wrong or does not go together.
 SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
-                                const std::optional<std::string>& ptpe, const std::string& ptpe_place);
+                                const std::optional<std::string>& ptpe, const std::string& ptpe_place,
+                                const std::string& setting_place = "--setting");
 
 }  // namespace apps

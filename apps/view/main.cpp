@@ -61,10 +61,16 @@ int main(int argc, char** argv) {
       app.add_option("--setting", setting_file,
                      "best.toml of vip-bench accuracy --budget: method, sizes and all numbers of the solver");
   for (CLI::Option* option : of_setting) setting->excludes(option);
+  std::string sweep;
+  app.add_option("--sweep", sweep,
+                 "Sweep file of vip-bench accuracy: says what the setting in force costs and errs by, beside "
+                 "HiRes");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
     if (headless) options.display = "headless";
     if (!setting_file.empty()) apps::take_setting(options, setting_file);
+    if (!sweep.empty())
+      options.sweep = std::make_shared<const apps::SweepTables>(apps::read_sweep_tables(sweep));
     if (options.clock == "virtual" && options.display != "openxr")
       throw base::Error("--clock virtual", "is for a headset", "leave it out, or use --display openxr");
     if (options.display == "headless") return apps::run_headless(options);

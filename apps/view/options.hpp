@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/common/picture_size.hpp"
 #include "apps/common/setting_file.hpp"
+#include "apps/common/sweep/setting_price.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/simulation.hpp"
 
@@ -27,7 +29,8 @@ struct ViewOptions {
   std::string camera = "view";         ///< view | overview
   std::string ptpe;                    ///< fitted.toml; empty = none
   std::optional<SettingFile> setting;  ///< best.toml, which method, n_star, levels ... were taken from
-  std::string png_folder;              ///< empty = no pictures
+  std::shared_ptr<const SweepTables> sweep;  ///< what settings cost and err by; none = not asked
+  std::string png_folder;                    ///< empty = no pictures
   PictureSize size{1280, 720};
   std::optional<int> frames;       ///< none: 100 headless, in a headset until it is left
   int every = 1;                   ///< a picture every so many frames
@@ -45,10 +48,15 @@ struct PreparedFluid {
   double finest_spacing_m = 0;   ///< 2 r_*
   bool follows_picture = false;  ///< levels come from what was drawn last
   double frame_dt_s = 0;         ///< of the fluid
+  SolverSetting setting;         ///< in force at frame 0
 };
 /// Takes over what best.toml names: method, n_star, levels, alpha, iterations and tau. Its other numbers hold
 /// for as long as method, n_star, levels and preset stay as it has them.
 void take_setting(ViewOptions& options, const std::string& path);
+
+/// What the sweep of the options says of a setting in this scene file, in lines; none without a sweep.
+std::vector<std::string> price_lines(const ViewOptions& options, const SolverSetting& setting,
+                                     const sim::Scene& scene);
 
 /// Reads the scene, settles it and prints what came of it, the schedule too when asked to. `settling` hears
 /// of each frame of that with (done, total); when it is empty a progress bar shows them.

@@ -53,6 +53,14 @@ void take_setting(ViewOptions& options, const std::string& path) {
   options.tau = made.temporal.fixed_tau ? "fixed:" + base::shortest(*made.temporal.fixed_tau) : "live";
 }
 
+std::vector<std::string> price_lines(const ViewOptions& options, const SolverSetting& setting,
+                                     const sim::Scene& scene) {
+  if (!options.sweep) return {};
+  if (sim::parse_preset(options.preset) != sim::Preset::Tuned)
+    return {"not measured: sweeps run the tuned readings, not the paper's"};
+  return in_words(prices_of(*options.sweep, setting, scene.sha256));
+}
+
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));
@@ -66,6 +74,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.frame_dt_s = choice.frame_dt_s > 0 ? choice.frame_dt_s : prepared.scene.frame_dt_s;
+  prepared.setting = setting_of(prepared.scene, choice);
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
@@ -84,6 +93,8 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
     const auto note = other_scene(*options.setting, prepared.scene.sha256);
     if (!note.empty()) std::printf("%s\n", note.c_str());
   }
+  for (const auto& line : price_lines(options, prepared.setting, prepared.scene))
+    std::printf("sweep  %s\n", line.c_str());
   if (options.explain) std::printf("%s\n", prepared.fluid->explain().c_str());
   return prepared;
 }

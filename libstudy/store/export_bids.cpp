@@ -1,11 +1,13 @@
 #include "libstudy/store/export_bids.hpp"
 
 #include <map>
+#include <set>
 
 #include "libstudy/store/bids_questions.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/rating_table.hpp"
+#include "libstudy/store/run_settings.hpp"
 #include "stats/base/file.hpp"
 
 namespace study {
@@ -141,7 +143,8 @@ Json session_columns() {
           {"observer", described("simulated observer that answered; n/a: a person")},
           {"station", described("where it was recorded")},
           {"gaze_source", described("tracked, head, mouse, fixed, fixation or none, as planned")},
-          {"state", described("open, done, or how it ended early")}};
+          {"state", described("open, done, or how it ended early")},
+          {"setting_sha256", described(setting_sha256_meaning)}};
 }
 
 void write_people(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
@@ -153,15 +156,17 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
     if (fresh) {
       people.push_back({sub, field(session.participant)});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
-                       "test_data", "observer", "station", "gaze_source", "state"}};
+                       "test_data", "observer", "station", "gaze_source", "state", "setting_sha256"}};
     }
     Statement row(database,
-                  "SELECT s.started_utc, p.name, p.version, p.sha256, s.visit, s.test_data OR p.test_data, "
-                  "s.observer, s.station, s.gaze_source, s.state FROM session s JOIN protocol p "
-                  "USING (protocol_id) WHERE s.session_id = ?");
+                  "SELECT session.started_utc, p.name, p.version, p.sha256, session.visit, session.test_data "
+                  "OR p.test_data, "
+                  "session.observer, session.station, session.gaze_source, session.state, " +
+                      std::string(setting_sha256_sql) +
+                      " FROM session JOIN protocol p USING (protocol_id) WHERE session.session_id = ?");
     row.bind_all(session.id).step();
     std::vector<std::string> line{"ses-" + session.session};
-    for (int i = 0; i < 10; ++i) line.push_back(field(row, i));
+    for (int i = 0; i < 11; ++i) line.push_back(field(row, i));
     rows->second.push_back(std::move(line));
   }
   writer.table("participants.tsv", people);
@@ -201,8 +206,13 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
       std::string("# Ratings of real-time fluid\n\nBehaviour: what was shown when, how it was rated") +
           (gaze ? ", where people looked.\n" : ".\n") + "\nIn every table, " + formula_guard_meaning + ".\n");
   write_people(*database, sessions, writer);
+  std::set<std::string> named;
   for (const LabelledSession& session : sessions) {
     write_events(*database, session, writer);
+    for (const RunSetting& setting : run_settings(*database, session.id)) {
+      const std::string name = "code/" + setting_file_name(setting);
+      if (named.insert(name).second) writer.text(name, setting.text);
+    }
     if (!gaze) continue;
     bids::write_gaze(*database, session, writer);
     bids::write_motion(*database, session, writer);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 
 namespace study {
@@ -57,6 +58,7 @@ struct AddedColumn {
   const char *table, *name, *type, *expression, *meaning;
 };
 constexpr std::array added_columns{
+    AddedColumn{"session", "setting_sha256", "TEXT", setting_sha256_sql, setting_sha256_meaning},
     AddedColumn{"session", "sharing_allowed", "INTEGER",
                 "(SELECT granted FROM sharing h WHERE h.person = session.person)",
                 "1: the participant may stand in public exports (BIDS, Psych-DS); 0: refused in some "
@@ -89,7 +91,8 @@ constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
 
 bool is_our_name(const std::string& name) {
   if (name == ratings_file || name == dictionary_file) return true;
-  if (name.starts_with("protocol_") && name.ends_with(".toml")) return true;
+  const bool toml = name.ends_with(".toml");
+  if (toml && (name.starts_with("protocol_") || name.starts_with("setting_"))) return true;
   for (const SicknessTable& table : sickness_tables({})) {
     if (name == table.name + ".csv") return true;
   }
@@ -160,9 +163,7 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
 
 void write_protocols(Connection& database, const ExportDraft& draft) {
   for (Statement row(database, "SELECT sha256, text FROM protocol"); row.step();) {
-    ExportFile file(draft, "protocol_" + row.text(0).substr(0, 12) + ".toml");
-    file.write(row.text(1));
-    file.finish();
+    write_file(draft, "protocol_" + row.text(0).substr(0, 12) + ".toml", row.text(1));
   }
 }
 
@@ -214,6 +215,8 @@ std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folde
     files.push_back({table.name + ".csv", write_sickness(table, draft, table.name + ".csv")});
   files.push_back({dictionary_file, write_dictionary(*database, draft, choice)});
   write_protocols(*database, draft);
+  for (const RunSetting& setting : run_settings(*database))
+    write_file(draft, setting_file_name(setting), setting.text);
   database->execute("COMMIT");
   draft.put_in_place();
   return files;

@@ -124,6 +124,12 @@ const char* const formula_guard_meaning =
     "these, has one more apostrophe before it, so that no spreadsheet takes it for a formula; take one "
     "apostrophe away where apostrophes and one of these begin a field";
 
+void write_file(const ExportDraft& draft, const std::string& name, const std::string& text) {
+  ExportFile file(draft, name);
+  file.write(text);
+  file.finish();
+}
+
 std::string formula_guarded(const std::string& text) {
   const std::size_t first = std::min(text.find_first_not_of('\''), text.size());
   const std::string_view rest = std::string_view(text).substr(first);

@@ -88,6 +88,9 @@ class ExportFile {
   std::FILE* file_ = nullptr;
 };
 
+/// A whole file of a draft.
+void write_file(const ExportDraft& draft, const std::string& name, const std::string& text);
+
 /// Text with an apostrophe before it where a spreadsheet would take it for a formula: where it begins with
 /// = + - @ (also in full width), a tab or a line end, or with apostrophes and one of these. Whoever reads it
 /// takes one apostrophe away where apostrophes and one of these begin a field, and has what it was.

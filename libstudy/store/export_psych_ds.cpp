@@ -3,11 +3,13 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
 
@@ -56,12 +58,6 @@ bool is_export(const fs::path& folder) {
   return json.is_object() && json.value("creator", "") == "vip-study";
 }
 
-void write_text(const ExportDraft& draft, const std::string& name, const std::string& text) {
-  ExportFile file(draft, name);
-  file.write(text);
-  file.finish();
-}
-
 /// Each column that stands in a file, once; two files may share one. `scored`: the sessions of the export.
 Json variables(Connection& database, std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
@@ -99,8 +95,8 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
                   {"creator", "vip-study"},
                   {"version", base::version()},
                   {"variableMeasured", variables(database, scored)}};
-  write_text(draft, description_file, json.dump(2) + "\n");
-  write_text(
+  write_file(draft, description_file, json.dump(2) + "\n");
+  write_file(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
       "what each column means. Empty: not known.\n\nIn every column, " +
@@ -118,6 +114,7 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
   std::vector<SicknessSession> scored;
   ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
+  std::set<std::string> named;
   fs::create_directory(draft.path() / "data");
   for (const LabelledSession& session : sessions) {
     const std::string stem =
@@ -126,6 +123,11 @@ PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
     const std::string condition = "session.session_id = " + std::to_string(session.id);
     files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
+    for (const RunSetting& setting : run_settings(*database, session.id)) {
+      // Tools keep off what is no data there.
+      const std::string name = "materials/" + setting_file_name(setting);
+      if (named.insert(name).second) write_file(draft, name, setting.text);
+    }
     for (const SicknessSession& one : sickness) {
       if (one.id != session.id) continue;
       write_scores(one, stem, draft, files);

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "libstudy/store/run_settings.hpp"
+
 namespace study {
 
 namespace {
@@ -19,6 +21,8 @@ constexpr std::array columns{
     RatingColumn{"gaze_source", "session", "session", "gaze_source",
                  "coalesce(shown_1.gaze_source, session.gaze_source)",
                  "what the fluid followed: tracked, head, mouse, fixed, fixation or none", "TEXT"},
+    RatingColumn{"setting_sha256", "session", "session", "run_id", setting_sha256_sql, setting_sha256_meaning,
+                 "TEXT"},
     RatingColumn{"position", "trial", "trial", "position"},
     RatingColumn{"block", "unit", "unit", "block"},
     RatingColumn{"block_kind", "unit", "unit", "kind"},

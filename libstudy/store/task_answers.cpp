@@ -32,7 +32,8 @@ constexpr const char* sessions_sql =
     "(SELECT group_concat(words, '; ') FROM (SELECT scene || ': ' || group_concat(printf('%dx%d px at %.4g "
     "degrees by %s', width_px, height_px, camera_angle_deg, coalesce(renderer, 'a renderer not known')), "
     "' and ') AS words FROM framing f WHERE f.session_id = session.session_id GROUP BY scene HAVING "
-    "count(DISTINCT cells) > 1 ORDER BY scene)) "
+    "count(DISTINCT cells) > 1 ORDER BY scene)), stimulus, (SELECT detail FROM event e WHERE e.session_id = "
+    "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1) "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
@@ -65,7 +66,8 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
 class Reader {
  public:
   Reader(Connection& database, std::int64_t protocol_id, const Protocol& protocol)
-      : protocol_id_(protocol_id),
+      : database_(database),
+        protocol_id_(protocol_id),
         protocol_(protocol),
         session_(database, sessions_sql),
         trial_(database, trials_sql),
@@ -75,7 +77,8 @@ class Reader {
 
   std::vector<TaskSession> sessions() {
     std::vector<TaskSession> out;
-    session_.bind_all(protocol_id_, std::string(mirror_event), std::string(revealed_event));
+    session_.bind_all(protocol_id_, std::string(mirror_event), std::string(revealed_event),
+                      std::string(frame_costs_event));
     while (session_.step()) {
       out.push_back({.participant = session_.text(1),
                      .visit = static_cast<int>(session_.integer(2)),
@@ -90,12 +93,20 @@ class Reader {
                      .first_answer_utc = session_.text(9),
                      .angles = session_.text(10),
                      .unblinded = session_.text(11),
-                     .mixed_pictures = session_.text(12)});
+                     .mixed_pictures = session_.text(12),
+                     .stimulus = session_.text(13),
+                     .settings = run_settings(database_, session_.integer(0)),
+                     .frame_costs = frame_costs()});
     }
     return out;
   }
 
  private:
+  std::vector<FrameCosts> frame_costs() const {
+    if (session_.is_null(14)) return {};
+    return parse_frame_costs(session_.text(14), database_.path().string());
+  }
+
   std::vector<TaskTrial> trials(std::int64_t session) {
     std::vector<TaskTrial> out;
     trial_.bind_all(session);
@@ -178,6 +189,7 @@ class Reader {
     return {};
   }
 
+  Connection& database_;
   std::int64_t protocol_id_;
   const Protocol& protocol_;
   Statement session_, trial_, showing_, answer_, catch_;
@@ -204,6 +216,7 @@ TaskProtocol describe(const Protocol& protocol) {
   out.sha256 = protocol.sha256;
   out.pairs = protocol.design.pairs;
   out.participants = protocol.participants;
+  out.content_step_s = protocol.content.content_step_s;
   out.questions = trial_questions(protocol);
   for (const Cell& cell : protocol.design.cells) {
     add_once(out.scenes, cell.stimulus.scene);

@@ -11,6 +11,8 @@
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/design.hpp"
 #include "libstudy/protocol/question.hpp"
+#include "libstudy/store/frame_costs.hpp"
+#include "libstudy/store/run_settings.hpp"
 
 namespace study {
 
@@ -61,7 +63,7 @@ struct TaskSession {
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::string state;        ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
+  std::string state;  ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
   /// "tracked", "head", "mouse", "fixed", "fixation" or "none"; of showings that differ, another one than was
   /// planned.
   std::string gaze_source;
@@ -77,6 +79,9 @@ struct TaskSession {
   /// "a.toml: 640x360 px at 75 degrees by R and 64x36 px at 75 degrees by S", for each scene whose pictures
   /// differed in renderer, size or angle; empty: none did, or not stored.
   std::string mixed_pictures;
+  std::string stimulus;                 ///< what was shown, as the session was planned
+  std::vector<RunSetting> settings;     ///< solver settings that its live fluid ran at
+  std::vector<FrameCosts> frame_costs;  ///< as its station measured them last; empty: not measured
 };
 
 /// A protocol with all its sessions by participant and visit.
@@ -87,6 +92,7 @@ struct TaskProtocol {
   std::vector<std::string> scenes, methods, n_stars;  ///< in the order of the file
   std::vector<Question> questions;                    ///< on scales and choices, asked about trials
   std::vector<TaskSession> sessions;
+  double content_step_s = 1.0 / 60;
 
   /// One method under several frame rates, shown one by one.
   bool pilot() const { return methods.size() < 2; }

@@ -11,12 +11,14 @@
 #include "apps/bench/accuracy/work_precision.hpp"
 #include "apps/bench/log_axis.hpp"
 #include "stats/base/error.hpp"
+#include "tests/apps/small_sweep.hpp"
 #include "tests/apps/table_test_support.hpp"
 
 namespace apps {
 namespace {
 
 using study::sqlite::Open;
+using test::run_with;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -36,20 +38,6 @@ TEST(AccuracySample, TheFrontLeavesOnePerCentOfTheMassBefore) {
   std::vector<sim::ParticleState> water;
   for (int i = 0; i < 1000; ++i) water.push_back({.id = i, .x_m = static_cast<float>(i)});
   EXPECT_DOUBLE_EQ(sample_of(0, water).front_m, 989);
-}
-
-/// Two samples that lie this far from zero.
-CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
-  CellRun out;
-  for (const double time : {0.1, 0.2}) {
-    WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = kinetic};
-    sample.centre_m[1] = front / 2;
-    sample.density_error = density;
-    sample.density_max = 1;
-    out.samples.push_back(sample);
-  }
-  for (int frame = 0; frame < 8; ++frame) out.frames.push_back({ms + frame, {}});
-  return out;
 }
 
 TEST(AccuracyErrors, AreRootMeanSquaresInPerCent) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "libstudy/store/task_answers.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -101,6 +102,19 @@ TEST_F(LiveRatesE2e, WhatIsReachedIsToldAndPlayed) {
   const Ended ended = run();
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.err, AllOf(HasSubstr("live on this station"), HasSubstr("(1, 0)")));
+  // What its frames cost goes to the record, and from there to who reads the tasks.
+  const auto session = study::read_tasks(database_).protocols.at(0).sessions.at(0);
+  ASSERT_EQ(session.frame_costs.size(), 1u);
+  EXPECT_EQ(session.frame_costs[0].what, (study::StimulusSpec{scene_, "LoRes", "64"}));
+  EXPECT_GT(session.frame_costs[0].mean_ms, 0);
+}
+
+TEST_F(LiveRatesE2e, OnAVirtualClockNothingCostsAnything) {
+  write_protocol("1", "2");
+  size_ = "64x36";
+  clock_ = "virtual";
+  ASSERT_EQ(run().exit_code, 0);
+  EXPECT_TRUE(study::read_tasks(database_).protocols.at(0).sessions.at(0).frame_costs.empty());
 }
 
 TEST_F(LiveRatesE2e, CheckMeasuresForTheSessionsOfItsSize) {

@@ -43,6 +43,30 @@ inline Json bundle() {
           {"differences", {"protocol task2 was not preregistered"}}};
 }
 
+/// Cost and error of each method in a sweep that holds all settings but the first.
+inline Json sweep() {
+  return {{"file", "sweep.db"},
+          {"errors", {{"front_pct", "front, %"}}},
+          {"left_out", {"Faucet has no reference"}}};
+}
+inline Json price() {
+  return {{"machine", "a machine"},
+          {"program", "0.1.0"},
+          {"picture", "none"},
+          {"seconds", 2},
+          {"reference_n_star", 512},
+          {"ms_mean", 3.5},
+          {"ms_p95", 4.5},
+          {"times_hires", 1.25},
+          {"errors", {{"front_pct", {{"mean", 0.5}, {"low", 0.25}, {"high", 0.75}}}}}};
+}
+inline const Change with_sweep =
+    all({set("/sweep", sweep()), in_each("/costs", "sweep", Json::array({price()}))});
+inline const Change without_sweep = [](Json& json) {
+  json.erase("sweep");
+  for (auto& one : json["costs"]) one.erase("sweep");
+};
+
 inline const Change by_holm = set("/plan/decision", "holm");
 
 }  // namespace report_sentences

@@ -135,6 +135,42 @@ inline std::vector<Case> participants_and_timing() {
   };
 }
 
+inline std::vector<Case> costs() {
+  const Change none = set("/costs", Json::array());
+  const Json no_row{{"refused", "the sweep has no row of LoRes"}};
+  const Json error{{"error", "centre_pct"}, {"mean", 0.25}, {"low", 0.2}, {"high", 0.3}};
+  return {
+      {"Live fluid of # ran at these settings of the solver instead of the usual, by sessions with analysed "
+       "answers: *#.",
+       in_each("/study/protocols", "settings", Json::object()),
+       in_each("/study/protocols", "settings", {{"Ours iterations=6 (setting ab)", 3}})},
+      {"# Task [12]: what frames cost, what error they carried, what people said", none},
+      {"No session of Task [12] holds what a frame costs: it is measured before live sessions on the real "
+       "clock.",
+       in_each("/costs", "made_ms", 3.5)},
+      {"Made: computing and drawing a frame with nothing to wait for, as each station measured it before its "
+       "sessions; mean over the sessions that hold it.",
+       in_each("/costs", "made_ms", nullptr), set("/costs/0/made_ms", 3.5)},
+      {"Shown: mean interval between frames of showings without a schedule, which the display's rate bounds.",
+       in_each("/costs", "shown_ms", nullptr), set("/costs/0/shown_ms", 3.5)},
+      {"The error is that which the setting file in the record says of itself, in per cent, with its least "
+       "and largest start.",
+       in_each("/costs", "error", {{"refused", "no setting file stands in the record"}}),
+       set("/costs/0/error", error)},
+      {"A usual setting has no file in the record, which says no error of it.",
+       in_each("/costs", "setting", "several")},
+      {"No sweep file was given, which would say the errors of usual settings.", with_sweep},
+      {"# Task [12]: cost and error in the sweep on #, program #, pictures #, reference of n[*] #",
+       in_each("/costs", "sweep", no_row), with_sweep},
+      {"The sweep ran each setting by itself; its times are of its machine and not of the sessions.",
+       without_sweep, with_sweep},
+      {"Settings of Task [12] that are not in the sweep:", with_sweep,
+       all({with_sweep, set("/costs/0/sweep", no_row)})},
+      {"# at n[*] # in #: #.", with_sweep, all({with_sweep, set("/costs/0/sweep", no_row)})},
+      {"Not taken from the sweep:", set("/sweep/left_out", Json::array()), with_sweep},
+  };
+}
+
 inline std::vector<Case> sickness() {
   const std::string ssq = "/sickness/0/ssq";
   const Change none = set("/sickness", Json::array()), no_ssq = set(ssq, nullptr),
@@ -257,8 +293,8 @@ inline std::vector<Case> bundle_and_provenance() {
 inline const std::vector<Case>& cases() {
   static const std::vector<Case> list = [] {
     std::vector<Case> out;
-    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), sickness(),
-                      hypotheses(), bundle_and_provenance()})
+    for (auto part : {head_and_methods(), participants_and_timing(), pilot(), task1(), task2(), costs(),
+                      sickness(), hypotheses(), bundle_and_provenance()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();

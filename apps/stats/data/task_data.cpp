@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/common/setting_file.hpp"
 #include "apps/stats/data/planned.hpp"
 #include "apps/stats/data/trial_record.hpp"
 
@@ -13,6 +14,13 @@ namespace {
 
 using study::TaskSession;
 using study::TaskTrial;
+
+/// "Ours n_star=16384 ... (setting SHA-256 ...)".
+std::string setting_words(const study::RunSetting& setting) {
+  const auto file = parse_setting_file(setting.text, "setting " + setting.sha256.substr(0, 12));
+  const std::string words = to_text(file.setting);  // begins with the scene that it was chosen in
+  return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
+}
 
 /// Fills a TaskData from the sessions that may be pooled.
 class Collector {
@@ -58,6 +66,7 @@ class Collector {
     ++data_.stations[session.station];
     ++data_.displays[session.display];
     if (!session.angles.empty()) ++data_.angles[session.angles];
+    for (const auto& setting : session.settings) ++data_.settings[setting_words(setting)];
     if (!session.unblinded.empty()) ++data_.unblinded[session.unblinded];
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
     if (session.observer.empty()) return;

@@ -53,7 +53,8 @@ struct TaskData {
   std::vector<std::string> scenes;        ///< short: "single_dam"
   std::vector<std::string> simulated;     ///< participants answered by observer models
   std::vector<std::string> observers;     ///< different models
-  std::map<std::string, int> gaze, stations, displays, angles, unblinded, mixed_pictures;  ///< sessions
+  std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
+      mixed_pictures;            ///< sessions
   std::string first_answer_utc;  ///< of the sessions analysed; empty: none
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;

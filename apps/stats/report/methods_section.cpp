@@ -22,6 +22,11 @@ std::string protocols_text(const Field& study) {
     if (!protocol["angles"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by vertical angle: " + counts(protocol["angles"]) + ". ";
+    if (!protocol["settings"].members().empty())
+      out +=
+          "Live fluid of " + title +
+          " ran at these settings of the solver instead of the usual, by sessions with analysed answers: " +
+          counts(protocol["settings"]) + ". ";
     if (!protocol["unblinded"].members().empty())
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
@@ -52,7 +57,7 @@ std::string people(const Field& flow) {
 std::string exclusion_rules(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)
-    if (root["flow"][key].there()) parts.push_back(title);
+    if (root["flow"][key].there()) parts.emplace_back(title);
   const Field rules = root["plan"]["exclusions"];
   if (parts.empty() || !rules.there()) return "";
   const std::string timing = rules["timing"].words();

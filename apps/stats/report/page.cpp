@@ -22,6 +22,7 @@ constexpr Section sections[] = {
     {"pilot", "Pilot", pilot_section},
     {"task1", "Task 1", task1_section},
     {"task2", "Task 2", task2_section},
+    {"costs", "Cost and error", costs_section},
     {"sickness", "Sickness", sickness_section},
     {"hypotheses", "Hypotheses", hypotheses_section},
     {"sensitivity", "Sensitivity", sensitivity_section},

@@ -29,6 +29,8 @@ std::string decisions_section(const Field& root);
 std::string methods_section(const Field& root);
 std::string participants_section(const Field& root);
 std::string timing_section(const Field& root);
+/// What frames cost and what error they carried, beside what people said.
+std::string costs_section(const Field& root);
 std::string pilot_section(const Field& root);
 std::string task1_section(const Field& root);
 /// Of the section of Task 1: on whom pairs rest, the mixed model, tipping points.

@@ -140,6 +140,22 @@ Json sickness_lines(const Json& parts, const Json::json_pointer& pointer) {
   return list;
 }
 
+/// One line for each stimulus and table of the sweep that holds its setting.
+Json sweep_lines(const Json& costs) {
+  Json list = Json::array();
+  for (const auto& one : costs) {
+    if (!one.contains("sweep") || !one.at("sweep").is_array()) continue;
+    for (const auto& price : one.at("sweep")) {
+      Json line;
+      for (const char* name : {"task", "scene", "n_star", "method", "setting", "said", "answers"})
+        line[name] = one.at(name);
+      for (const auto& [name, value] : price.items()) line[name == "scene" ? "sweep_scene" : name] = value;
+      list.push_back(std::move(line));
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty) {
@@ -166,6 +182,10 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
       {"timing", results.at("timing")},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
+  Json costs = results.value("costs", Json::array());
+  lists.emplace_back("costs_sweep", sweep_lines(costs));
+  for (Json& one : costs) one.erase("sweep");
+  lists.emplace_back("costs", costs);
   if (results.contains("task1") && !results.at("task1").contains("refused")) {
     const Json& task = results.at("task1");
     for (const char* name :

@@ -30,6 +30,7 @@ Json protocol_json(const TaskData& data) {
       {"stations", data.stations},
       {"displays", data.displays},
       {"angles", data.angles},
+      {"settings", data.settings},
       {"unblinded", data.unblinded},
       {"mixed_pictures", data.mixed_pictures}};
 }

@@ -1,6 +1,7 @@
 #include "apps/stats/tasks/results.hpp"
 
 #include "apps/stats/ptpe/pilot_fit.hpp"
+#include "apps/stats/tasks/costs_json.hpp"
 #include "apps/stats/tasks/data_json.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"
@@ -78,11 +79,14 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
             {"study", study_json(request.database.filename().string(), data)},
             {"flow", Json::object()},
             {"exclusions", Json::array()},
-            {"timing", Json::array()}};
+            {"timing", Json::array()},
+            {"costs", Json::array()}};
+  if (request.sweep) json["sweep"] = sweep_json(request.sweep_file, *request.sweep);
   for (const TaskPart& part : parts) {
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));
     append(json["timing"], timing_json(part.data));
+    append(json["costs"], costs_json(part.data, request.sweep.get()));
   }
   for (const TaskPart& part : parts) json[task_name(part.data.task)] = part.results;
   json["hypotheses"] = Json::array();

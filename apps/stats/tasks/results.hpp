@@ -2,10 +2,12 @@
 /// A study's results as one JSON document (docs/results.md).
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/common/sweep/setting_price.hpp"
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "apps/stats/data/task_data.hpp"
@@ -17,6 +19,8 @@ struct ResultsRequest {
   std::vector<TaskKind> tasks;  ///< those without a protocol in the database are left out
   std::string protocol;  ///< leading digits of a SHA-256, of one task; empty when one protocol fits each task
   PlanInForce plan;
+  std::shared_ptr<const SweepTables> sweep = {};  ///< none = not asked
+  std::string sweep_file = {};                    ///< its name to show
 };
 
 /// A task of the request that has no results.

@@ -67,6 +67,7 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
   out.fps = stats::fps_moments(shown_s);
   out.tau_min = least_tau(shown_s);
   std::sort(sorted.begin(), sorted.end());
+  for (const double s : sorted) out.mean_ms += 1000 * s / static_cast<double>(sorted.size());
   out.p95_ms = 1000 * sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
   judge_rate(out, protocol, stats::fps_moments(rehearsal.frame_s).mean);
   if (!intervals_ns.empty()) judge_showing(out, protocol, rehearsal.played, refresh_hz);
@@ -128,6 +129,13 @@ std::string measured_table(const MeasuredReport& report) {
                        one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
            one.words + "\n";
   }
+  return out;
+}
+
+std::vector<study::FrameCosts> frame_costs(const MeasuredReport& report) {
+  std::vector<study::FrameCosts> out;
+  for (const MeasuredCell& one : report.cells)
+    if (one.mean_ms > 0) out.push_back({one.what, one.mean_ms, one.p95_ms});
   return out;
 }
 

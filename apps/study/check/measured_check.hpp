@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/study/check/rehearsal.hpp"
+#include "libstudy/store/frame_costs.hpp"
 #include "stats/fps_window.hpp"
 
 namespace apps {
@@ -19,7 +20,8 @@ struct MeasuredCell {
   study::StimulusSpec what;
   study::FpsSetting setting;
   stats::FpsMoments fps;  ///< of its frames, with the display's refresh as the highest rate
-  double p95_ms = 0;      ///< of a frame
+  double mean_ms = 0;     ///< of a frame, computed and drawn, with nothing to wait for
+  double p95_ms = 0;      ///< the same, 95th percentile
   double tau_min = 0;     ///< least tau over 30 frames, frames/s (Eq. 11)
   double showing_s = 0;   ///< that a showing would take
   bool too_slow = false;  ///< its setting is not reached: a showing would fail
@@ -48,6 +50,8 @@ MeasuredReport judge_measured(const study::Protocol& protocol, const std::vector
 std::string stimulus_name(const study::StimulusSpec& what);
 /// The report for people, a line for each cell below a heading.
 std::string measured_table(const MeasuredReport& report);
+/// What frames cost here, for the record: of each cell that was measured.
+std::vector<study::FrameCosts> frame_costs(const MeasuredReport& report);
 /// Seconds that a showing of each cell of the design takes here: as planned where a cell was not measured.
 std::vector<double> showing_times(const study::Protocol& protocol, const MeasuredReport& report);
 

@@ -18,7 +18,7 @@ namespace apps {
 
 namespace {
 
-constexpr float item_width_px = 190;
+constexpr float item_width_px = 190, price_width_px = 400;
 
 /// A combo box over words; true when another one was chosen.
 bool choose(const char* label, const std::vector<std::string>& words, std::size_t& at) {
@@ -61,6 +61,13 @@ void draw_figures(const Figures& f) {
   const std::string scale = fmt::format("{:.2f} ms; 0 to {:g} ms", f.frame_ms, top);
   ImGui::PlotLines("frame", f.strip.ms(), FrameStrip::length, f.strip.oldest(), scale.c_str(), 0,
                    static_cast<float>(top), {0, 56});
+}
+
+/// Wrapped, so that the panel keeps its width.
+void draw_price(const std::vector<std::string>& lines) {
+  ImGui::PushTextWrapPos(price_width_px);
+  for (const auto& line : lines) ImGui::TextWrapped("%s", line.c_str());
+  ImGui::PopTextWrapPos();
 }
 
 void draw_painting(Controls& controls, const std::string& legend) {
@@ -147,6 +154,10 @@ void Panel::draw(Controls& controls, const Figures& figures) {
   draw_fluid(controls);
   draw_numbers(controls);
   ImGui::Separator();
+  if (!figures.price.empty()) {
+    draw_price(figures.price);
+    ImGui::Separator();
+  }
   draw_painting(controls, figures.legend);
   draw_running(controls);
   if (!figures.said.empty()) ImGui::TextUnformatted(figures.said.c_str());

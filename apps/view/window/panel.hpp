@@ -24,8 +24,9 @@ struct Figures {
   double tau = 0, beta = 1;  ///< of the frames shown
   std::string model;         ///< where a and b come from
   FrameStrip strip;
-  std::string legend;  ///< of what is painted over the water
-  std::string said;    ///< the last error, or where a screenshot went
+  std::string legend;              ///< of what is painted over the water
+  std::vector<std::string> price;  ///< what the setting costs and errs by; empty: no sweep was given
+  std::string said;                ///< the last error, or where a screenshot went
 };
 
 /// What the panel sets.

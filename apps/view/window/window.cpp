@@ -121,6 +121,7 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
   const sim::LiveNumbers numbers = prepared.fluid->live_numbers();
   controls_.alpha = numbers.alpha;
   controls_.iterations = numbers.iterations;
+  figures_.price = price_lines(controls_.chosen, prepared.setting, prepared.scene);
 }
 
 /// The old fluid stays when the new one cannot be made.
@@ -158,6 +159,10 @@ void Viewer::follow_choices() {
   controls_.alpha = numbers.alpha;
   controls_.iterations = numbers.iterations;
   running_ = controls_.chosen;
+  SolverSetting& setting = fluid_->prepared.setting;
+  setting[SolverKnob::Alpha] = numbers.alpha;
+  setting[SolverKnob::Iterations] = numbers.iterations;
+  figures_.price = price_lines(running_, setting, fluid_->prepared.scene);
 }
 
 void Viewer::step(const sim::View& view) {

@@ -1,0 +1,100 @@
+#include "apps/study/session_settings.hpp"
+
+#include <fmt/core.h>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "libsim/methods/method.hpp"
+#include "libsim/scene/scene.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+bool is_for(const SolverSetting& setting, const study::StimulusSpec& stimulus) {
+  return sim::parse_method(stimulus.method) == setting.method &&
+         sim::parse_n_star(stimulus.n_star) == std::llround(setting[SolverKnob::Size]);
+}
+
+std::string named(const SolverSetting& setting) {
+  return fmt::format("{} at n_* {}", sim::method_name(setting.method),
+                     value_words(SolverKnob::Size, setting[SolverKnob::Size]));
+}
+
+void check_shown(const SolverSetting& setting, const study::Protocol& protocol, const std::string& place) {
+  const auto& cells = protocol.design.cells;
+  const bool shown = std::any_of(cells.begin(), cells.end(),
+                                 [&](const study::Cell& cell) { return is_for(setting, cell.stimulus); });
+  if (shown) return;
+  throw base::Error(
+      place,
+      "is a setting of " + named(setting) + ", which no cell of protocol '" + protocol.name + "' shows",
+      "choose it for a method and n_* of the protocol, or leave it out");
+}
+
+void check_step(const SolverSetting& setting, const study::Protocol& protocol, const std::string& place) {
+  const double step_s = 1 / setting[SolverKnob::Rate], asked_s = protocol.content.content_step_s;
+  if (std::abs(step_s - asked_s) <= 1e-3 * asked_s) return;
+  throw base::Error(
+      place,
+      fmt::format("was chosen for frames of content {:.6g} s apart (frames_per_s = {:.6g}), and "
+                  "the protocol's content step is {:.6g} s",
+                  step_s, setting[SolverKnob::Rate], asked_s),
+      "sweep at the protocol's rate and choose again, or change content_step_s there");
+}
+
+}  // namespace
+
+SessionSettings::SessionSettings(const std::vector<std::string>& texts, const study::Protocol& protocol,
+                                 const std::string& place) {
+  for (const std::string& text : texts) {
+    Setting one{parse_setting_file(text, place), base::sha256_hex(text)};
+    check_shown(one.file.setting, protocol, place);
+    check_step(one.file.setting, protocol, place);
+    for (const Setting& other : settings_) {
+      if (other.file.setting.method == one.file.setting.method &&
+          other.file.setting[SolverKnob::Size] == one.file.setting[SolverKnob::Size])
+        throw base::Error(place, "holds a second setting for " + named(one.file.setting), "give one of them");
+    }
+    settings_.push_back(std::move(one));
+  }
+}
+
+const SettingFile* SessionSettings::of(const study::StimulusSpec& stimulus) const {
+  for (const Setting& one : settings_)
+    if (is_for(one.file.setting, stimulus)) return &one.file;
+  return nullptr;
+}
+
+std::string SessionSettings::description() const {
+  std::string out;
+  for (const Setting& one : settings_)
+    out += "; at setting " + one.sha256 + " (" + to_text(one.file.setting) + ")";
+  return out;
+}
+
+std::vector<std::string> SessionSettings::notes(const study::Protocol& protocol) const {
+  std::vector<std::string> out;
+  for (const Setting& one : settings_) {
+    const SolverSetting& setting = one.file.setting;
+    const std::string name = "setting " + one.sha256.substr(0, 12) + ": ";
+    out.push_back(name + describe(one.file));
+    std::set<std::string> scenes;
+    for (const study::Cell& cell : protocol.design.cells)
+      if (is_for(setting, cell.stimulus)) scenes.insert(cell.stimulus.scene);
+    for (const std::string& scene : scenes) {
+      const auto note = other_scene(one.file, sim::read_scene(base::find_input(scene)).sha256);
+      if (!note.empty()) out.push_back(name + scene + ": " + note);
+    }
+    const bool some_rest = turns(SolverKnob::Beta, setting.method) && setting[SolverKnob::Beta] < 1;
+    if (some_rest || sim::traits_of(setting.method).temporal)
+      out.push_back(name + "tau follows its beta, " +
+                    value_words(SolverKnob::Beta, setting[SolverKnob::Beta]) + ", and no frame rate");
+  }
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,39 @@
+#include "libstudy/store/frame_costs.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
+  auto json = nlohmann::ordered_json::array();
+  for (const FrameCosts& one : costs)
+    json.push_back({{"scene", one.what.scene},
+                    {"method", one.what.method},
+                    {"n_star", one.what.n_star},
+                    {"mean_ms", one.mean_ms},
+                    {"p95_ms", one.p95_ms}});
+  return json.dump();
+}
+
+std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::string& place) {
+  const auto unreadable = [&] {
+    return base::Error(place, std::string("holds an event '") + frame_costs_event + "' that cannot be read",
+                       "restore a backup of it");
+  };
+  try {
+    std::vector<FrameCosts> out;
+    for (const auto& one : nlohmann::json::parse(text)) {
+      out.push_back(
+          {{one.at("scene"), one.at("method"), one.at("n_star")}, one.at("mean_ms"), one.at("p95_ms")});
+      if (!(out.back().mean_ms >= 0) || !(out.back().p95_ms >= 0)) throw unreadable();
+    }
+    return out;
+  } catch (const nlohmann::json::exception&) {
+    throw unreadable();
+  }
+}
+
+}  // namespace study

@@ -1,0 +1,187 @@
+/// What the report says that frames cost and err by, beside what people said.
+#include "apps/stats/tasks/costs_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/common/setting_file.hpp"
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/small_sweep.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::int64_t n_star = 16 * 1024;
+
+std::string sha256_of_dam() { return scenes_of("SingleDam").front().scene.sha256; }
+
+/// Sessions that say that they showed all scene files live.
+study::TaskProtocol shown_live() {
+  auto out = made_study::task1(6);
+  std::string stimulus = "live on cpu";
+  for (const auto& scene : scenes_of("all")) stimulus += ", scene " + scene.name + " " + scene.scene.sha256;
+  for (auto& session : out.sessions) session.stimulus = stimulus;
+  return out;
+}
+
+std::string setting_text(const std::string& scene_sha256) {
+  SettingFile out{test::hires_at(n_star), {}};
+  out.setting[SolverKnob::Iterations] = 8;
+  out.measured = {.machine = "a machine",
+                  .program = "0.1.0 abc",
+                  .scene_sha256 = scene_sha256,
+                  .picture = "none",
+                  .seconds = 2,
+                  .budget_ms = 11,
+                  .ms_mean = 8,
+                  .ms_p95 = 9.75,
+                  .error = "centre_pct",
+                  .error_pct = 0.25,
+                  .error_low_pct = 0.2,
+                  .error_high_pct = 0.3,
+                  .seeds = 4,
+                  .date_utc = "2026-01-31T12:00:00Z"};
+  return format_setting_file(out);
+}
+
+study::RunSetting recorded(const std::string& text) { return {base::sha256_hex(text), text}; }
+
+Json results_of(const study::TaskProtocol& protocol, bool sweep = false) {
+  ResultsRequest request{"study.db", {TaskKind::Task1, TaskKind::Task2}, "", {}};
+  request.plan.plan.resamples = 200;
+  if (sweep) {
+    request.sweep = std::make_shared<const SweepTables>(sweep_tables(test::small_sweep(n_star)));
+    request.sweep_file = "sweep.db";
+  }
+  return make_results({{protocol}, 0}, request).json;
+}
+
+Json row_of(const Json& json, const std::string& method, const std::string& n = "16k",
+            const std::string& scene = "single_dam") {
+  for (const auto& row : json.at("costs"))
+    if (row.at("method") == method && row.at("n_star") == n && row.at("scene") == scene) return row;
+  return {};
+}
+
+TEST(Costs, WithoutASourceTheTableSaysSo) {
+  const Json json = results_of(shown_live());
+  EXPECT_FALSE(json.contains("sweep"));
+  const Json row = row_of(json, "HiRes");
+  EXPECT_EQ(row.at("setting"), "usual");
+  EXPECT_TRUE(row.at("made_ms").is_null());
+  EXPECT_THAT(row.at("made_ms_reason").get<std::string>(), HasSubstr("no session holds it"));
+  EXPECT_TRUE(row.at("shown_ms").is_null());
+  EXPECT_THAT(row.at("shown_ms_reason").get<std::string>(), HasSubstr("every showing had a schedule"));
+  EXPECT_EQ(row.at("error").at("refused"), "no setting file stands in the record");
+  EXPECT_FALSE(row.contains("sweep"));
+}
+
+TEST(Costs, TimesAreMeansOverTheSessionsThatHoldThem) {
+  auto protocol = shown_live();
+  const study::StimulusSpec what{made_study::scenes[0], "HiRes", "16k"};
+  // P01 and P04 are the ones who saw the dam at 16k; P02 did not.
+  protocol.sessions[0].frame_costs = {{what, 4, 6}, {what, 6, 8}, {{what.scene, "Ours", "16k"}, 90, 90}};
+  protocol.sessions[3].frame_costs = {{what, 11, 13}};
+  protocol.sessions[1].frame_costs = {{what, 1000, 1000}};
+  const Json row = row_of(results_of(protocol), "HiRes");
+  EXPECT_EQ(row.at("sessions"), 2);
+  EXPECT_EQ(row.at("measured_sessions"), 2);
+  EXPECT_EQ(row.at("made_ms"), 8);
+  EXPECT_EQ(row.at("made_p95_ms"), 10);
+}
+
+TEST(Costs, WithoutAScheduleTheIntervalsAreTheCost) {
+  auto protocol = shown_live();
+  for (auto& session : protocol.sessions)
+    for (auto& trial : session.trials) {
+      trial.first.nominal = {};
+      trial.first.realised.mean = trial.first.what.method == "LoRes" ? 100 : 50;
+    }
+  const Json json = results_of(protocol);
+  EXPECT_DOUBLE_EQ(row_of(json, "LoRes").at("shown_ms"), 10);
+  EXPECT_DOUBLE_EQ(row_of(json, "Ours").at("shown_ms"), 20);
+}
+
+TEST(Costs, TheErrorOfTheRecordsSettingIsOfItsOwnSceneMethodAndSize) {
+  auto protocol = shown_live();
+  const std::string text = setting_text(sha256_of_dam());
+  for (auto& session : protocol.sessions) session.settings = {recorded(text)};
+  const Json json = results_of(protocol);
+  const Json row = row_of(json, "HiRes");
+  EXPECT_EQ(row.at("setting_sha256"), base::sha256_hex(text));
+  EXPECT_EQ(row.at("error").at("error"), "centre_pct");
+  EXPECT_EQ(row.at("error").at("mean"), 0.25);
+  EXPECT_EQ(row.at("error").at("high"), 0.3);
+  EXPECT_EQ(row_of(json, "HiRes", "16k", "faucet").at("error").at("refused"),
+            "the setting was measured on another scene file");
+  EXPECT_EQ(row_of(json, "HiRes", "32k").at("setting"), "usual");
+  EXPECT_EQ(row_of(json, "Ours").at("setting"), "usual");
+  const std::string page = report::results_page(json);
+  EXPECT_THAT(page, AllOf(HasSubstr("ran at these settings of the solver"), HasSubstr(base::sha256_hex(text)),
+                          HasSubstr("says of itself")));
+
+  protocol.sessions[0].settings.clear();
+  const Json mixed = row_of(results_of(protocol), "HiRes");
+  EXPECT_EQ(mixed.at("setting"), "several");
+  EXPECT_EQ(mixed.at("error").at("refused"), "its sessions ran at different settings");
+  for (auto& session : protocol.sessions) session.stimulus = "a bake";
+  EXPECT_FALSE(row_of(results_of(protocol), "HiRes").at("error").contains("mean"));
+}
+
+TEST(Costs, ASweepTellsOfUsualSettingsAndOfTheRecords) {
+  auto protocol = shown_live();
+  const Json usual = row_of(results_of(protocol, true), "HiRes");
+  ASSERT_EQ(usual.at("sweep").size(), 1u);
+  EXPECT_EQ(usual.at("sweep")[0].at("times_hires"), 1);
+  EXPECT_EQ(usual.at("sweep")[0].at("ms_mean"), 13.5);
+  EXPECT_EQ(usual.at("sweep")[0].at("errors").size(), sweep_error_count);
+  for (auto& session : protocol.sessions) session.settings = {recorded(setting_text("feed"))};
+  const Json json = results_of(protocol, true);
+  const Json eight = row_of(json, "HiRes");
+  EXPECT_EQ(eight.at("sweep")[0].at("ms_mean"), 17.5);
+  EXPECT_EQ(row_of(json, "HiRes", "16k", "faucet").at("sweep").at("refused"),
+            "not measured: the sweep has no table of this scene file");
+  EXPECT_EQ(row_of(json, "LoRes").at("sweep").at("refused"), "not measured: the sweep has no row of LoRes");
+  protocol.content_step_s = 1.0 / 90;
+  EXPECT_THAT(row_of(results_of(shown_live(), true), "HiRes").at("sweep").dump(), HasSubstr("ms_mean"));
+  for (auto& session : protocol.sessions) session.settings.clear();
+  EXPECT_THAT(row_of(results_of(protocol, true), "HiRes").at("sweep").at("refused").get<std::string>(),
+              HasSubstr("frames/s (here 90, there 60)"));
+  const std::string page = report::results_page(json);
+  EXPECT_THAT(page, AllOf(HasSubstr("cost and error in the sweep on"), HasSubstr("centre of mass, %"),
+                          Not(HasSubstr("No sweep file was given"))));
+}
+
+TEST(Costs, WhatPeopleSaidStandsBesideIt) {
+  auto protocol = shown_live();
+  double sum = 0;
+  int n = 0;
+  for (const auto& session : protocol.sessions)
+    for (const auto& trial : session.trials)
+      if (trial.first.what == study::StimulusSpec{made_study::scenes[0], "Ours", "16k"}) {
+        sum += *trial.answers[0].score;
+        ++n;
+      }
+  const Json row = row_of(results_of(protocol), "Ours");
+  EXPECT_EQ(row.at("answers"), n);
+  EXPECT_DOUBLE_EQ(row.at("said"), sum / n);
+  // Each pair has one that was chosen: over all methods half of the showings were.
+  const Json pairs = results_of(made_study::task2(6));
+  double chosen = 0, showings = 0;
+  for (const auto& one : pairs.at("costs")) {
+    chosen += one.at("said").get<double>() * one.at("answers").get<double>();
+    showings += one.at("answers").get<double>();
+  }
+  EXPECT_EQ(showings, 6 * 10 * 2);
+  EXPECT_NEAR(chosen, showings / 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace apps

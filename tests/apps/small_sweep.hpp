@@ -1,0 +1,49 @@
+#pragma once
+/// A sweep of a few cells that never ran, for tests of what is read out of one.
+
+#include <string>
+#include <vector>
+
+#include "apps/common/named_scenes.hpp"
+#include "apps/common/sweep/price_list.hpp"
+
+namespace apps::test {
+
+/// Two samples that lie this far from zero.
+inline CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
+  CellRun out;
+  for (const double time : {0.1, 0.2}) {
+    WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = kinetic};
+    sample.centre_m[1] = front / 2;
+    sample.density_error = density;
+    sample.density_max = 1;
+    out.samples.push_back(sample);
+  }
+  for (int frame = 0; frame < 8; ++frame) out.frames.push_back({ms + frame, {}});
+  return out;
+}
+
+/// On "a machine", of SingleDam's file.
+inline StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
+  static const std::string sha256 = scenes_of("SingleDam").front().scene.sha256;
+  return {{setting, seed}, {"a machine", "0.1.0 abc", sha256}, run};
+}
+
+inline SolverSetting hires_at(std::int64_t n_star) {
+  return usual_setting("SingleDam", sim::MethodKind::HiRes, n_star);
+}
+
+/// The reference with its second start, HiRes as usual from two, and with twice the projections.
+inline std::vector<StoredCell> small_sweep(std::int64_t n_star = 512) {
+  const auto reference = reference_setting("SingleDam", n_star);
+  auto eight = hires_at(n_star);
+  eight[SolverKnob::Iterations] = 8;
+  return {stored(reference, 1, run_with(1, 10, 100)),
+          stored(reference, 2, run_with(1.01, 10, 100)),
+          stored(hires_at(n_star), 1, run_with(1.2, 10, 10)),
+          stored(hires_at(n_star), 2, run_with(1.3, 10, 10)),
+          stored(eight, 1, run_with(1.1, 10, 14)),
+          stored(eight, 2, run_with(1.12, 10, 14, 0.002))};
+}
+
+}  // namespace apps::test
