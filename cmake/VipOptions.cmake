@@ -1,6 +1,7 @@
 # Every switch of the build, in one place.
 option(VIP_TESTS "Build the tests" ON)
 option(VIP_WINDOW "Build the windows (GLFW, Dear ImGui)" ON)
+option(VIP_EFFECTS "Build the effects that scenes may list" ON)
 option(VIP_WERROR "Treat warnings as errors" OFF)
 option(VIP_NATIVE "Use every instruction of this machine's processor" OFF)
 option(VIP_QUICK "Compile studies and programs at -O1 and most tests at -O0, which are hardly hot: half the time" ON)

@@ -141,6 +141,7 @@ MomentumAccount ImpulseRecorder::end_frame(float rest_density, float dt) {
   out.levels = changed(Change::Levels);
   out.braked = changed(Change::Braked);
   out.viscosity = changed(Change::Viscosity);
+  out.effects = changed(Change::Effects);
   out.inherited = changed(Change::Inherited);
   out.before = vector(sums.first);
   out.after = vector(sums.last);

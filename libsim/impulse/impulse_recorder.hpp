@@ -9,7 +9,7 @@
 namespace sim::SIM_BACKEND {
 
 /// What a change of the water's momentum is counted as.
-enum class Change { None, Forces, Flow, Levels, Viscosity, Inherited, Projections, Braked, count };
+enum class Change { None, Forces, Flow, Levels, Viscosity, Effects, Inherited, Projections, Braked, count };
 enum class WallPart { MissingDensity, CoarsePressure, Clamp, count };
 
 /// A gauge in the solver's numbers: the wall's plane, and a box without end across the wall and where the

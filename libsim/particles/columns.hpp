@@ -39,6 +39,7 @@ enum class Life {
 //   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, followed over frames
 //   SaliencyParts   f_a, f_m, f_T and F behind it
 //   Waiting         frames in a row that it has been ready to merge
+//   Normal          of the surface, inwards, without unit; scratch of the effects (libsim/scene/effects.hpp)
 //   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
 //   Age             frames since it was made by a split or a merge, 255 and more are one
 //   Active          1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
@@ -61,6 +62,7 @@ enum class Life {
   COLUMN(Unrest, unrest, float, Kept)                               \
   COLUMN(SaliencyParts, saliency_parts, struct SaliencyParts, Kept) \
   COLUMN(Waiting, waiting, std::uint8_t, Kept)                      \
+  COLUMN(Normal, normal, Vec4, Scratch)                             \
   COLUMN(Ease, ease, float, Scratch)                                \
   COLUMN(Age, age, std::uint8_t, Kept)                              \
   COLUMN(Active, active, std::uint8_t, Kept)                        \

@@ -49,4 +49,17 @@ double viscosity_of(const Scene& scene, std::int64_t n_star) {
   return 0.05 * support * std::sqrt(scene.gravity_m_s2 * support);
 }
 
+Scales scales_of(const Scene& scene, std::int64_t n_star) {
+  Scales out;
+  out.length_m = scene.fill_max_m[0] - scene.fill_min_m[0];
+  for (std::size_t k = 1; k < 3; ++k)
+    out.length_m = std::min(out.length_m, scene.fill_max_m[k] - scene.fill_min_m[k]);
+  out.speed_m_s = scene.v_ref_m_s;
+  const auto tension = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Cohesion]);
+  out.reynolds = out.speed_m_s * out.length_m / viscosity_of(scene, n_star);
+  out.weber = rest_density_kg_m3 * out.speed_m_s * out.speed_m_s * out.length_m / tension;
+  out.bond = rest_density_kg_m3 * scene.gravity_m_s2 * out.length_m * out.length_m / tension;
+  return out;
+}
+
 }  // namespace sim

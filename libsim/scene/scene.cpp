@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-constexpr int format_version = 1;
+constexpr int newest_format = 2;
 // Far enough for any room, near enough for float coordinates to resolve 1 mm.
 constexpr double farthest_m = 1e4;
 // A double resolves 1e-10 m there.
@@ -127,8 +127,10 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 
 Scene parse_scene(std::string_view text, const std::string& name) {
   const auto root = base::parse_toml(text, name);
-  if (root.integer("format") != format_version) {
-    root.fail("format", "is not the format this program reads (1)", "use a program of the file's version");
+  const std::int64_t format = root.integer("format");
+  if (format < 1 || format > newest_format) {
+    root.fail("format", "is not a format that this program reads (1 or 2)",
+              "use a program of the file's version");
   }
   Scene scene;
   scene.sha256 = base::sha256_hex(text);
@@ -152,6 +154,9 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
   if (time.has("courant")) scene.courant = time.number("courant", {0.05, 4});
 
+  if (format < 2 && root.has("effect"))
+    root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");
+  scene.effects = read_effects(root);
   read_nozzles(root, scene);
   scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
   scene.view = camera(root.table("view"), scene.origin_m);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libsim/scene/central_force.hpp"
+#include "libsim/scene/effects.hpp"
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/outlet.hpp"
 
@@ -52,6 +53,7 @@ struct Scene {
   Vec3d fill_max_m{};
   double gravity_m_s2 = 9.81;
   std::optional<CentralForce> central_force;  ///< beside gravity
+  std::vector<Effect> effects;                ///< each kind once; a coefficient of 0 is listed and dropped
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
   double v_ref_m_s = 0;
@@ -76,8 +78,8 @@ struct Scene {
   std::string sha256;  ///< of the file's text
 };
 
-/// Errors are base::Error at file:line:column: unknown key, wrong type, out of range, water, nozzle or
-/// outlet outside the tank.
+/// Formats 1 and 2, which has [[effect]]. Errors are base::Error at file:line:column: unknown key, wrong
+/// type, out of range, water, nozzle or outlet outside the tank, effects that do not go together.
 Scene parse_scene(std::string_view text, const std::string& name);
 Scene read_scene(const std::filesystem::path& path);
 

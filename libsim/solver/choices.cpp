@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
+
+namespace {
+constexpr int most_computed = 1000;  ///< substeps a frame
+}
 
 double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
   return options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
@@ -41,10 +46,49 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 
 }  // namespace
 
+std::string effects_in_words(const Scene& scene, const SimulationOptions& options) {
+  if (scene.effects.empty()) return "";
+  const double d = resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m;
+  std::ostringstream out;
+  out << "  effects: ";
+  for (const Effect& effect : scene.effects) {
+    const auto& traits = traits_of(effect.kind);
+    out << traits.word << " " << traits.key << " = " << effect.coefficient << ", ";
+  }
+  const EffectStep longest = longest_step(scene.effects, d);
+  if (longest.of == no_effect) return out.str() + "which ask for no shorter substeps\n";
+  out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
+  const Scales scales = scales_of(scene, options.n_star);
+  out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s; Reynolds " << scales.reynolds
+      << ", Weber " << scales.weber << ", Bond " << scales.bond << "\n";
+  return out.str();
+}
+
+int least_substeps(const Scene& scene, const SimulationOptions& options) {
+  const int usual = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
+  const EffectStep longest =
+      longest_step(scene.effects, resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m);
+  if (longest.of == no_effect) return usual;
+  const double steps = std::ceil(frame_dt_of(scene, options) / longest.seconds - 1e-9);
+  if (steps <= usual) return usual;
+  if (options.substeps == 0 && steps <= most_computed) return static_cast<int>(steps);
+  std::ostringstream problem, mend;
+  problem << "is stable with substeps of at most " << longest.seconds << " s, " << steps << " a frame; ";
+  if (options.substeps > 0) {
+    problem << options.substeps << " are too few";
+    mend << "take " << steps << " or more, or let the run choose";
+  } else {
+    problem << "at most " << most_computed << " are computed";
+    mend << "lower " << traits_of(longest.of).key << ", raise frames_per_s, or use a smaller --n-star";
+  }
+  throw base::Error(std::string("effect ") + traits_of(longest.of).word, problem.str(), mend.str());
+}
+
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
   SolverParameters out;
   const double frame_dt = frame_dt_of(scene, options);
-  out.substeps = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
+  out.substeps = least_substeps(scene, options);
+  out.effects = coefficients_of(scene.effects);
   out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
   out.dt = static_cast<float>(frame_dt / out.substeps);
   out.gravity = static_cast<float>(scene.gravity_m_s2);
@@ -99,7 +143,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   out.acceleration_m_s2 = acceleration;
   const MethodTraits& method = traits_of(options.method);
   out.support_m = 2 * (method.adaptive() ? resolution.finest_spacing_m : resolution.spacing_m);
-  out.least = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
+  out.least = least_substeps(scene, options);
   out.most = std::max(out.least, options.most_substeps > 0 ? options.most_substeps : usual_most);
   if (options.substeps > 0) out.most = out.least;
   return {out, fastest};
@@ -109,6 +153,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   const MethodTraits& method = traits_of(options.method);
   Demand out;
   out.parameters = parameters;
+  out.effects = scene.effects;
   out.nozzles = !scene.nozzles.empty();
   out.outlets = !scene.outlets.empty();
   out.levels = method.adaptive();

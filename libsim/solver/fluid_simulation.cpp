@@ -37,6 +37,7 @@ class FluidSimulation final : public Simulation {
           "of a cube",
           "use 1 to 4 levels");
     }
+    check_effects(scene.effects);
     state_.parameters = solver_parameters(scene, options);
     if (options.time_parts) state_.clock.switch_on();
     state_.saliency.readings = options.readings;
@@ -256,7 +257,7 @@ class FluidSimulation final : public Simulation {
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
-           std::to_string(particle_bytes()) + " bytes\n" + schedule_.explanation;
+           std::to_string(particle_bytes()) + " bytes\n" + effects_in_words(scene_, options_) + schedule_.explanation;
   }
 
  private:
@@ -346,7 +347,7 @@ class FluidSimulation final : public Simulation {
   /// measure; then two supports of the finest a substep.
   double speed_bound(const std::vector<ParticleState>& start) const {
     const double fall = 3 * fall_speed(scene_, start);
-    if (fall > 0) return fall;
+    if (fall > 0) return fall + 3 * capillary_speed(scene_.effects, resolution_.finest_spacing_m);
     return 4 * resolution_.finest_spacing_m / static_cast<double>(state_.parameters.dt);
   }
 

@@ -16,6 +16,11 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 
 /// Content time of a frame, s.
 double frame_dt_of(const Scene& scene, const SimulationOptions& options);
+/// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
+/// base::Error when the options' are too few for an effect, or the effect's too many.
+int least_substeps(const Scene& scene, const SimulationOptions& options);
+/// The scene's effects, their step and the numbers of its scale; empty without effects.
+std::string effects_in_words(const Scene& scene, const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: what water that starts so, pours in or falls all the way to the

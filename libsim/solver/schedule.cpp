@@ -1,5 +1,7 @@
 #include "libsim/solver/schedule.hpp"
 
+#include <sstream>
+
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -64,6 +66,27 @@ void run_all(const std::vector<Stage>& passes, FluidState& state) {
   }
 }
 
+const Effect* listed(const Demand& demand, EffectKind kind) {
+  for (const Effect& effect : demand.effects)
+    if (effect.kind == kind) return &effect;
+  return nullptr;
+}
+
+std::string reason_for(const Stage& stage, const Demand& demand) {
+  if (stage.effect == no_effect) return stage.called_for(demand);
+  const Effect* effect = listed(demand, stage.effect);
+  if (!effect || effect->coefficient == 0) return "";
+  std::ostringstream text;
+  text << "the scene lists " << traits_of(effect->kind).key << " = " << effect->coefficient;
+  return text.str();
+}
+
+std::string why_not(const Stage& stage, const Demand& demand) {
+  const Effect* effect = stage.effect == no_effect ? nullptr : listed(demand, stage.effect);
+  if (!effect) return "not called for";
+  return std::string("dropped: the scene lists ") + traits_of(effect->kind).key + " = 0";
+}
+
 }  // namespace
 
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages) {
@@ -73,9 +96,9 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   // Set when a particle is made.
   ColumnSet written = out.columns | columns(Column::Target, Column::History, Column::Waiting, Column::Age);
   for (const auto& stage : stages) {
-    const std::string reason = stage.called_for(demand);
+    const std::string reason = reason_for(stage, demand);
     if (reason.empty()) {
-      absent += "  -  " + padded(stage.name, 20) + "not called for\n";
+      absent += "  -  " + padded(stage.name, 20) + why_not(stage, demand) + "\n";
       continue;
     }
     phase_of(out, stage.phase).push_back(stage);

@@ -47,6 +47,8 @@ void add(std::ostream& text, const Scene& s) {
   for (const Outlet& o : s.outlets)
     text << " outlet " << static_cast<int>(o.wall) << ' ' << o.min_m[0] << ' ' << o.min_m[1] << ' '
          << o.max_m[0] << ' ' << o.max_m[1];
+  for (const Effect& e : s.effects)
+    text << " effect " << traits_of(e.kind).word << ' ' << e.coefficient;
   if (s.central_force) {
     const CentralForce& f = *s.central_force;
     text << " force " << f.omega_per_s;

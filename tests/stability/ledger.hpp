@@ -106,7 +106,7 @@ class Ledger {
     for (std::size_t k = 0; k < 3; ++k) {
       open_[k] += account.after[k] - account.before[k] - account.forces[k] - walls[k] - account.flow[k] -
                   account.levels[k] - account.braked[k] - account.viscosity[k] - account.inherited[k] -
-                  account.unattributed[k];
+                  account.effects[k] - account.unattributed[k];
       unattributed_[k] += account.unattributed[k];
       rests_[k] += account.unattributed[k] + account.inherited[k];
       forces_[k] += account.forces[k] + (k == 1 ? weight : 0);

@@ -2,33 +2,64 @@
 
 namespace sim::SIM_BACKEND {
 
+#ifdef VIP_NO_EFFECTS
+#define SIM_STAGES_OF_EFFECTS(DO)
+#else
+#define SIM_STAGES_OF_EFFECTS(DO) SIM_EFFECTS(DO)
+#endif
+
+#define SIM_DECLARE(Name, word, ...) std::vector<Stage> word##_stages();
+SIM_STAGES_OF_EFFECTS(SIM_DECLARE)
+#undef SIM_DECLARE
+
+namespace {
+
+/// In the registry's order.
+std::vector<Stage> effect_stages() {
+  std::vector<Stage> out;
+  [[maybe_unused]] const auto add = [&](EffectKind kind, std::vector<Stage> stages) {
+    for (Stage& stage : stages) {
+      stage.effect = kind;
+      stage.source = traits_of(kind).source;
+      stage.changes = stage.writes.has(Column::Velocity) ? Change::Effects : Change::None;
+      out.push_back(stage);
+    }
+  };
+#define SIM_ADD(Name, word, ...) add(EffectKind::Name, word##_stages());
+  SIM_STAGES_OF_EFFECTS(SIM_ADD)
+#undef SIM_ADD
+  return out;
+}
+
+}  // namespace
+
 std::vector<Stage> all_stages() {
-  return {nozzle_stage(),
-          frame_neighbours_stage(),
-          gaze_targets_stage(),
-          saliency_stage(),
-          saliency_parts_stage(),
-          forced_targets_stage(),
-          graded_targets_stage(),
-          split_and_merge_stage(),
-          activation_stage(),
-          predict_stage(),
-          held_at_walls_stage(),
-          neighbours_stage(),
-          ease_stage(),
-          pre_stabilisation_stage(),
-          parting_stage(),
-          coarse_pressure_stage(),
-          wall_cells_stage(),
-          density_stage(),
-          missing_density_stage(),
-          displacement_stage(),
-          velocity_stage(),
-          xsph_stage(),
-          xsph_of_levels_stage(),
-          velocity_grid_stage(),
-          settling_stage(),
-          outflow_stage()};
+  std::vector<Stage> out{nozzle_stage(),
+                         frame_neighbours_stage(),
+                         gaze_targets_stage(),
+                         saliency_stage(),
+                         saliency_parts_stage(),
+                         forced_targets_stage(),
+                         graded_targets_stage(),
+                         split_and_merge_stage(),
+                         activation_stage(),
+                         predict_stage(),
+                         held_at_walls_stage(),
+                         neighbours_stage(),
+                         ease_stage(),
+                         pre_stabilisation_stage(),
+                         parting_stage(),
+                         coarse_pressure_stage(),
+                         wall_cells_stage(),
+                         density_stage(),
+                         missing_density_stage(),
+                         displacement_stage(),
+                         velocity_stage(),
+                         xsph_stage(),
+                         xsph_of_levels_stage()};
+  for (Stage& stage : effect_stages()) out.push_back(stage);
+  out.insert(out.end(), {velocity_grid_stage(), settling_stage(), outflow_stage()});
+  return out;
 }
 
 }  // namespace sim::SIM_BACKEND

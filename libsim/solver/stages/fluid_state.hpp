@@ -11,6 +11,7 @@
 #include "libsim/particles/walls.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/saliency/saliency.hpp"
+#include "libsim/scene/effects.hpp"
 #include "libsim/solver/stages/part_clock.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -42,6 +43,7 @@ struct SolverParameters {
   float coarse_edge = 2;
   /// Kinematic viscosity nu, m2/s; 0 leaves the pass out.
   float viscosity = 0;
+  EffectCoefficients effects;  ///< SI; 0 = no such stage runs
   /// No water gets so fast by itself, m/s: what is faster is braked and counted.
   float most_speed = 0;
   /// Nearest distance to a wall, as a share of d.

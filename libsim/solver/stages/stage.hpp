@@ -1,7 +1,9 @@
 #pragma once
 /// What a stage is: data, and a function that reaches the columns that it declares and no others.
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "libsim/solver/stages/fluid_state.hpp"
 
@@ -10,6 +12,7 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the wanted outputs call for.
 struct Demand {
   SolverParameters parameters;
+  std::vector<Effect> effects;  ///< that the scene lists
   bool nozzles = false;         ///< the scene has one
   bool outlets = false;         ///< the scene has one
   bool settling = false;        ///< the gate is closed and the water comes to rest
@@ -26,13 +29,14 @@ enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
 struct Stage {
   const char* name;
-  const char* source;  ///< paper and equation
+  const char* source = "";  ///< paper and equation
   Phase phase;
-  /// Empty when nothing calls for the stage; otherwise the reason.
-  std::string (*called_for)(const Demand&);
+  /// Empty when nothing calls for the stage; otherwise the reason. A stage of an effect needs none.
+  std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
   /// What its change of the water's momentum is counted as; each stage that writes velocities has one.
   Change changes = Change::None;
+  EffectKind effect = no_effect;  ///< that alone calls for it
   // From the function's view, by stage_of:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;

@@ -82,10 +82,11 @@ struct MarkSparse {
   const std::uint8_t* active;
   const float* density;
   std::uint8_t* rest;
+  float sparse;  ///< rho / rho_0
   SIM_FN void operator()(int i) const {
     if (active[i])
-      rest[i] = static_cast<std::uint8_t>((rest[i] & rest_count_mask) |
-                                          (density[i] < sparse_density ? rest_sparse : 0));
+      rest[i] =
+          static_cast<std::uint8_t>((rest[i] & rest_count_mask) | (density[i] < sparse ? rest_sparse : 0));
   }
 };
 
@@ -141,7 +142,9 @@ void run(FluidState& state, Columns p) {
   a.grid.update_velocity(p, state.all_active ? nullptr : p.active());
   if (!state.all_active) inherit(state, p);
   a.grid.update_energy(p);
-  for_each("mark sparse", p.size(), MarkSparse{p.active(), p.density(), p.rest()});
+  const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
+  for_each("mark sparse", p.size(),
+           MarkSparse{p.active(), p.density(), p.rest(), tension ? surface_density : sparse_density});
   state.all_active = true;
 }
 

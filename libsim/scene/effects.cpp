@@ -1,0 +1,121 @@
+#include "libsim/scene/effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/base/error.hpp"
+#include "stats/base/toml.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr double largest = 1e6;
+constexpr const char* without_effects = "is an effect, and this program was built without them";
+constexpr const char* build_them = "build it with -DVIP_EFFECTS=ON, or take the effect out of the scene";
+
+constexpr std::array<EffectTraits, effect_count> all_traits{{
+#define SIM_TRAITS(Name, word, key, unit, longest, needs, source) \
+  {#word, #key, EffectUnit::unit, longest, needs, source},
+    SIM_EFFECTS(SIM_TRAITS)
+#undef SIM_TRAITS
+}};
+
+std::vector<std::string> all_words() {
+  std::vector<std::string> out;
+  for (const EffectTraits& traits : all_traits) out.emplace_back(traits.word);
+  return out;
+}
+
+const Effect* find(const std::vector<Effect>& effects, EffectKind kind) {
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [&](const Effect& effect) { return effect.kind == kind; });
+  return found == effects.end() ? nullptr : &*found;
+}
+
+/// Is there what this one needs, or does it need nothing?
+bool stands(const std::vector<Effect>& effects, const Effect& effect) {
+  const EffectKind needs = traits_of(effect.kind).needs;
+  if (needs == no_effect || effect.coefficient == 0) return true;
+  const Effect* other = find(effects, needs);
+  return other && other->coefficient > 0;
+}
+
+std::string needs_text(const Effect& effect) {
+  return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word + ", of which there is none";
+}
+std::string needs_mend(const Effect& effect) {
+  return std::string("list ") + traits_of(traits_of(effect.kind).needs).word + " too, or leave it out";
+}
+
+double natural_time(const Effect& effect, double d) {
+  if (traits_of(effect.kind).unit == EffectUnit::PerSecond) return 1 / effect.coefficient;
+  return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
+}
+
+}  // namespace
+
+const EffectTraits& traits_of(EffectKind kind) { return all_traits[static_cast<std::size_t>(kind)]; }
+
+EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
+  EffectCoefficients out;
+  for (const Effect& effect : effects)
+    out.values[static_cast<std::size_t>(effect.kind)] = static_cast<float>(effect.coefficient);
+  return out;
+}
+
+std::vector<Effect> read_effects(const base::TomlTable& scene) {
+  const auto tables = scene.tables("effect");
+  const auto words = all_words();
+  std::vector<Effect> out;
+  for (const auto& table : tables) {
+    const auto word = std::find(words.begin(), words.end(), table.choice("kind", words));
+    const auto kind = static_cast<EffectKind>(word - words.begin());
+    if (!has_effects()) table.fail("kind", without_effects, build_them);
+    if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");
+    out.push_back({kind, table.number(traits_of(kind).key, {0, largest})});
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (!stands(out, out[i])) tables[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
+  return out;
+}
+
+void check_effects(const std::vector<Effect>& effects) {
+  for (const Effect& effect : effects) {
+    const auto fail = [&](const std::string& problem, const std::string& mend) {
+      throw base::Error(std::string("effect ") + traits_of(effect.kind).word, problem, mend);
+    };
+    if (!has_effects()) fail(without_effects, build_them);
+    if (find(effects, effect.kind) != &effect) fail("is listed twice", "keep one of the two");
+    if (!(effect.coefficient >= 0 && effect.coefficient <= largest))
+      fail(std::string(traits_of(effect.kind).key) + " is out of range", "use 0 to 1e6");
+    if (!stands(effects, effect)) fail(needs_text(effect), needs_mend(effect));
+  }
+}
+
+EffectStep longest_step(const std::vector<Effect>& effects, double finest_spacing_m) {
+  EffectStep out;
+  for (const Effect& effect : effects) {
+    if (effect.coefficient == 0) continue;
+    const double seconds = traits_of(effect.kind).longest_step * natural_time(effect, finest_spacing_m);
+    if (seconds < out.seconds) out = {seconds, effect.kind};
+  }
+  return out;
+}
+
+double capillary_speed(const std::vector<Effect>& effects, double finest_spacing_m) {
+  double tension = 0;
+  for (const Effect& effect : effects)
+    if (traits_of(effect.kind).unit == EffectUnit::NewtonPerMetre) tension += effect.coefficient;
+  return std::sqrt(12 * tension / (rest_density_kg_m3 * finest_spacing_m));
+}
+
+bool has_effects() {
+#ifdef VIP_NO_EFFECTS
+  return false;
+#else
+  return true;
+#endif
+}
+
+}  // namespace sim

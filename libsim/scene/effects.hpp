@@ -1,0 +1,89 @@
+#pragma once
+/// Effects that a scene may list beside what every method does. What a scene does not list costs nothing.
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace base {
+class TomlTable;
+}
+
+namespace sim {
+
+inline constexpr double rest_density_kg_m3 = 1000;
+
+/// What a coefficient is a coefficient of; the explicit step's natural time T follows from it, with the rest
+/// density rho_0 and the finest spacing d.
+enum class EffectUnit {
+  NewtonPerMetre,  ///< T = sqrt(rho_0 d^3 / c)
+  PerSecond        ///< T = 1 / c
+};
+
+// The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
+// substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
+// one file in libsim/solver/effects; they run in the table's order, after the viscosity.
+#define SIM_EFFECTS(EFFECT)                                                       \
+  EFFECT(Cohesion, cohesion, tension_n_m, NewtonPerMetre, 0.2, no_effect,         \
+         "Akinci, Akinci and Teschner 2013, Eq. 1-4, of mixed masses")            \
+  EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion, \
+         "Akinci, Akinci and Teschner 2013, Eq. 6-7, of a plane")                 \
+  EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                \
+         "Macklin et al. 2014, Eq. 29, of the exposed share")
+
+enum class EffectKind {
+#define SIM_ENUMERATOR(Name, ...) Name,
+  SIM_EFFECTS(SIM_ENUMERATOR)
+#undef SIM_ENUMERATOR
+      count
+};
+inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind::count);
+inline constexpr EffectKind no_effect = EffectKind::count;
+
+/// A row of the registry.
+struct EffectTraits {
+  const char* word;
+  const char* key;  ///< ends in the unit
+  EffectUnit unit;
+  double longest_step;
+  EffectKind needs;
+  const char* source;
+};
+const EffectTraits& traits_of(EffectKind kind);
+
+/// An effect as a scene lists it. SI units, as the key says.
+struct Effect {
+  EffectKind kind{};
+  double coefficient = 0;  ///< >= 0; 0 drops the effect
+};
+
+/// Coefficient of each effect; 0 where it is not listed.
+struct EffectCoefficients {
+  std::array<float, effect_count> values{};
+  float operator[](EffectKind kind) const { return values[static_cast<std::size_t>(kind)]; }
+};
+EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
+
+/// The tables [[effect]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown,
+/// listed twice, without the effect that it needs, out of range, or a program built without effects.
+std::vector<Effect> read_effects(const base::TomlTable& scene);
+/// The same of a scene that no file described; base::Error names the effect.
+void check_effects(const std::vector<Effect>& effects);
+
+/// The longest substep that every effect is stable with, and whose it is.
+struct EffectStep {
+  double seconds = std::numeric_limits<double>::infinity();
+  EffectKind of = no_effect;
+};
+EffectStep longest_step(const std::vector<Effect>& effects, double finest_spacing_m);
+/// What water may get to by its own surface, m/s: sqrt(12 sigma / (rho_0 d)), all of a particle's surface
+/// energy; 0 without tension.
+double capillary_speed(const std::vector<Effect>& effects, double finest_spacing_m);
+
+/// Built with -DVIP_EFFECTS=ON?
+bool has_effects();
+
+}  // namespace sim

@@ -1,0 +1,41 @@
+/// Air drag: air at rest brakes what it reaches.
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// v falls at the rate k e_i, with e = (1 - rho / rho_0) / (1 - rho_alone / rho_0) the share of the particle
+/// that the air reaches: 1 for a drop of one particle of any size, 0 inside the water. The step is exact for
+/// a constant e, so that a lone drop falls at g / k at last.
+struct AirDrag {
+  const float* density;
+  Vec4* velocity;
+  float rate;   ///< k dt
+  float alone;  ///< rho / rho_0 of a lone particle
+
+  SIM_FN void operator()(int i) const {
+    const float exposed = at_least(1 - density[i], 0.0f) / (1 - alone);
+    velocity[i] = with_w(expf(-rate * at_most(exposed, 1.0f)) * xyz(velocity[i]), 0);
+  }
+};
+
+using Columns = ColumnView<columns(Column::Density, Column::Velocity), columns(Column::Velocity)>;
+
+void run(FluidState& state, Columns p) {
+  const auto& k = state.parameters;
+  for_each("air drag", p.size(),
+           AirDrag{.density = p.density(),
+                   .velocity = p.velocity(),
+                   .rate = k.dt * k.effects[EffectKind::AirDrag],
+                   .alone = mass_of(1, 1) * Kernel(1).density(0)});
+}
+
+}  // namespace
+
+std::vector<Stage> air_drag_stages() {
+  return {stage_of<run>({.name = "air drag", .phase = Phase::SubstepEnd})};
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,190 @@
+/// Surface tension: a pull between pairs, and a smoothing of the surface. As printed the pull acts inside the
+/// water too, where the pressure that answers it makes particles stick (docs/solver_notes.md). Here both
+/// terms come from energies that are constant inside.
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Of both terms in units of sigma: calibrated together by the period of one drop of level 0
+/// (docs/solver_notes.md). Tests measure sigma back from others.
+constexpr float pull_strength = 12;
+constexpr float smoothing_strength = 2.6f;
+/// What is denser than 1 - skin_depth in units of rho_0 pulls less.
+constexpr float skin_depth = 0.2f;
+
+/// How much a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
+SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_depth, 0.0f), 1.0f); }
+
+/// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
+/// inwards; 0 for particles that are not solved.
+template <bool OneLevel, class Selection>
+struct SurfaceNormal {
+  Selection select;
+  const Vec4* position;
+  Neighbours neighbours;
+  Walls walls;
+  Vec4* normal;
+
+  /// What particle j adds; see SIM_LANES.
+  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& nx, float& ny, float& nz) const {
+    const Vec4 other = position[j];
+    const Kernel kernel = pair.with(other.w);
+    const float dx = self.x - other.x;
+    const float dy = self.y - other.y;
+    const float dz = self.z - other.z;
+    const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
+    const float along = 6 * pair.mass_ratio(other.w) * kernel.poly6 * t * t;
+    nx -= along * dx;
+    ny -= along * dy;
+    nz -= along * dz;
+  }
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        normal[~i] = {0, 0, 0, 0};
+        return;
+      }
+    }
+    const Vec4 self = position[i];
+    const PairKernel<OneLevel> pair(self.w);
+    float nx = 0;
+    float ny = 0;
+    float nz = 0;
+    const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    SIM_LANES(nx, ny, nz)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, nx, ny, nz);
+    nx = team.sum(nx);
+    ny = team.sum(ny);
+    nz = team.sum(nz);
+    if (team.rank() > 0) return;
+    Vec3 wall;
+    walls.missing(xyz(self), self.w, wall);
+    normal[i] = with_w(self.w * (mass_of(self.w, 1) * Vec3{nx, ny, nz} + wall), 0);
+  }
+};
+
+/// m_i dv_i / dt = sigma sum_j V_i V_j [pull 12 / hbar (s_i + s_j) / 2 grad W_ij
+///                                     - smoothing grad grad W_ij (n_i - n_j)],
+/// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
+/// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling
+/// with sigma a length. Particles that are not solved count as inside: those of a surface always are
+/// (surface_density).
+template <bool OneLevel, class Selection>
+struct Cohesion {
+  Selection select;
+  const Vec4* position;
+  const float* density;
+  const Vec4* normal;
+  Neighbours neighbours;
+  Vec4* velocity;
+  float strength;  ///< dt sigma / rho_0, m3/s
+
+  struct Self {
+    Vec4 at;
+    Vec4 normal;
+    float skin;
+    PairKernel<OneLevel> pair;
+  };
+
+  /// What particle j adds, over 6 V_i; see SIM_LANES.
+  SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
+    const Vec4 other = position[j];
+    const Kernel kernel = me.pair.with(other.w);
+    const float dx = me.at.x - other.x;
+    const float dy = me.at.y - other.y;
+    const float dz = me.at.z - other.z;
+    const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
+    const float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
+    const float skins = me.skin + skin(density[j]);
+    const Vec4 n = normal[j];
+    const float even = smoothing_strength * weight;
+    const float ux = me.normal.x - n.x;
+    const float uy = me.normal.y - n.y;
+    const float uz = me.normal.z - n.z;
+    // grad W = -6 w t x, grad grad W = -6 w t 1 + 24 w x x, with w = poly6 t.
+    const float along =
+        pull_strength * reciprocal(kernel.h) * skins * weight * t + 4 * even * (ux * dx + uy * dy + uz * dz);
+    vx -= along * dx - even * t * ux;
+    vy -= along * dy - even * t * uy;
+    vz -= along * dz - even * t * uz;
+  }
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
+    const Vec4 at = position[i];
+    const Self me{at, normal[i], skin(density[i]), PairKernel<OneLevel>(at.w)};
+    float vx = 0;
+    float vy = 0;
+    float vz = 0;
+    const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    SIM_LANES(vx, vy, vz)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz);
+    vx = team.sum(vx);
+    vy = team.sum(vy);
+    vz = team.sum(vz);
+    if (team.rank() > 0) return;
+    const float scale = 6 * mass_of(at.w, 1) * strength;
+    velocity[i] = with_w(xyz(velocity[i]) + scale * Vec3{vx, vy, vz}, 0);
+  }
+};
+
+using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
+
+template <bool OneLevel, class Selection>
+void launch(FluidState& state, NormalView p, Selection select) {
+  for_each_team("surface normals", p.size(),
+                SurfaceNormal<OneLevel, Selection>{.select = select,
+                                                   .position = p.position(),
+                                                   .neighbours = state.neighbours.view(),
+                                                   .walls = state.walls,
+                                                   .normal = p.normal()});
+}
+
+using CohesionView = ColumnView<columns(Column::Position, Column::Density, Column::Neighbours, Column::Normal,
+                                        Column::Velocity),
+                                columns(Column::Velocity)>;
+
+template <bool OneLevel, class Selection>
+void launch(FluidState& state, CohesionView p, Selection select) {
+  const auto& k = state.parameters;
+  for_each_team(
+      "cohesion", p.size(),
+      Cohesion<OneLevel, Selection>{.select = select,
+                                    .position = p.position(),
+                                    .density = p.density(),
+                                    .normal = p.normal(),
+                                    .neighbours = state.neighbours.view(),
+                                    .velocity = p.velocity(),
+                                    .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density});
+}
+
+template <class View, class Selection>
+void launch_for(FluidState& state, View p, Selection select) {
+  state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
+}
+
+template <class View>
+void run(FluidState& state, View p) {
+  state.all_active ? launch_for(state, p, AllParticles{}) : launch_for(state, p, state.active());
+}
+
+}  // namespace
+
+std::vector<Stage> cohesion_stages() {
+  return {stage_of<run<NormalView>>({.name = "surface normals", .phase = Phase::SubstepEnd}),
+          stage_of<run<CohesionView>>({.name = "cohesion", .phase = Phase::SubstepEnd})};
+}
+
+}  // namespace sim::SIM_BACKEND

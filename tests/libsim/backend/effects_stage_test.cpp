@@ -1,0 +1,183 @@
+/// The effects' passes on small crowds and lattices.
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "libsim/solver/stages/stages.hpp"
+#include "tests/libsim/backend/backend_test.hpp"
+
+namespace sim::SIM_BACKEND {
+namespace {
+
+/// The passes of an effect; none where the program was built without.
+std::vector<Stage> passes_of(EffectKind kind) {
+  std::vector<Stage> out;
+  for (const Stage& stage : all_stages())
+    if (stage.effect == kind) out.push_back(stage);
+  return out;
+}
+#define NEEDS_EFFECTS \
+  if (!has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+/// Particles at rest with the true neighbours within hbar and beyond, and their densities.
+FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
+  FluidState state;
+  state.guards.resize(1);
+  state.guards.zero();
+  state.one_level = one_level;
+  auto& p = state.particles;
+  p.allocate(all_columns(), static_cast<int>(points.size()));
+  p.all().position.from_host(points);
+  p.all().predicted.from_host(points);
+  std::vector<int> id(points.size());
+  std::iota(id.begin(), id.end(), 0);
+  p.all().id.from_host(id);
+  p.all().level.zero();
+  p.all().velocity.zero();
+  std::vector<std::vector<int>> lists(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const Vec3 offset = xyz(points[i]) - xyz(points[j]);
+      const float hbar = (points[i].w + points[j].w) / 2;
+      if (j != i && dot(offset, offset) < 1.21f * hbar * hbar) lists[i].push_back(static_cast<int>(j));
+    }
+  }
+  state.neighbours.assign(lists);
+  return state;
+}
+
+/// What one substep of an effect does to resting particles.
+std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
+  constrain_density(state, DensityView(state.particles));
+  for (const Stage& stage : passes_of(kind)) stage.run(state);
+  return state.particles.all().velocity.to_host();
+}
+
+double mass(const Vec4& p) { return 1000.0 * std::pow(static_cast<double>(p.w) / 2, 3); }
+
+/// A loose ball of particles of four sizes.
+std::vector<Vec4> mixed_ball() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> at(-0.5f, 0.5f);
+  std::vector<Vec4> out;
+  while (out.size() < 160) {
+    const Vec3 x{at(random), at(random), at(random)};
+    if (dot(x, x) > 0.25f) continue;
+    const auto level = static_cast<float>(out.size() % 4);
+    out.push_back(with_w(x, 0.25f * std::exp2(level / 3)));
+  }
+  return out;
+}
+
+SIM_TEST(Cohesion, KeepsMomentumForMixedMasses) {
+  NEEDS_EFFECTS;
+  auto state = state_of(mixed_ball(), false);
+  state.parameters.effects.values[0] = 50;
+  const auto points = state.particles.all().position.to_host();
+  const auto v = velocities_by(EffectKind::Cohesion, state);
+  double momentum[3] = {}, exchanged = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double m = mass(points[i]);
+    momentum[0] += m * static_cast<double>(v[i].x);
+    momentum[1] += m * static_cast<double>(v[i].y);
+    momentum[2] += m * static_cast<double>(v[i].z);
+    exchanged += m * static_cast<double>(length(xyz(v[i])));
+  }
+  ASSERT_GT(exchanged, 1.0) << "the ball must pull itself together for the test to mean anything";
+  for (const double p : momentum) EXPECT_LT(std::abs(p), 1e-6 * exchanged);
+}
+
+/// A cube of side^3 particles of spacing d, with its low corner at 0.
+std::vector<Vec4> cube(int side, float d) {
+  std::vector<Vec4> out;
+  const auto at = [&](int k) { return d * (static_cast<float>(k) + 0.5f); };
+  for (int i = 0; i < side * side * side; ++i)
+    out.push_back({at(i % side), at(i / side % side), at(i / side / side), 2 * d});
+  return out;
+}
+
+SIM_TEST(Cohesion, PullsAtASurfaceAndNowhereElse) {
+  NEEDS_EFFECTS;
+  constexpr int side = 9;
+  auto state = state_of(cube(side, 0.1f), true);
+  state.parameters.effects.values[0] = 50;
+  const auto v = velocities_by(EffectKind::Cohesion, state);
+  const auto at = [&](int x, int y, int z) {
+    return xyz(v[static_cast<std::size_t>((z * side + y) * side + x)]);
+  };
+  const float corner = length(at(0, 0, 0));
+  EXPECT_GT(at(0, 0, 0).x, 0.01f);
+  EXPECT_GT(at(0, 4, 4).x, 0) << "the middle of a face is pulled inwards";
+  for (int x = 3; x < 6; ++x) EXPECT_LT(length(at(x, 4, 4)), 1e-4f * corner);
+}
+
+SIM_TEST(Cohesion, OneLevelAndMixedKernelsAgreeAtOneLevel) {
+  NEEDS_EFFECTS;
+  std::vector<Vec4> v[2];
+  for (const bool one : {true, false}) {
+    auto state = state_of(cube(5, 0.1f), one);
+    state.parameters.effects.values[0] = 50;
+    v[one] = velocities_by(EffectKind::Cohesion, state);
+  }
+  const float scale = length(xyz(v[0][0]));
+  for (std::size_t i = 0; i < v[0].size(); ++i) EXPECT_LT(length(xyz(v[0][i]) - xyz(v[1][i])), 1e-4f * scale);
+}
+
+SIM_TEST(Cohesion, APairOfTwiceTheSizeIsPulledAQuarterAsFast) {
+  NEEDS_EFFECTS;
+  // The force grows as h, the mass as h^3.
+  float speed[2];
+  for (const int scale : {1, 2}) {
+    const float d = 0.1f * static_cast<float>(scale);
+    auto state = state_of({{0, 0, 0, 2 * d}, {d, 0, 0, 2 * d}}, true);
+    state.parameters.effects.values[0] = 50;
+    speed[scale - 1] = velocities_by(EffectKind::Cohesion, state)[0].x;
+  }
+  EXPECT_GT(speed[0], 0);
+  EXPECT_NEAR(speed[1] / speed[0], 0.25f, 1e-4f);
+}
+
+SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsWork) {
+  NEEDS_EFFECTS;
+  // Particles of spacing d in a column before the wall, lifted together: the work over the area d^2 is
+  // rho_0 int s a(s) ds = W, whatever d.
+  constexpr float work = 30;
+  for (const float d : {0.05f, 0.1f}) {
+    const float h = 2 * d;
+    constexpr int steps = 400;
+    std::vector<Vec4> points;
+    for (int k = 0; k < steps; ++k) points.push_back({h * (static_cast<float>(k) + 0.5f) / steps, 1, 1, h});
+    auto state = state_of(points, true);
+    state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
+    state.parameters.effects.values[1] = work;
+    for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
+    const auto v = state.particles.all().velocity.to_host();
+    const auto x = state.particles.all().position.to_host();
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      EXPECT_LE(v[k].x, 0) << "towards the wall";
+      EXPECT_EQ(v[k].y, 0);
+      sum -= 1000.0 * static_cast<double>(x[k].x) * static_cast<double>(v[k].x / state.parameters.dt) *
+             static_cast<double>(h) / steps;
+    }
+    EXPECT_NEAR(sum / static_cast<double>(work), 1, 0.01) << d;
+  }
+}
+
+SIM_TEST(AirDrag, BrakesALoneDropAtItsRateAndWaterNotAtAll) {
+  NEEDS_EFFECTS;
+  for (const float h : {0.1f, 0.3f}) {
+    auto points = cube(7, h / 2);
+    points.push_back({20, 0, 0, h});
+    auto state = state_of(points, true);
+    state.parameters.effects.values[2] = 3;
+    state.particles.all().velocity.from_host(std::vector<Vec4>(points.size(), Vec4{0, -2, 0, 0}));
+    const auto v = velocities_by(EffectKind::AirDrag, state);
+    EXPECT_NEAR(v.back().y, -2 * std::exp(-3 * state.parameters.dt), 1e-5f);
+    EXPECT_NEAR(v[3 + 3 * 7 + 3 * 49].y, -2, 1e-5f);
+  }
+}
+
+}  // namespace
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,221 @@
+/// Effects that a scene lists: their tables, what they cost when they are not there, their steps, their
+/// books.
+
+#include "libsim/scene/effects.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "libsim/solver/state_file.hpp"
+#include "stats/base/error.hpp"
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+using fluid_test::ParticleState;
+using sim::EffectKind;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string dam_of_format(const std::string& format) {
+  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
+  const std::string old = "format = 1";
+  return text.replace(text.find(old), old.size(), "format = " + format);
+}
+std::string dam_with(const std::string& effects) { return dam_of_format("2") + "\n" + effects; }
+std::string effect(const std::string& kind, const std::string& key, const std::string& value) {
+  return "[[effect]]\nkind = \"" + kind + "\"\n" + key + " = " + value + "\n";
+}
+const std::string tension = effect("cohesion", "tension_n_m", "50.0");
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+TEST(Effects, FormatsOneAndTwoAreRead) {
+  EXPECT_TRUE(sim::parse_scene(dam_of_format("1"), "scene.toml").effects.empty());
+  EXPECT_TRUE(sim::parse_scene(dam_of_format("2"), "scene.toml").effects.empty());
+  EXPECT_THAT(fluid_test::scene_error(dam_of_format("3")),
+              AllOf(HasSubstr("scene.toml:3:"), HasSubstr("is not a format that this program reads")));
+}
+
+TEST(Effects, AreReadFromASceneFile) {
+  NEEDS_EFFECTS;
+  const auto scene =
+      sim::parse_scene(dam_with(tension + effect("air_drag", "rate_per_s", "0.0")), "scene.toml");
+  ASSERT_EQ(scene.effects.size(), 2u);
+  EXPECT_EQ(scene.effects[0].kind, EffectKind::Cohesion);
+  EXPECT_EQ(scene.effects[0].coefficient, 50);
+  EXPECT_EQ(scene.effects[1].kind, EffectKind::AirDrag);
+  EXPECT_EQ(scene.effects[1].coefficient, 0);
+}
+
+TEST(Effects, ErrorsNameThePlaceAndTheMend) {
+  NEEDS_EFFECTS;
+  const auto error = [](const std::string& effects) { return fluid_test::scene_error(dam_with(effects)); };
+  EXPECT_THAT(fluid_test::scene_error(dam_of_format("1") + "\n" + tension),
+              AllOf(HasSubstr("scene.toml:3:"), HasSubstr("came with format 2"), HasSubstr("format = 2")));
+  EXPECT_THAT(error(effect("magic", "x", "1.0")), AllOf(HasSubstr("effect"), HasSubstr("cohesion")));
+  EXPECT_THAT(error(effect("cohesion", "tension_n_m", "-1.0")),
+              AllOf(HasSubstr("tension_n_m"), HasSubstr("out of range")));
+  EXPECT_THAT(error(effect("cohesion", "tension", "1.0")), HasSubstr("tension_n_m' is missing"));
+  EXPECT_THAT(error(tension + "colour = 1\n"), HasSubstr("is not a known key"));
+  const std::string twice = error(tension + tension);
+  EXPECT_THAT(twice, AllOf(HasSubstr("kind"), HasSubstr("is listed twice"), HasSubstr("keep one")));
+  // At the second table's kind.
+  const std::string text = dam_with(tension);
+  const auto line = 2 + std::count(text.begin(), text.end(), '\n');
+  EXPECT_THAT(twice, HasSubstr("scene.toml:" + std::to_string(line) + ":"));
+  EXPECT_THAT(error(effect("adhesion", "work_n_m", "5.0")),
+              AllOf(HasSubstr("needs cohesion"), HasSubstr("list cohesion too")));
+  EXPECT_THAT(error(effect("cohesion", "tension_n_m", "0.0") + effect("adhesion", "work_n_m", "5.0")),
+              HasSubstr("needs cohesion"));
+  EXPECT_EQ(error(effect("adhesion", "work_n_m", "0.0")), "no error");
+}
+
+TEST(Effects, AProgramWithoutEffectsRefusesThem) {
+  if (sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=ON";
+  EXPECT_THAT(fluid_test::scene_error(dam_with(tension)),
+              AllOf(HasSubstr("scene.toml:"), HasSubstr("built without"), HasSubstr("-DVIP_EFFECTS=ON")));
+  EXPECT_THROW(sim::check_effects({{EffectKind::Cohesion, 1}}), base::Error);
+}
+
+sim::Scene small_dam() {
+  auto scene = fluid_test::tank({2.4, 2, 1.2}, {1.2, 1.2, 1.2});
+  scene.v_ref_m_s = 5;
+  scene.viscosity_m2_s = 0.005;
+  return scene;
+}
+
+sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRes) {
+  sim::SimulationOptions out;
+  out.method = method;
+  out.n_star = 64;
+  return out;
+}
+
+/// What a run costs and comes to.
+struct Cost {
+  std::string explanation;
+  std::map<std::string, int> launches;
+  std::size_t bytes = 0;
+  std::vector<ParticleState> state;
+};
+Cost cost_of(const sim::Scene& scene, sim::MethodKind method) {
+  const auto fluid = sim::make_simulation(scene, options_of(method));
+  Cost out;
+  fluid->profile_launches(true);
+  for (int frame = 0; frame < 4; ++frame) fluid->step_frame();
+  for (const auto& pass : fluid->launch_times()) out.launches[pass.label] = pass.launches;
+  fluid->profile_launches(false);
+  out.explanation = fluid->explain();
+  out.bytes = fluid->particle_bytes();
+  out.state = fluid->read_state();
+  return out;
+}
+bool same_bits(const std::vector<ParticleState>& a, const std::vector<ParticleState>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+TEST(Effects, OfCoefficientZeroCostNothingAndChangeNoBit) {
+  NEEDS_EFFECTS;
+  for (const auto& method : sim::all_methods()) {
+    auto scene = small_dam();
+    const Cost bare = cost_of(scene, method.kind);
+    scene.effects = {{EffectKind::Cohesion, 0}, {EffectKind::Adhesion, 0}, {EffectKind::AirDrag, 0}};
+    const Cost zero = cost_of(scene, method.kind);
+    EXPECT_EQ(zero.launches, bare.launches) << method.name;
+    EXPECT_EQ(zero.bytes, bare.bytes) << method.name;
+    EXPECT_TRUE(same_bits(zero.state, bare.state)) << method.name;
+    EXPECT_THAT(bare.explanation, Not(HasSubstr("dropped")));
+    EXPECT_THAT(zero.explanation, HasSubstr("dropped: the scene lists tension_n_m = 0"));
+    // The same measure sees an effect that is there.
+    scene.effects = {{EffectKind::Cohesion, 20}};
+    const Cost with = cost_of(scene, method.kind);
+    EXPECT_EQ(bare.launches.count("cohesion"), 0u);
+    EXPECT_GT(with.launches.at("cohesion"), 0) << method.name;
+    EXPECT_GT(with.bytes, bare.bytes) << method.name;
+    EXPECT_FALSE(same_bits(with.state, bare.state)) << method.name;
+    EXPECT_THAT(with.explanation, HasSubstr("the scene lists tension_n_m = 20"));
+  }
+}
+
+TEST(Effects, TheirExplicitLimitRaisesTheSubstepsAndSaysSo) {
+  NEEDS_EFFECTS;
+  auto scene = small_dam();
+  const int before = sim::make_simulation(scene, options_of())->explain().find("3 substeps") != 0;
+  EXPECT_TRUE(before);
+  scene.effects = {{EffectKind::Cohesion, 1000}};
+  const double d = sim::resolution_of(scene, sim::MethodKind::HiRes, 64).finest_spacing_m;
+  const auto longest = sim::longest_step(scene.effects, d);
+  EXPECT_NEAR(longest.seconds, 0.2 * std::sqrt(1000 * d * d * d / 1000), 1e-12);
+  const auto fluid = sim::make_simulation(scene, options_of());
+  EXPECT_THAT(fluid->explain(), HasSubstr("substeps of at most"));
+  fluid->step_frame();
+  const int taken = fluid->substeps().taken;
+  EXPECT_LE(scene.frame_dt_s / taken, longest.seconds * (1 + 1e-9));
+
+  auto options = options_of();
+  options.substeps = static_cast<int>(std::ceil(scene.frame_dt_s / longest.seconds)) - 1;
+  EXPECT_THAT([&] { sim::make_simulation(scene, options); },
+              testing::ThrowsMessage<base::Error>(
+                  AllOf(HasSubstr("effect cohesion"), HasSubstr("are too few"),
+                        HasSubstr("take " + std::to_string(options.substeps + 1) + " or more"))));
+  ++options.substeps;
+  EXPECT_NO_THROW(sim::make_simulation(scene, options));
+  scene.effects = {{EffectKind::AirDrag, 1e6}};
+  EXPECT_THAT([&] { sim::make_simulation(scene, options_of()); },
+              testing::ThrowsMessage<base::Error>(
+                  AllOf(HasSubstr("effect air_drag"), HasSubstr("lower rate_per_s"))));
+}
+
+TEST(Effects, AreCheckedInScenesThatNoFileDescribes) {
+  NEEDS_EFFECTS;
+  const auto fails = [](std::vector<sim::Effect> effects, const std::string& with) {
+    auto scene = small_dam();
+    scene.effects = std::move(effects);
+    EXPECT_THAT([&] { sim::make_simulation(scene, options_of()); },
+                testing::ThrowsMessage<base::Error>(HasSubstr(with)));
+  };
+  fails({{EffectKind::Cohesion, -1}}, "out of range");
+  fails({{EffectKind::Cohesion, std::nan("")}}, "out of range");
+  fails({{EffectKind::Cohesion, 1}, {EffectKind::Cohesion, 2}}, "listed twice");
+  fails({{EffectKind::Adhesion, 1}}, "needs cohesion");
+}
+
+TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
+  NEEDS_EFFECTS;
+  auto scene = small_dam();
+  scene.effects = {{EffectKind::Cohesion, 20}, {EffectKind::Adhesion, 10}, {EffectKind::AirDrag, 2}};
+  auto options = options_of(sim::MethodKind::Ours);
+  options.wall_impulse = true;
+  const auto fluid = sim::make_simulation(scene, options);
+  double gave = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    fluid->step_frame();
+    const auto a = fluid->momentum();
+    const auto walls = a.walls_sum();
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(a.after[k],
+                  a.before[k] + a.forces[k] + walls[k] + a.flow[k] + a.levels[k] + a.braked[k] +
+                      a.viscosity[k] + a.effects[k] + a.inherited[k] + a.unattributed[k],
+                  1e-3);
+      gave += std::abs(a.effects[k]);
+    }
+  }
+  EXPECT_GT(gave, 1);
+}
+
+TEST(Effects, BelongToTheKeyOfAState) {
+  auto scene = small_dam();
+  const std::string bare = sim::run_key(scene, options_of());
+  scene.effects = {{EffectKind::Cohesion, 20}};
+  const std::string with = sim::run_key(scene, options_of());
+  scene.effects[0].coefficient = 21;
+  EXPECT_NE(with, bare);
+  EXPECT_NE(sim::run_key(scene, options_of()), with);
+}
+
+}  // namespace
