@@ -53,7 +53,7 @@ constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
 /// Where the scene lists tension, water below this rho / rho_0 counts as spray too: the surface pulls with
 /// accelerations that no mean over a cell gives.
-constexpr float surface_density = 0.95f;
+constexpr float surface_density = 0.98f;
 
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
+#include <sstream>
 
 #include "libsim/solver/state_file.hpp"
 #include "stats/base/error.hpp"
@@ -206,6 +208,47 @@ TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
     }
   }
   EXPECT_GT(gave, 1);
+}
+
+/// Each ```cpp block of a page stands in the file that the page names last before it.
+TEST(Effects, ThePageQuotesTheSources) {
+  std::istringstream page(base::read_file(base::resource("docs/adding_an_effect.md"), 1 << 20));
+  const std::string root = std::string(VIP_TEST_DIR) + "/../";
+  std::string file, block;
+  bool inside = false;
+  int blocks = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line == "```cpp") {
+      inside = true;
+      block.clear();
+    } else if (inside && line == "```") {
+      inside = false;
+      ++blocks;
+      EXPECT_NE(base::read_file(root + file, 1 << 20).find(block), std::string::npos) << file << "\n"
+                                                                                      << block;
+    } else if (inside) {
+      block += line + "\n";
+    } else if (const auto at = line.find("`libsim/"), test = line.find("`tests/");
+               std::min(at, test) != std::string::npos) {
+      const auto begin = std::min(at, test) + 1;
+      const std::string named = line.substr(begin, line.find('`', begin) - begin);
+      if (named.ends_with("pp")) file = named;
+    }
+  }
+  EXPECT_EQ(blocks, 3);
+}
+
+TEST(Effects, EachHasOneStageFileAndOneRowInTheDocs) {
+  const std::string root = std::string(VIP_TEST_DIR) + "/../";
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(root + "libsim/solver/effects"))
+    files += entry.path().extension() == ".cpp";
+  EXPECT_EQ(files, sim::effect_count);
+  const std::string page = base::read_file(root + "docs/methods.md", 1 << 20);
+  for (std::size_t k = 0; k < sim::effect_count; ++k) {
+    const auto& traits = sim::traits_of(static_cast<EffectKind>(k));
+    EXPECT_THAT(page, HasSubstr(std::string("| `") + traits.word + "` | `" + traits.key + "` |"));
+  }
 }
 
 TEST(Effects, BelongToTheKeyOfAState) {

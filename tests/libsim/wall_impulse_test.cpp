@@ -57,9 +57,10 @@ void account_closes_over_walls_and_gauges(Backend backend) {
         EXPECT_EQ(account.before[k], last[k]);
       }
       last[k] = account.after[k];
-      EXPECT_NEAR(account.after[k] - account.before[k],
-                  account.forces[k] + walls[k] + account.viscosity[k] + account.effects[k] + account.unattributed[k],
-                  1e-9 * stroke);
+      EXPECT_NEAR(
+          account.after[k] - account.before[k],
+          account.forces[k] + walls[k] + account.viscosity[k] + account.effects[k] + account.unattributed[k],
+          1e-9 * stroke);
     }
   }
 }

@@ -6,15 +6,20 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// Share of the work of adhesion that the pull gives: calibrated by the contact angles of drops of level 0
+/// (docs/solver_notes.md). The rest comes of the walls, which stand for the water that is missing behind
+/// them.
+constexpr float pull_share = 0.17f;
+
 /// The printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q < 1, summed over a
 /// whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt W / (rho_0 h^2) g(s / h) / G
-/// with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the work W, whatever its
-/// particles.
+/// with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the work w = pull_share W,
+/// whatever its particles.
 struct Adhesion {
   const Vec4* position;
   Walls walls;
   Vec4* velocity;
-  float strength;  ///< dt W / rho_0, m3/s
+  float strength;  ///< dt w / rho_0, m3/s
   float whole;     ///< int_1/2^1 A
   float per_g;     ///< 1 / G
 
@@ -59,7 +64,7 @@ void run(FluidState& state, Columns p) {
            Adhesion{.position = p.position(),
                     .walls = state.walls,
                     .velocity = p.velocity(),
-                    .strength = k.dt * k.effects[EffectKind::Adhesion] / k.rest_density,
+                    .strength = pull_share * k.dt * k.effects[EffectKind::Adhesion] / k.rest_density,
                     .whole = static_cast<float>(whole),
                     .per_g = static_cast<float>(1 / g)});
 }
