@@ -55,6 +55,9 @@ constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 /// accelerations that no mean over a cell gives.
 constexpr float surface_density = 0.98f;
 
+/// Value of Active: solved, and no example for those that rest. Means over cells leave it out.
+constexpr std::uint8_t solved_apart = 2;
+
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 

@@ -42,7 +42,8 @@ enum class Life {
 //   Normal          of the surface, inwards, without unit; scratch of the effects (libsim/scene/effects.hpp)
 //   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
 //   Age             frames since it was made by a split or a merge, 255 and more are one
-//   Active          1 = solved in this frame, 0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
+//   Active          1 = solved in this frame, 2 = the same and left out of means (activation/activation.hpp),
+//                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
 //   Rest            why and how long it was not solved (activation/activation.hpp)
 //   StartCell       where in the velocity grid the particle was when the frame began
 #define SIM_COLUMNS(COLUMN, LIST)                                   \

@@ -26,13 +26,13 @@ enum class EffectUnit {
 // The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
 // substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
 // one file in libsim/solver/effects; they run in the table's order, after the viscosity.
-#define SIM_EFFECTS(EFFECT)                                                       \
-  EFFECT(Cohesion, cohesion, tension_n_m, NewtonPerMetre, 0.2, no_effect,         \
-         "Akinci, Akinci and Teschner 2013, Eq. 1-4, of mixed masses")            \
-  EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion, \
-         "Akinci, Akinci and Teschner 2013, Eq. 6-7, of a plane")                 \
-  EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                \
-         "Macklin et al. 2014, Eq. 29, of the exposed share")
+#define SIM_EFFECTS(EFFECT)                                                        \
+  EFFECT(Cohesion, cohesion, tension_n_m, NewtonPerMetre, 0.2, no_effect,          \
+         "Akinci et al. 2013, cohesion and curvature, as energies of the surface") \
+  EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion,  \
+         "Akinci et al. 2013, adhesion, of a plane")                               \
+  EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                 \
+         "Macklin et al. 2014, air drag, of the exposed share")
 
 enum class EffectKind {
 #define SIM_ENUMERATOR(Name, ...) Name,

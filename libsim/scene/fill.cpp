@@ -56,9 +56,12 @@ Scales scales_of(const Scene& scene, std::int64_t n_star) {
     out.length_m = std::min(out.length_m, scene.fill_max_m[k] - scene.fill_min_m[k]);
   out.speed_m_s = scene.v_ref_m_s;
   const auto tension = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Cohesion]);
-  out.reynolds = out.speed_m_s * out.length_m / viscosity_of(scene, n_star);
-  out.weber = rest_density_kg_m3 * out.speed_m_s * out.speed_m_s * out.length_m / tension;
-  out.bond = rest_density_kg_m3 * scene.gravity_m_s2 * out.length_m * out.length_m / tension;
+  const auto over = [](double what, double by) { return what == 0 ? 0 : what / by; };
+  const double inertia = rest_density_kg_m3 * out.speed_m_s * out.speed_m_s;
+  const double weight = rest_density_kg_m3 * scene.gravity_m_s2 * out.length_m;
+  out.reynolds = over(out.speed_m_s * out.length_m, viscosity_of(scene, n_star));
+  out.weber = over(inertia * out.length_m, tension);
+  out.bond = over(weight * out.length_m, tension);
   return out;
 }
 

@@ -257,7 +257,8 @@ class FluidSimulation final : public Simulation {
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
-           std::to_string(particle_bytes()) + " bytes\n" + effects_in_words(scene_, options_) + schedule_.explanation;
+           std::to_string(particle_bytes()) + " bytes\n" + effects_in_words(scene_, options_) +
+           schedule_.explanation;
   }
 
  private:

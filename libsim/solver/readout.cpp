@@ -27,7 +27,7 @@ std::vector<float> field_of(const Particles& particles, ParticleField field) {
     for (std::size_t i = 0; i < n; ++i) out[i] = density[i] - 1;
   } else if (field == ParticleField::Active && particles.has(Column::Active)) {
     const auto active = particles.all().active.to_host();
-    for (std::size_t i = 0; i < n; ++i) out[i] = active[i];
+    for (std::size_t i = 0; i < n; ++i) out[i] = active[i] != 0;
   }
   return out;
 }

@@ -52,8 +52,7 @@ TEST(OutletScene, ErrorsNameThePlaceAndTheMend) {
               AllOf(HasSubstr("scene.toml:"), HasSubstr("max_m"), HasSubstr("leaves the outlet no area"),
                     HasSubstr("mend:")));
   EXPECT_THAT(error_of(replaced(good, "[2.0, 3.0]", "[2.0, 300.0]")), HasSubstr("reaches beyond the wall"));
-  EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[-0.5, 1.0]")),
-              AllOf(HasSubstr("min_m"), HasSubstr("beyond the wall")));
+  EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[-0.5, 1.0]")), AllOf(HasSubstr("min_m"), HasSubstr("beyond the wall")));
   EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[0.5, 1.0, 0.0]")), HasSubstr("min_m"));
   EXPECT_THAT(error_of(good + "speed_m_s = 1.0\n"), HasSubstr("speed_m_s"));
   EXPECT_THAT(error_of(good + good + good + good + good), HasSubstr("one outlet too many"));

@@ -70,7 +70,7 @@ struct SurfaceNormal {
   }
 };
 
-/// m_i dv_i / dt = sigma sum_j V_i V_j [pull 12 / hbar (s_i + s_j) / 2 grad W_ij
+/// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
 /// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling

@@ -35,6 +35,7 @@ struct Choose {
   Walls walls;
   ActivationRules rules;
   float beta, dt;
+  std::uint8_t sparse_mark;  ///< of Active, for solved particles of few neighbours
   std::uint32_t frame, seed;
 
   SIM_FN void operator()(int i) const {
@@ -43,7 +44,8 @@ struct Choose {
     start_cell[i] = near.cell_of(xyz(position[i]));
     const int count = rest[i] & rest_count_mask;
     const bool on = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p || must_be_solved(i);
-    active[i] = on;
+    const std::uint8_t mark = rest[i] & rest_sparse ? sparse_mark : 1;
+    active[i] = on ? mark : 0;
     rest[i] = static_cast<std::uint8_t>((rest[i] & ~rest_count_mask) | count_after(count, on));
     if (on) return;
     if (!rules.inherit_change) {
@@ -121,6 +123,8 @@ void run(FluidState& state, Columns p) {
                   .rules = a.rules,
                   .beta = a.beta,
                   .dt = state.parameters.dt,
+                  .sparse_mark =
+                      state.parameters.effects[EffectKind::Cohesion] > 0 ? solved_apart : std::uint8_t{1},
                   .frame = a.frame,
                   .seed = a.seed});
   if (!a.rules.inherit_change) return;
