@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <algorithm>
+#include <cmath>
 
 #include "apps/bench/accuracy/work_precision.hpp"
 #include "apps/common/html.hpp"
@@ -63,10 +64,13 @@ std::vector<SweepError> errors_in(const PriceList& prices) {
 
 std::string parting(const PriceList& prices) {
   if (!prices.pictures()) return paragraph("The sweep kept no pictures: --pictures.");
+  const bool part = std::isfinite(prices.parting_s);
   return paragraph(
-      parting_in_words(prices) +
-      " Until then errors of pictures are taken ten times a second and averaged. After it only the "
-      "film's structure and flicker are told, which are of the whole run, beside the errors of the water.");
+      parting_in_words(prices) + " Errors of pictures are taken ten times a second" +
+      (part
+           ? ", until then, and averaged. After it only the film's structure and flicker are told, which are "
+             "of the whole run, beside the errors of the water."
+           : " and averaged; the film's structure and flicker are of the whole run in any case."));
 }
 
 std::string orders(const PriceList& prices) {

@@ -142,7 +142,8 @@ std::string in_words(const ObservedOrder& order) {
 }
 
 std::string parting_in_words(const PriceList& list) {
-  if (std::isinf(list.parting_s)) return "The reference's pictures and its second seed's do not part.";
+  if (std::isinf(list.parting_s))
+    return "The reference's pictures and its second seed's do not part within the run.";
   return fmt::format("The reference's pictures and its second seed's part {:.2f} s after the gate opened.",
                      list.parting_s);
 }
