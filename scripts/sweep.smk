@@ -60,7 +60,7 @@ results = []
 if "accuracy" in config:
     accuracy = f"{program('vip-bench')} accuracy {config['accuracy'] or ''}"
     accuracy_batches = batches_of(accuracy)
-    results.append(f"{OUT}/accuracy/accuracy.html")
+    results += [f"{OUT}/accuracy/{name}" for name in ("accuracy.html", "sweep.db", "settings.csv")]
     # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was
     # measured on, so that the table is made with as many.
     timed_threads = int(config["threads"] if "threads" in config else workflow.cores)
@@ -74,6 +74,7 @@ if "accuracy" in config:
             command=accuracy,
             shards=f"{OUT}/accuracy/shards",
             ending="db",
+            machine=timed_threads,  # cells of other numbers of threads are others
         threads: timed_threads
         resources:
             runtime=int(config.get("minutes", 8)),
@@ -107,7 +108,7 @@ if "accuracy" in config:
 if "power" in config:
     power = f"{program('vip-stats')} power {config['power'] or ''}"
     power_batches = batches_of(power)
-    results.append(f"{OUT}/power/power.json")
+    results += [f"{OUT}/power/power.{ending}" for ending in ("json", "csv", "svg")]
 
     rule power_cells:
         output:

@@ -115,7 +115,21 @@ void run_one(const PowerCommand& command) {
   run_cell(command.request, *found, command.out);
 }
 
+void check_outputs(const PowerCommand& command) {
+  const std::map<std::string, std::string> outputs{
+      {"--json", command.json}, {"--csv", command.csv}, {"--svg", command.svg}};
+  check_apart("", outputs);
+  for (const auto& shard : command.shards) {
+    for (const auto& [option, path] : outputs) {
+      if (!path.empty() &&
+          std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(shard))
+        refuse(option + " " + path, "is a shard that is to be joined", "give the output a place of its own");
+    }
+  }
+}
+
 void run(PowerCommand& command, const CLI::App& options) {
+  check_outputs(command);
   complete(command, options);
   const PowerRequest& request = command.request;
   if (command.list) {
@@ -129,6 +143,7 @@ void run(PowerCommand& command, const CLI::App& options) {
 }
 
 void merge(PowerCommand& command, const CLI::App& options) {
+  check_outputs(command);
   complete(command, options);
   write_and_print(command, join_shards(command.request, command.shards));
 }

@@ -32,7 +32,8 @@ void check_shown(const SolverSetting& setting, const study::Protocol& protocol, 
   throw base::Error(
       place,
       "is a setting of " + named(setting) + ", which no cell of protocol '" + protocol.name + "' shows",
-      "choose it for a method and n_* of the protocol, or leave it out");
+      "choose one of the protocol's (vip-bench accuracy --budget … --of-method, --of-n-star), or leave it "
+      "out");
 }
 
 void check_step(const SolverSetting& setting, const study::Protocol& protocol, const std::string& place) {
@@ -43,7 +44,7 @@ void check_step(const SolverSetting& setting, const study::Protocol& protocol, c
       fmt::format("was chosen for frames of content {:.6g} s apart (frames_per_s = {:.6g}), and "
                   "the protocol's content step is {:.6g} s",
                   step_s, setting[SolverKnob::Rate], asked_s),
-      "sweep at the protocol's rate and choose again, or change content_step_s there");
+      "choose one of that rate (vip-bench accuracy --budget … --of-rate), or change content_step_s there");
 }
 
 }  // namespace

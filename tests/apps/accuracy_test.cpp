@@ -281,7 +281,7 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
   refused(older, "older program (schema 1");
   refused(foreign, "not a sweep file");
   refused(newer, "newer program (schema 9");
-  refused(sound.substr(0, sound.size() / 2), "is damaged or cut short\n  mend: give another file");
+  refused(sound.substr(0, sound.size() / 2), "is damaged or cut short\n  mend: name another file");
   EXPECT_THROW(SweepFile(folder / "none.db", Open::Read), base::Error);
   base::write_file_atomically(folder / "empty.db", "");
   EXPECT_THROW(SweepFile(folder / "empty.db", Open::Read), base::Error);

@@ -102,6 +102,22 @@ TEST_F(BudgetChoice, IsMeasuredAnewFromStartsThatTheSweepHasNotSeen) {
   EXPECT_TRUE(heard.empty());
 }
 
+TEST_F(BudgetChoice, IsAmongTheSettingsThatAreWished) {
+  const auto run = [&](const SweepCell& cell) { return stored(cell.setting, cell.seed, 1.2, 5); };
+  const auto said = [](const std::string&) {};
+  BudgetWish wish{plan, 10, SweepError::Centre, 10};
+  wish.n_star = 512;
+  wish.frames_per_s = 60;
+  wish.method = sim::MethodKind::HiRes;
+  EXPECT_EQ(choose_setting(cells(), origin, wish, run, said).setting, eight);
+  wish.method = sim::MethodKind::Ours;
+  EXPECT_THAT([&] { choose_setting(cells(), origin, wish, run, said); },
+              ThrowsMessage<base::Error>(HasSubstr("leave no setting of the sweep")));
+  wish.method.reset();
+  wish.frames_per_s = 90;
+  EXPECT_THROW(choose_setting(cells(), origin, wish, run, said), base::Error);
+}
+
 TEST_F(BudgetChoice, WhatDoesNotKeepTheBudgetAgainIsLeft) {
   const auto file = choose(10, 5, 10.5);
   EXPECT_EQ(file.setting, usual);

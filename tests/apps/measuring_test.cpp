@@ -203,6 +203,22 @@ TEST(Rehearsal, StepsThatWereNotMeasuredTakeWhatTheLastOnesDid) {
   const Rehearsal rehearsal = rehearse(protocol, {20, 0, 10}, times, {}, 0);
   EXPECT_NEAR(rehearsal.frame_s.back(), 0.2 + 0.001, 1e-9);
   EXPECT_GT(rehearsal.showing_s, 15);
+  EXPECT_EQ(rehearsal.measured, times.compute_s.size() - 1);
+}
+
+// A hundred steps were measured, six of them slow; the other hundred of the trial take the mean of the
+// last 30.
+TEST(Rehearsal, TheNinetyFifthPercentileIsOfMeasuredFramesAlone) {
+  StepTimes times = steps_of(0.001, 0, 100);
+  std::fill(times.compute_s.end() - 6, times.compute_s.end(), 0.04);
+  auto protocol = study::test::pilot();
+  protocol.design.cells = {{.stimulus = {}, .setting = {20, 0, 10}}};
+  const auto report = judge_measured(protocol, {{{0}, false, times}}, 0, [](const FpsSetting&) {
+    return std::vector<std::int64_t>(200, 50'000'000);
+  });
+  ASSERT_EQ(report.cells.size(), 1u);
+  EXPECT_NEAR(report.cells[0].p95_ms, 40, 1e-6);
+  EXPECT_NEAR(report.cells[0].mean_ms, (93 * 1 + 6 * 40) / 99.0, 0.1);
 }
 
 TEST(KeptTimes, AreReadBackUnderTheirKeyAlone) {

@@ -229,12 +229,18 @@ TEST_F(PowerShardsE2e, ThroughTheCommandLine) {
   EXPECT_EQ(bytes_of(in("m.csv")), bytes_of(in("s.csv")));
   for (const auto& [words, place] : std::vector<std::pair<std::string, std::string>>{
            {plan + " --cell 0123 --out " + in("x.json"), "--cell 0123: is no cell"},
+           {"merge " + plan + " --json " + in("x.json") + " --csv " + in("x.json") + shards, "--json"},
            {"merge " + plan + " --json " + in("x.json") + " " + in("shard0"), "1 of 2 cells are missing"}}) {
     const auto ended = test::run_shell(power + words);
     EXPECT_EQ(ended.exit_code, 1) << ended.out;
     EXPECT_THAT(ended.out, AllOf(HasSubstr(place), HasSubstr("mend:")));
     EXPECT_FALSE(std::filesystem::exists(in("x.json"))) << words;
   }
+  const auto over = test::run_shell(power + "merge " + plan + " --json " + in("shard0") + shards);
+  EXPECT_EQ(over.exit_code, 1);
+  EXPECT_THAT(over.out, HasSubstr("is a shard that is to be joined"));
+  EXPECT_THAT(bytes_of(in("shard0")), ::testing::StartsWith("{\"")) << "it is as it was";
+  EXPECT_THAT(bytes_of(in("shard0")), HasSubstr("outcomes"));
   for (const std::string& words : {plan + " --cell 0123", plan + " --out " + in("x.json"),
                                    std::string("--list"), plan + " --list --json " + in("x.json")}) {
     EXPECT_EQ(test::run_shell(power + words).exit_code, 2) << words;

@@ -206,8 +206,10 @@ TEST_F(SettingPriceE2e, VipViewSaysWhatTheSettingInForceCostsAndErrsBy) {
   ASSERT_EQ(swept.exit_code, 0) << swept.out;
   const auto found = view("--method Ours");
   ASSERT_EQ(found.exit_code, 0) << found.out;
-  EXPECT_THAT(found.out, AllOf(HasSubstr("sweep  "), HasSubstr(" ms a frame, 95 % within "),
-                               HasSubstr("centre_pct"), HasSubstr("times the time of HiRes at n_* 64")));
+  EXPECT_THAT(found.out,
+              AllOf(HasSubstr("sweep  "), HasSubstr(" ms a frame, 95 % within "), HasSubstr("centre_pct"),
+                    HasSubstr("picture_pct"), HasSubstr("compared pictures of 240x135"),
+                    HasSubstr("times the time of HiRes at n_* 64")));
   EXPECT_THAT(view("--method HiRes").out, HasSubstr("which others are held against"));
   EXPECT_THAT(
       view("--method HiRes --iterations 5").out,

@@ -211,9 +211,39 @@ TEST(SweepPictures, ASweepWithoutThemSaysSo) {
   EXPECT_TRUE(within_budget(list.settings, 30, SweepError::Flip).empty());
   const BudgetWish wish{bare, 30, SweepError::Flip, 10};
   EXPECT_THAT([&] { choose_setting(cells, origin, wish, {}, {}); },
-              ThrowsMessage<base::Error>(HasSubstr("sweep kept none")));
+              ThrowsMessage<base::Error>(HasSubstr("the sweep kept no pictures")));
   // Cells with pictures are another sweep.
   EXPECT_THROW(price_list(cells, plan, origin, 10), base::Error);
+}
+
+TEST(SweepPictures, MoreSeedsOfFrontsKeepPicturesToo) {
+  const auto cells = more_seeds_of_fronts(price_list(sweep(), plan, origin, 10), plan, 3);
+  ASSERT_FALSE(cells.empty());
+  for (const auto& cell : cells) EXPECT_EQ(cell.kept, plan.kept);
+}
+
+TEST(SweepPictures, AnErrorThatNoRowHasIsSaidToBeUntold) {
+  auto cells = sweep();
+  for (auto& kept : cells.front().run.pictures) kept.salient.clear();
+  const auto list = price_list(cells, plan, origin, 10);
+  EXPECT_THAT(to_markdown(list), HasSubstr("salient_pct: the reference has no large enough part"));
+  EXPECT_THAT(to_markdown(list), Not(HasSubstr("nan")));
+  EXPECT_THAT(accuracy_page(list, plan), HasSubstr("Not told: the reference has no large enough part"));
+  const BudgetWish wish{plan, 30, SweepError::Salient, 10};
+  EXPECT_THAT([&] { choose_setting(cells, origin, wish, {}, {}); },
+              ThrowsMessage<base::Error>(HasSubstr("--error salient: is told of no setting")));
+}
+
+TEST(SweepPictures, WhoAsksForOtherCellsHearsWhichThereAre) {
+  auto other = plan;
+  other.kept = "64x36";
+  EXPECT_THAT([&] { price_list(sweep(), other, origin, 10); },
+              ThrowsMessage<base::Error>(HasSubstr("compared 64x36; it holds 9 cells of a machine")));
+  EXPECT_THAT(
+      [&] {
+        price_list(sweep(), plan, {"another", origin.program, origin.scene_sha256}, 10);
+      },
+      ThrowsMessage<base::Error>(HasSubstr("of another, program")));
 }
 
 TEST(SweepPictures, TheFileGivesThemBack) {
@@ -257,6 +287,14 @@ TEST_F(SweepPicturesE2e, AWholeSweepTellsOfThem) {
     EXPECT_THAT(refused.out, HasSubstr("--pictures"));
     EXPECT_FALSE(std::filesystem::exists(path("b.db")));
   }
+  for (const char* output : {"--csv ", "--prices-csv ", "--markdown ", "--html "}) {
+    const auto refused = table(words + " --table " + output + path("a.db"));
+    EXPECT_EQ(refused.exit_code, 1) << output;
+    EXPECT_THAT(refused.out, HasSubstr("is the database"));
+  }
+  EXPECT_FALSE(SweepFile(path("a.db"), Open::Read).cells().empty()) << "it is as it was";
+  EXPECT_THAT(table("accuracy --quick --n-star 64 --seconds 0.125 --list").out,
+              HasSubstr("seconds=0.133333 "));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -31,6 +32,8 @@ struct AccuracyOptions {
   std::string scene = "SingleDam", n_star = "4k", backend = "auto";
   std::string database, cell, out, csv, prices_csv, markdown, html;
   std::string budget, error = "centre", kept = "240x135";
+  std::string of_method, of_n_star;
+  double of_rate = 0;
   std::optional<PictureSize> size;
   double seconds = 2;
   int seeds = 2, front_seeds = 0;
@@ -48,10 +51,13 @@ std::string kept_size(const std::string& words) {
   return size_words(size);
 }
 
+/// The water is measured every 1/30 s, and runs of all rates end with a measurement.
+double whole_samples(double seconds) { return std::round(30 * seconds) / 30; }
+
 SweepPlan plan_of(const AccuracyOptions& options) {
   SweepPlan out{.scene = options.scene,
                 .n_star = sim::parse_n_star(options.n_star),
-                .seconds = options.seconds,
+                .seconds = whole_samples(options.seconds),
                 .seeds = options.seeds,
                 .size = options.size ? size_words(*options.size) : "",
                 .kept = kept_size(options.kept),
@@ -149,8 +155,11 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
 
 /// The setting that is chosen is run anew.
 void run_budget(const Job& job, const AccuracyOptions& options) {
-  const BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
-                        job.scene.scene.tank_size_m[0]};
+  BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
+                  job.scene.scene.tank_size_m[0]};
+  if (!options.of_method.empty()) wish.method = sim::parse_method(options.of_method);
+  if (!options.of_n_star.empty()) wish.n_star = sim::parse_n_star(options.of_n_star);
+  if (options.of_rate > 0) wish.frames_per_s = options.of_rate;
   SweepFile file(options.database, Open::Read);
   tell_missing(job, file);
   const auto choice = choose_setting(
@@ -161,11 +170,11 @@ void run_budget(const Job& job, const AccuracyOptions& options) {
 }
 
 void run_accuracy(const AccuracyOptions& options) {
-  check_apart("", {{"--csv", options.csv},
-                   {"--prices-csv", options.prices_csv},
-                   {"--markdown", options.markdown},
-                   {"--html", options.html}});
-  check_apart(options.database, {{"--out", options.out}});
+  check_apart(options.database, {{"--csv", options.csv},
+                                 {"--prices-csv", options.prices_csv},
+                                 {"--markdown", options.markdown},
+                                 {"--html", options.html},
+                                 {"--out", options.out}});
   if (!options.out.empty() && options.cell.empty() && options.budget.empty())
     throw base::Error("--out", "belongs to --cell or --budget", "give one of them");
   const Job job = job_of(options);
@@ -204,11 +213,15 @@ void add_accuracy_command(CLI::App& app) {
   auto* database = command
                        ->add_option("--db", options->database,
                                     "Sweep file, made when missing; cells in it are not run again")
-                       ->check(output_file());
+                       ->check([](const std::string& path) {
+                         // What is only read may lie where nothing can be written.
+                         return std::filesystem::is_regular_file(path) ? "" : output_file()(path);
+                       });
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();
   add_n_star(*command, options->n_star);
   add_backend(*command, options->backend);
-  command->add_option("--seconds", options->seconds, "Of content, from the opening of the gate")
+  command
+      ->add_option("--seconds", options->seconds, "Of content, from the opening of the gate, in whole 1/30 s")
       ->check(number_in(0.1, 60))
       ->capture_default_str();
   add_count(*command, "--seeds", options->seeds, 1, 100, "Starts of a setting, an ulp apart");
@@ -220,7 +233,7 @@ void add_accuracy_command(CLI::App& app) {
                    "Size, px, of pictures that are kept and compared, drawn apart from what is timed; none = "
                    "no errors of pictures")
       ->capture_default_str();
-  command->add_flag("--quick", options->quick, "A dozen cells of 256 n_* and half a second");
+  command->add_flag("--quick", options->quick, "Two dozen cells of 256 n_* and half a second");
   auto* list = command->add_flag("--list", options->list, "Only print each cell's key and setting");
   auto* cell = command->add_option("--cell", options->cell, "Only run the cell of this key, into --out");
   auto* out = command->add_option("--out", options->out, "Sweep file of --cell, or setting file of --budget")
@@ -246,12 +259,23 @@ void add_accuracy_command(CLI::App& app) {
       ->check(CLI::IsMember(sweep_error_names()))
       ->capture_default_str()
       ->needs(budget);
-  command->add_option("--csv", options->csv, "File for a row for each setting")->check(output_file());
-  command->add_option("--prices-csv", options->prices_csv, "File for a row for each turn of a knob")
-      ->check(output_file());
-  command->add_option("--markdown", options->markdown, "File for what is printed")->check(output_file());
-  command->add_option("--html", options->html, "File for a page with diagrams, fronts and prices")
-      ->check(output_file());
+  command->add_option("--of-method", options->of_method, "Choose among settings of this method")
+      ->needs(budget);
+  command->add_option("--of-n-star", options->of_n_star, "Choose among settings of this size")->needs(budget);
+  command->add_option("--of-rate", options->of_rate, "Choose among settings of so many frames/s, such as 60")
+      ->check(number_in(1, 1000))
+      ->needs(budget);
+  const auto add_output = [&](const char* name, std::string& path, const char* words) {
+    command->add_option(name, path, words)
+        ->check(output_file())
+        ->excludes(list)
+        ->excludes(cell)
+        ->excludes(budget);
+  };
+  add_output("--csv", options->csv, "File for a row for each setting");
+  add_output("--prices-csv", options->prices_csv, "File for a row for each turn of a knob");
+  add_output("--markdown", options->markdown, "File for what is printed");
+  add_output("--html", options->html, "File for a page with diagrams, fronts and prices");
   auto* merge = command->add_subcommand("merge", "Put the cells of several sweep files into one");
   merge->add_option("--db", options->database, "Sweep file that takes them, made when missing")
       ->required()

@@ -93,9 +93,11 @@ std::string diagrams(const PriceList& prices) {
       "a frame at 120, 90 and 60 Hz.");
   for (const auto error : errors_in(prices)) {
     const auto picture = work_precision(prices, error);
-    out += subsection(
-        std::string("Error of ") + sweep_error_words[static_cast<std::size_t>(error)],
-        picture ? figure(*picture, floor_of(prices, error)) : paragraph("No setting has an error above 0."));
+    out += subsection(std::string("Error of ") + sweep_error_words[static_cast<std::size_t>(error)],
+                      picture ? figure(*picture, floor_of(prices, error))
+                      : std::isnan(prices.floor[static_cast<std::size_t>(error)])
+                          ? paragraph("Not told: " + why_untold(prices) + ".")
+                          : paragraph("No setting has an error above 0."));
   }
   return out + subsection("Pictures", parting(prices)) + subsection("Orders", orders(prices));
 }

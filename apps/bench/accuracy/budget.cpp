@@ -80,6 +80,30 @@ SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>& fre
       fmt::format("allow {:.2f}ms, or sweep smaller sizes (--n-star)", std::ceil(ms * 100) / 100));
 }
 
+bool wished(const SolverSetting& setting, const BudgetWish& wish) {
+  return (!wish.method || setting.method == *wish.method) &&
+         (!wish.n_star || setting[SolverKnob::Size] == static_cast<double>(*wish.n_star)) &&
+         (!wish.frames_per_s || setting[SolverKnob::Rate] == *wish.frames_per_s);
+}
+
+/// The settings of the list that are wished and have the error.
+std::vector<SettingResult> candidates(const PriceList& list, const BudgetWish& wish) {
+  const auto e = static_cast<std::size_t>(wish.error);
+  std::vector<SettingResult> out;
+  for (const auto& one : list.settings)
+    if (wished(one.setting, wish)) out.push_back(one);
+  if (out.empty()) {
+    throw base::Error("--of-method, --of-n-star, --of-rate", "leave no setting of the sweep",
+                      "give what --csv lists, or sweep it (--n-star)");
+  }
+  std::erase_if(out, [&](const auto& one) { return std::isnan(one.errors[e].mean); });
+  if (out.empty()) {
+    throw base::Error("--error " + sweep_error_names()[e], "is told of no setting: " + why_untold(list),
+                      "ask for another error, or sweep with --pictures 240x135");
+  }
+  return out;
+}
+
 }  // namespace
 
 double parse_budget(const std::string& words) {
@@ -128,13 +152,11 @@ SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrig
                            const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
                            const std::function<void(const std::string&)>& said) {
   const auto list = price_list(cells, wish.plan, origin, wish.tank_length_m);
-  if (static_cast<std::size_t>(wish.error) >= water_error_count && !list.pictures()) {
-    throw base::Error("--error", "is of pictures, and the sweep kept none", "sweep with --pictures 240x135");
-  }
-  const auto order = within_budget(list.settings, wish.budget_ms, wish.error);
+  const auto settings = candidates(list, wish);
+  const auto order = within_budget(settings, wish.budget_ms, wish.error);
   if (order.empty()) {
     const SettingResult* nearest = nullptr;
-    for (const auto& one : list.settings)
+    for (const auto& one : settings)
       if (one.ms_p95 > 0 && (!nearest || one.ms_p95 < nearest->ms_p95)) nearest = &one;
     if (!nearest) throw base::Error("the sweep", "has no timed setting", "run it with a longer --seconds");
     refuse(wish, named(nearest->setting), nearest->ms_p95, "");
@@ -142,7 +164,7 @@ SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrig
   std::string nearest;
   double nearest_ms = 0;
   for (const std::size_t i : order) {
-    const auto& setting = list.settings[i].setting;
+    const auto& setting = settings[i].setting;
     const auto fresh = run_afresh(setting, cells, wish.plan, run);
     const double p95 = quantile(frame_ms(fresh), 0.95);
     if (p95 <= wish.budget_ms) {

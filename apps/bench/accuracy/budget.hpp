@@ -2,6 +2,7 @@
 /// The setting of least error whose frames keep a budget of time.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,10 @@ struct BudgetWish {
   double budget_ms = 0;
   SweepError error = SweepError::Centre;
   double tank_length_m = 0;
+  // Only settings of these, where they are given.
+  std::optional<sim::MethodKind> method = {};
+  std::optional<std::int64_t> n_star = {};
+  std::optional<double> frames_per_s = {};
 };
 
 /// Tries the settings of `cells` that keep the budget: each is run from two fresh starts, and the first that

@@ -84,6 +84,26 @@ struct Sweep {
   }
 };
 
+/// What cells of this scene were run otherwise: ", of MACHINE, program P, ...; it holds 24 cells of ...".
+std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPlan& plan,
+                            const SweepOrigin& origin) {
+  const auto named = [](const SweepOrigin& from, double seconds, const std::string& size,
+                        const std::string& kept) {
+    return fmt::format("{}, program {}, {:.4g} s, timed pictures {}, compared {}", from.machine, from.program,
+                       seconds, size.empty() ? "none" : size, kept.empty() ? "none" : kept);
+  };
+  std::map<std::string, int> others;
+  for (const auto& cell : cells)
+    if (cell.cell.setting.scene == plan.scene)
+      ++others[named(cell.origin, cell.cell.seconds, cell.cell.size, cell.cell.kept)];
+  const std::string own = named(origin, plan.seconds, plan.size, plan.kept);
+  std::string out;
+  for (const auto& [words, count] : others)
+    if (words != own)
+      out += fmt::format("{}{} cells of {}", out.empty() ? "; it holds " : " and ", count, words);
+  return out.empty() ? out : " of " + own + out;
+}
+
 /// Errors of all runs, each computed once.
 void measure(Sweep& sweep, const CellRun& twin) {
   std::vector<const CellRun*> runs;
@@ -115,7 +135,8 @@ Sweep sweep_of(const std::vector<StoredCell>& cells, const SweepPlan& plan, cons
   }
   const Group* reference = out.find(reference_setting(plan.scene, plan.n_star));
   if (!reference || reference->size() < 2 || reference->front()->cell.seed != 1) {
-    throw base::Error("the sweep of " + plan.scene, "has no finished reference with two seeds yet",
+    throw base::Error("the sweep of " + plan.scene,
+                      "has no finished reference with two seeds yet" + others_in_words(cells, plan, origin),
                       "let its first two cells run, or give the plan that it was run with");
   }
   out.reference = &reference->front()->run;
@@ -320,7 +341,7 @@ std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPl
   std::vector<SweepCell> out;
   for (const std::size_t i : places)
     for (int seed = 1; seed <= seeds; ++seed)
-      out.push_back({list.settings[i].setting, seed, plan.seconds, plan.size});
+      out.push_back({list.settings[i].setting, seed, plan.seconds, plan.size, plan.kept});
   return out;
 }
 

@@ -130,6 +130,9 @@ std::string in_words(const ObservedOrder& order);
 /// A sentence that says when pictures of the reference and of its second seed part; list.pictures().
 std::string parting_in_words(const PriceList& list);
 
+/// Why an error of pictures is NaN in all rows.
+std::string why_untold(const PriceList& list);
+
 /// For programs.
 TextTable setting_table(const PriceList& list);
 TextTable price_table(const PriceList& list);

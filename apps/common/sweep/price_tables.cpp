@@ -38,6 +38,7 @@ std::string in_words(const SolverSetting& setting) {
 }
 
 std::string convergence(const PriceList& list, SweepError error) {
+  if (std::isnan(list.floor[static_cast<std::size_t>(error)])) return "was not measured in it";
   return list.finer.empty()                                ? "was not held against finer ones"
          : list.converged[static_cast<std::size_t>(error)] ? "counts as converged"
                                                            : "does not count as converged";
@@ -148,6 +149,11 @@ std::string parting_in_words(const PriceList& list) {
                      list.parting_s);
 }
 
+std::string why_untold(const PriceList& list) {
+  if (!list.pictures()) return "the sweep kept no pictures";
+  return "the reference has no large enough part of its kind before the pictures part";
+}
+
 std::string to_markdown(const PriceList& list) {
   std::string out = fmt::format("{} on {}\n\n", list.scene, list.origin.machine);
   for (const auto part : {ErrorPart::Water, ErrorPart::Pictures}) {
@@ -157,9 +163,14 @@ std::string to_markdown(const PriceList& list) {
   if (list.pictures()) out += parting_in_words(list) + "\n";
   for (const auto& order : list.orders) out += in_words(order) + "\n";
   for (std::size_t e = 0; e < sweep_error_count; ++e) {
+    const auto error = static_cast<SweepError>(e);
     if (e >= water_error_count && !list.pictures()) break;
-    out += fmt::format("{}: the floor is {} %; the reference {}\n", sweep_error_columns[e],
-                       shortest(list.floor[e]), convergence(list, static_cast<SweepError>(e)));
+    if (std::isnan(list.floor[e])) {
+      out += fmt::format("{}: {}\n", sweep_error_columns[e], why_untold(list));
+    } else {
+      out += fmt::format("{}: the floor is {} %; the reference {}\n", sweep_error_columns[e],
+                         shortest(list.floor[e]), convergence(list, error));
+    }
   }
   return out;
 }

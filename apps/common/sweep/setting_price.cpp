@@ -13,13 +13,14 @@ namespace apps {
 
 namespace {
 
-/// What the cells of a table have in common: machine, program, hash of the scene file, scene, seconds,
-/// picture.
-using Kind = std::tuple<std::string, std::string, std::string, std::string, double, std::string>;
+/// What the cells of a table have in common: machine, program, hash of the scene file, scene, seconds, timed
+/// picture, kept pictures.
+using Kind = std::tuple<std::string, std::string, std::string, std::string, double, std::string, std::string>;
 
 Kind kind_of(const StoredCell& cell) {
   const auto& [machine, program, sha256] = cell.origin;
-  return {machine, program, sha256, cell.cell.setting.scene, cell.cell.seconds, cell.cell.size};
+  return {machine,           program,        sha256,        cell.cell.setting.scene,
+          cell.cell.seconds, cell.cell.size, cell.cell.kept};
 }
 
 /// n_* of each reference that ran from two starts.
@@ -110,14 +111,15 @@ SweepTables sweep_tables(const std::vector<StoredCell>& cells) {
   for (const auto& cell : cells) kinds[kind_of(cell)].push_back(&cell);
   SweepTables out;
   for (const auto& [kind, some] : kinds) {
-    const auto& [machine, program, sha256, scene, seconds, picture] = kind;
+    const auto& [machine, program, sha256, scene, seconds, picture, kept] = kind;
     const SweepOrigin origin{machine, program, sha256};
     const auto references = references_in(some);
     if (references.empty())
       out.left_out.push_back("the sweep of " + scene + " on " + origin.machine +
                              " has no finished reference with two starts yet");
     for (const auto n_star : references) {
-      const SweepPlan plan{.scene = scene, .n_star = n_star, .seconds = seconds, .size = picture};
+      const SweepPlan plan{
+          .scene = scene, .n_star = n_star, .seconds = seconds, .size = picture, .kept = kept};
       try {
         out.tables.push_back(
             {plan, price_list(cells, plan, origin, tank_length_m(scene, origin.scene_sha256))});
@@ -181,9 +183,10 @@ std::vector<std::string> in_words(const SettingPrice& price) {
                               row.ms_mean / price.hires->ms_mean, n_star, price.hires->ms_mean,
                               differences_in_words(row, *price.hires)));
   }
-  out.push_back(fmt::format("measured on {}, program {}; reference of n_* {}, {:.4g} s",
-                            price.sweep->list.origin.machine, price.sweep->list.origin.program, plan.n_star,
-                            plan.seconds));
+  out.push_back(fmt::format(
+      "measured on {}, program {}; reference of n_* {}, {:.4g} s, {}", price.sweep->list.origin.machine,
+      price.sweep->list.origin.program, plan.n_star, plan.seconds,
+      plan.kept.empty() ? "no pictures compared" : "compared pictures of " + plan.kept));
   return out;
 }
 

@@ -84,8 +84,7 @@ void recognise(Connection& database, Open how) {
 
 /// No salvage is offered: what a sweep holds can be computed anew.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
-  throw base::Error(path.string(), "is damaged or cut short",
-                    "give another file to --db; the sweep is computed anew there");
+  throw base::Error(path.string(), "is damaged or cut short", "name another file; its cells can be run anew");
 }
 
 StoredCell read_cell(const Statement& row) {

@@ -119,7 +119,9 @@ Json read_shard(const fs::path& file) {
                       "name files that vip-stats power --cell wrote");
   }
   const Json out = Json::parse(text, nullptr, false);
-  if (out.is_discarded() || !out.contains("studies") || !out.contains("outcomes")) refuse_damaged(file);
+  if (out.is_discarded() || !out.is_object() || !out.contains("studies") || !out.at("studies").is_object() ||
+      !out.contains("outcomes"))
+    refuse_damaged(file);
   if (out.at("schema") != schema) {
     throw base::Error(file.string(), "was written by a newer program (" + out.at("schema").dump() + ")",
                       "use the newer vip-stats; the file was left as it is");

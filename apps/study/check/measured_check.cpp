@@ -66,6 +66,8 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
     shown_s.push_back(refresh_hz > 0 ? std::max(s, 1 / refresh_hz) : s);
   out.fps = stats::fps_moments(shown_s);
   out.tau_min = least_tau(shown_s);
+  // The mean that stands for the rest of a trial has no spread of its own.
+  if (rehearsal.measured > 0) sorted.resize(rehearsal.measured);
   std::sort(sorted.begin(), sorted.end());
   for (const double s : sorted) out.mean_ms += 1000 * s / static_cast<double>(sorted.size());
   out.p95_ms = 1000 * sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];

@@ -21,6 +21,7 @@ class Costs {
     const auto last = measured_s.end() - static_cast<std::ptrdiff_t>(count);
     later_s_ = std::accumulate(last, measured_s.end(), 0.0) / static_cast<double>(count);
   }
+  bool known(std::int64_t step) const { return static_cast<std::size_t>(step) < measured_s_.size(); }
   double of(std::int64_t step) const {
     const auto at = static_cast<std::size_t>(step);
     return at < measured_s_.size() ? measured_s_[at] : later_s_;
@@ -47,7 +48,10 @@ class MeasuredProcess final : public study::Stimulus {
   study::FrameFacts prepare(std::int64_t step) override {
     double taken_s = draw_.of(step - start_frame_);
     while (step_ < step) taken_s += compute_.of(++step_ - start_frame_);
-    if (begun_) frame_s.push_back(taken_s);
+    if (begun_) {
+      frame_s.push_back(taken_s);
+      if (draw_.known(step - start_frame_)) measured = frame_s.size();
+    }
     begun_ = true;
     clock_.wait_until(clock_.now_ns() + std::llround(1e9 * std::max(taken_s, least_s_)));
     return {};
@@ -55,6 +59,7 @@ class MeasuredProcess final : public study::Stimulus {
   void draw(const study::Canvas&) override {}
 
   std::vector<double> frame_s;  ///< but of the first frame
+  std::size_t measured = 0;     ///< of these
 
  private:
   Costs compute_, draw_;
@@ -93,6 +98,7 @@ Rehearsal rehearse(const study::Protocol& protocol, const study::FpsSetting& set
                       : study::play_trial(intervals_ns.empty() ? equal_intervals(setting) : intervals_ns,
                                           protocol.content, process, display, clock, bounds, {});
   out.frame_s = std::move(process.frame_s);
+  out.measured = process.measured;
   out.showing_s = 1e-9 * static_cast<double>(out.played.end_ns - out.played.frames.front().scheduled_ns);
   return out;
 }

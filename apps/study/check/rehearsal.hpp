@@ -28,6 +28,7 @@ std::int64_t content_steps(const study::Protocol& protocol, const study::FpsSett
 struct Rehearsal {
   study::PlayedTrial played;
   std::vector<double> frame_s;  ///< that each frame took, but the first
+  std::size_t measured = 0;     ///< so many of them, from the first, were of measured steps alone
   double showing_s = 0;         ///< from the first onset to the end
 };
 
