@@ -45,9 +45,9 @@ fail() { printf 'FAILED  %s: %s\n' "$page" "$1" >&2; failed=1; }
 
 # A block that names no language would not be run, whatever it holds; so would one that is indented.
 check_blocks() {
-  awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|json|toml|mermaid)$/) print NR; inside = !inside; next }
+  awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|cpp|json|toml|mermaid)$/) print NR; inside = !inside; next }
        !inside && /^    (\.\/)?(vip-|scripts|ctest|cmake|build)/ { print NR }' "$1" |
-    while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, json, toml or mermaid"; done
+    while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, cpp, json, toml or mermaid"; done
 }
 
 # Tests and scripts that the page names in its text. Where not all test programs are built, not every test is known.
