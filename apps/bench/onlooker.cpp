@@ -6,16 +6,6 @@
 
 namespace apps {
 
-Picture without_alpha(const sim::Image& image) {
-  Picture out{image.width, image.height, {}};
-  const std::size_t pixels = image.rgba.size() / 4;
-  out.rgb.resize(3 * pixels);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    for (std::size_t c = 0; c < 3; ++c) out.rgb[3 * p + c] = image.rgba[4 * p + c];
-  }
-  return out;
-}
-
 Onlooker::Onlooker(const sim::Scene& scene, const PictureSize& size)
     : camera_(scene.view),
       view_(sim::make_view(scene.view, size.width, size.height)),

@@ -6,19 +6,10 @@
 
 #include "apps/bench/render_timer.hpp"
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/rgb_picture.hpp"
 #include "libsim/render/offscreen.hpp"
-#include "stats/image/image.hpp"
 
 namespace apps {
-
-/// Row 0 is the top.
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;
-  stats::ImageView view() const { return {width, height, rgb}; }
-};
-/// The colours of an RGBA picture.
-Picture without_alpha(const sim::Image& image);
 
 /// Needs a current context at every call and when it is destroyed.
 class Onlooker {

@@ -9,6 +9,7 @@
 #include "apps/stats/tasks/results.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/made_task_study.hpp"
+#include "tests/apps/measured_setting.hpp"
 #include "tests/apps/small_sweep.hpp"
 
 namespace apps {
@@ -32,22 +33,9 @@ study::TaskProtocol shown_live() {
 }
 
 std::string setting_text(const std::string& scene_sha256) {
-  SettingFile out{test::hires_at(n_star), {}};
+  auto out = test::measured_setting(test::hires_at(n_star));
   out.setting[SolverKnob::Iterations] = 8;
-  out.measured = {.machine = "a machine",
-                  .program = "0.1.0 abc",
-                  .scene_sha256 = scene_sha256,
-                  .picture = "none",
-                  .seconds = 2,
-                  .budget_ms = 11,
-                  .ms_mean = 8,
-                  .ms_p95 = 9.75,
-                  .error = "centre_pct",
-                  .error_pct = 0.25,
-                  .error_low_pct = 0.2,
-                  .error_high_pct = 0.3,
-                  .seeds = 4,
-                  .date_utc = "2026-01-31T12:00:00Z"};
+  out.measured.scene_sha256 = scene_sha256;
   return format_setting_file(out);
 }
 

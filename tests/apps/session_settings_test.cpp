@@ -10,6 +10,7 @@
 #include "apps/study/run_options.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
+#include "tests/apps/measured_setting.hpp"
 #include "tests/apps/small_dam.hpp"
 #include "tests/apps/study_test_support.hpp"
 
@@ -25,24 +26,10 @@ using ::testing::ThrowsMessage;
 
 /// A file for this method and n_*, with six projections.
 std::string setting_text(sim::MethodKind method, std::int64_t n_star, double frames_per_s = 60) {
-  SettingFile out{usual_setting("SingleDam", method, n_star), {}};
+  auto out = test::measured_setting(usual_setting("SingleDam", method, n_star));
   out.setting[SolverKnob::Rate] = frames_per_s;
   out.setting[SolverKnob::Iterations] = 6;
   out.setting[SolverKnob::Beta] = 0.9;
-  out.measured = {.machine = "a machine",
-                  .program = "0.1.0 abc",
-                  .scene_sha256 = "feed",
-                  .picture = "none",
-                  .seconds = 2,
-                  .budget_ms = 11,
-                  .ms_mean = 8,
-                  .ms_p95 = 9.75,
-                  .error = "centre_pct",
-                  .error_pct = 0.25,
-                  .error_low_pct = 0.2,
-                  .error_high_pct = 0.3,
-                  .seeds = 4,
-                  .date_utc = "2026-01-31T12:00:00Z"};
   return format_setting_file(out);
 }
 

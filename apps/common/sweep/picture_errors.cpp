@@ -5,8 +5,8 @@
 #include <exception>
 #include <limits>
 
+#include "apps/common/rgb_picture.hpp"
 #include "apps/common/timing.hpp"
-#include "libsim/render/png.hpp"
 #include "stats/base/error.hpp"
 #include "stats/image/flicker.hpp"
 #include "stats/image/flip.hpp"
@@ -28,18 +28,8 @@ constexpr double parting_share = 1.0 / 3;
 
 using Mask = std::vector<std::uint8_t>;
 
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;
-  stats::ImageView view() const { return {width, height, rgb}; }
-};
-
 Picture decoded(const KeptPicture& kept) {
-  const auto image = sim::png_of(kept.png, "a picture of the sweep");
-  Picture out{image.width, image.height, {}};
-  for (std::size_t i = 0; i < image.rgba.size(); ++i)
-    if (i % 4 != 3) out.rgb.push_back(image.rgba[i]);
-  return out;
+  return without_alpha(sim::png_of(kept.png, "a picture of the sweep"));
 }
 
 /// Pictures come in pairs 1/30 s apart: the first is compared by itself, both by their change.

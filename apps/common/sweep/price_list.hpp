@@ -45,6 +45,7 @@ inline constexpr std::array<const char*, sweep_error_count> sweep_error_words{"f
                                                                               "what is seen (FLIP)",
                                                                               "structure of the film",
                                                                               "flicker"};
+static_assert(static_cast<std::size_t>(SweepError::Flicker) + 1 == sweep_error_count);
 using SweepErrors = std::array<double, sweep_error_count>;
 using WaterErrors = std::array<double, water_error_count>;
 
