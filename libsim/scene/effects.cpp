@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
@@ -18,6 +20,12 @@ constexpr std::array<EffectTraits, effect_count> all_traits{{
 #define SIM_TRAITS(Name, word, key, unit, longest, needs, source) \
   {#word, #key, EffectUnit::unit, longest, needs, source},
     SIM_EFFECTS(SIM_TRAITS)
+#undef SIM_TRAITS
+}};
+
+constexpr std::array<OptionTraits, option_count> option_traits{{
+#define SIM_TRAITS(Name, effect, key, usual, least, most) {EffectKind::effect, #key, usual, least, most},
+    SIM_EFFECT_OPTIONS(SIM_TRAITS)
 #undef SIM_TRAITS
 }};
 
@@ -57,10 +65,22 @@ double natural_time(const Effect& effect, double d) {
 
 const EffectTraits& traits_of(EffectKind kind) { return all_traits[static_cast<std::size_t>(kind)]; }
 
+const OptionTraits& traits_of(EffectOption option) { return option_traits[static_cast<std::size_t>(option)]; }
+
+std::string options_in_words(const Effect& effect) {
+  std::ostringstream out;
+  for (std::size_t k = 0; k < option_count; ++k)
+    if (option_traits[k].of == effect.kind) out << ' ' << option_traits[k].key << " = " << effect.options[k];
+  return out.str();
+}
+
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
   EffectCoefficients out;
-  for (const Effect& effect : effects)
+  for (const Effect& effect : effects) {
     out.values[static_cast<std::size_t>(effect.kind)] = static_cast<float>(effect.coefficient);
+    for (std::size_t k = 0; k < option_count; ++k)
+      if (option_traits[k].of == effect.kind) out.options[k] = effect.options[k];
+  }
   return out;
 }
 
@@ -73,7 +93,13 @@ std::vector<Effect> read_effects(const base::TomlTable& scene) {
     const auto kind = static_cast<EffectKind>(word - words.begin());
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");
-    out.push_back({kind, table.number(traits_of(kind).key, {0, largest})});
+    Effect effect{kind, table.number(traits_of(kind).key, {0, largest})};
+    for (std::size_t k = 0; k < option_count; ++k) {
+      const OptionTraits& option = option_traits[k];
+      if (option.of == kind)
+        effect.options[k] = table.number_or(option.key, option.usual, {option.least, option.most});
+    }
+    out.push_back(effect);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
     if (!stands(out, out[i])) tables[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
@@ -89,6 +115,13 @@ void check_effects(const std::vector<Effect>& effects) {
     if (find(effects, effect.kind) != &effect) fail("is listed twice", "keep one of the two");
     if (!(effect.coefficient >= 0 && effect.coefficient <= largest))
       fail(std::string(traits_of(effect.kind).key) + " is out of range", "use 0 to 1e6");
+    for (std::size_t k = 0; k < option_count; ++k) {
+      const OptionTraits& option = option_traits[k];
+      if (option.of == effect.kind &&
+          !(effect.options[k] >= option.least && effect.options[k] <= option.most))
+        fail(std::string(option.key) + " is out of range",
+             "use " + base::shortest(option.least) + " to " + base::shortest(option.most));
+    }
     if (!stands(effects, effect)) fail(needs_text(effect), needs_mend(effect));
   }
 }

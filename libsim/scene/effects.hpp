@@ -43,6 +43,33 @@ enum class EffectKind {
 inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind::count);
 inline constexpr EffectKind no_effect = EffectKind::count;
 
+// Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
+// is absent, least, most).
+#define SIM_EFFECT_OPTIONS(OPTION) OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)
+
+enum class EffectOption {
+#define SIM_ENUMERATOR(Name, ...) Name,
+  SIM_EFFECT_OPTIONS(SIM_ENUMERATOR)
+#undef SIM_ENUMERATOR
+      count
+};
+inline constexpr std::size_t option_count = static_cast<std::size_t>(EffectOption::count);
+/// A value for each row; those of other effects mean nothing.
+using EffectOptions = std::array<double, option_count>;
+inline constexpr EffectOptions usual_options{
+#define SIM_VALUE(Name, effect, key, usual, ...) usual,
+    SIM_EFFECT_OPTIONS(SIM_VALUE)
+#undef SIM_VALUE
+};
+
+/// A row of the options.
+struct OptionTraits {
+  EffectKind of;
+  const char* key;
+  double usual, least, most;
+};
+const OptionTraits& traits_of(EffectOption option);
+
 /// A row of the registry.
 struct EffectTraits {
   const char* word;
@@ -58,12 +85,19 @@ const EffectTraits& traits_of(EffectKind kind);
 struct Effect {
   EffectKind kind{};
   double coefficient = 0;  ///< >= 0; 0 drops the effect
+  EffectOptions options = usual_options;
 };
+/// " key = value" of each of an effect's options, for records and people; empty without options.
+std::string options_in_words(const Effect& effect);
 
-/// Coefficient of each effect; 0 where it is not listed.
+/// Coefficient of each effect, 0 where it is not listed, and their options.
 struct EffectCoefficients {
   std::array<float, effect_count> values{};
+  EffectOptions options = usual_options;
   float operator[](EffectKind kind) const { return values[static_cast<std::size_t>(kind)]; }
+  float operator[](EffectOption option) const {
+    return static_cast<float>(options[static_cast<std::size_t>(option)]);
+  }
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 

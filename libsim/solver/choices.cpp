@@ -53,7 +53,7 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   out << "  effects: ";
   for (const Effect& effect : scene.effects) {
     const auto& traits = traits_of(effect.kind);
-    out << traits.word << " " << traits.key << " = " << effect.coefficient << ", ";
+    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect) << ", ";
   }
   const EffectStep longest = longest_step(scene.effects, d);
   if (longest.of == no_effect) return out.str() + "which ask for no shorter substeps\n";

@@ -48,7 +48,7 @@ void add(std::ostream& text, const Scene& s) {
     text << " outlet " << static_cast<int>(o.wall) << ' ' << o.min_m[0] << ' ' << o.min_m[1] << ' '
          << o.max_m[0] << ' ' << o.max_m[1];
   for (const Effect& e : s.effects)
-    text << " effect " << traits_of(e.kind).word << ' ' << e.coefficient;
+    text << " effect " << traits_of(e.kind).word << ' ' << e.coefficient << options_in_words(e);
   if (s.central_force) {
     const CentralForce& f = *s.central_force;
     text << " force " << f.omega_per_s;

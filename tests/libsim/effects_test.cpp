@@ -54,6 +54,23 @@ TEST(Effects, AreReadFromASceneFile) {
   EXPECT_EQ(scene.effects[1].coefficient, 0);
 }
 
+TEST(Effects, OptionsHaveUsualValuesAndRangesAndStandInTheStatesKey) {
+  NEEDS_EFFECTS;
+  const std::string drag = effect("air_drag", "rate_per_s", "0.5");
+  const auto option = static_cast<std::size_t>(sim::EffectOption::AirDragCoarsest);
+  EXPECT_EQ(sim::parse_scene(dam_with(drag), "scene.toml").effects[0].options[option], 3);
+  auto scene = sim::parse_scene(dam_with(drag + "coarsest_level = 1.0\n"), "scene.toml");
+  EXPECT_EQ(scene.effects[0].options[option], 1);
+  EXPECT_EQ(sim::options_in_words(scene.effects[0]), " coarsest_level = 1");
+  EXPECT_EQ(sim::coefficients_of(scene.effects)[sim::EffectOption::AirDragCoarsest], 1);
+  EXPECT_THAT(fluid_test::scene_error(dam_with(drag + "coarsest_level = 4.0\n")),
+              AllOf(HasSubstr("coarsest_level"), HasSubstr("out of range")));
+  EXPECT_THAT(fluid_test::scene_error(dam_with(tension + "coarsest_level = 1.0\n")),
+              HasSubstr("is not a known key"));
+  scene.effects[0].options[option] = -1;
+  EXPECT_THROW(sim::check_effects(scene.effects), base::Error);
+}
+
 TEST(Effects, ErrorsNameThePlaceAndTheMend) {
   NEEDS_EFFECTS;
   const auto error = [](const std::string& effects) { return fluid_test::scene_error(dam_with(effects)); };

@@ -11,25 +11,31 @@ namespace {
 /// a constant e, so that a lone drop falls at g / k at last.
 struct AirDrag {
   const float* density;
+  const std::uint8_t* level;
   Vec4* velocity;
-  float rate;   ///< k dt
-  float alone;  ///< rho / rho_0 of a lone particle
+  float rate;    ///< k dt
+  float alone;   ///< rho / rho_0 of a lone particle
+  int coarsest;  ///< level that air still brakes
 
   SIM_FN void operator()(int i) const {
+    if (level[i] > coarsest) return;
     const float exposed = at_least(1 - density[i], 0.0f) / (1 - alone);
     velocity[i] = with_w(expf(-rate * at_most(exposed, 1.0f)) * xyz(velocity[i]), 0);
   }
 };
 
-using Columns = ColumnView<columns(Column::Density, Column::Velocity), columns(Column::Velocity)>;
+using Columns =
+    ColumnView<columns(Column::Level, Column::Density, Column::Velocity), columns(Column::Velocity)>;
 
 void run(FluidState& state, Columns p) {
   const auto& k = state.parameters;
   for_each("air drag", p.size(),
            AirDrag{.density = p.density(),
+                   .level = p.level(),
                    .velocity = p.velocity(),
                    .rate = k.dt * k.effects[EffectKind::AirDrag],
-                   .alone = mass_of(1, 1) * Kernel(1).density(0)});
+                   .alone = mass_of(1, 1) * Kernel(1).density(0),
+                   .coarsest = static_cast<int>(k.effects[EffectOption::AirDragCoarsest])});
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ std::vector<Stage> passes_of(EffectKind kind) {
     if (stage.effect == kind) out.push_back(stage);
   return out;
 }
+std::size_t index_of(EffectKind kind) { return static_cast<std::size_t>(kind); }
 #define NEEDS_EFFECTS \
   if (!has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
@@ -73,7 +74,7 @@ std::vector<Vec4> mixed_ball() {
 SIM_TEST(Cohesion, KeepsMomentumForMixedMasses) {
   NEEDS_EFFECTS;
   auto state = state_of(mixed_ball(), false);
-  state.parameters.effects.values[0] = 50;
+  state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
   const auto points = state.particles.all().position.to_host();
   const auto v = velocities_by(EffectKind::Cohesion, state);
   double momentum[3] = {}, exchanged = 0;
@@ -101,7 +102,7 @@ SIM_TEST(Cohesion, PullsAtASurfaceAndNowhereElse) {
   NEEDS_EFFECTS;
   constexpr int side = 9;
   auto state = state_of(cube(side, 0.1f), true);
-  state.parameters.effects.values[0] = 50;
+  state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
   const auto v = velocities_by(EffectKind::Cohesion, state);
   const auto at = [&](int x, int y, int z) {
     return xyz(v[static_cast<std::size_t>((z * side + y) * side + x)]);
@@ -117,7 +118,7 @@ SIM_TEST(Cohesion, OneLevelAndMixedKernelsAgreeAtOneLevel) {
   std::vector<Vec4> v[2];
   for (const bool one : {true, false}) {
     auto state = state_of(cube(5, 0.1f), one);
-    state.parameters.effects.values[0] = 50;
+    state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
     v[one] = velocities_by(EffectKind::Cohesion, state);
   }
   const float scale = length(xyz(v[0][0]));
@@ -131,7 +132,7 @@ SIM_TEST(Cohesion, APairOfTwiceTheSizeIsPulledAQuarterAsFast) {
   for (const int scale : {1, 2}) {
     const float d = 0.1f * static_cast<float>(scale);
     auto state = state_of({{0, 0, 0, 2 * d}, {d, 0, 0, 2 * d}}, true);
-    state.parameters.effects.values[0] = 50;
+    state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
     speed[scale - 1] = velocities_by(EffectKind::Cohesion, state)[0].x;
   }
   EXPECT_GT(speed[0], 0);
@@ -150,7 +151,7 @@ SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWork) {
     for (int k = 0; k < steps; ++k) points.push_back({h * (static_cast<float>(k) + 0.5f) / steps, 1, 1, h});
     auto state = state_of(points, true);
     state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
-    state.parameters.effects.values[1] = work;
+    state.parameters.effects.values[index_of(EffectKind::Adhesion)] = work;
     for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
     const auto v = state.particles.all().velocity.to_host();
     const auto x = state.particles.all().position.to_host();
@@ -171,12 +172,25 @@ SIM_TEST(AirDrag, BrakesALoneDropAtItsRateAndWaterNotAtAll) {
     auto points = cube(7, h / 2);
     points.push_back({20, 0, 0, h});
     auto state = state_of(points, true);
-    state.parameters.effects.values[2] = 3;
+    state.parameters.effects.values[index_of(EffectKind::AirDrag)] = 3;
     state.particles.all().velocity.from_host(std::vector<Vec4>(points.size(), Vec4{0, -2, 0, 0}));
     const auto v = velocities_by(EffectKind::AirDrag, state);
     EXPECT_NEAR(v.back().y, -2 * std::exp(-3 * state.parameters.dt), 1e-5f);
     EXPECT_NEAR(v[3 + 3 * 7 + 3 * 49].y, -2, 1e-5f);
   }
+}
+
+SIM_TEST(AirDrag, LeavesOutLevelsCoarserThanItsOwnDetail) {
+  NEEDS_EFFECTS;
+  auto state = state_of({{0, 0, 0, 0.1f}, {20, 0, 0, 0.126f}}, false);
+  state.particles.all().level.from_host({0, 1});
+  state.particles.all().velocity.from_host(std::vector<Vec4>(2, Vec4{0, -2, 0, 0}));
+  auto& effects = state.parameters.effects;
+  effects.values[index_of(EffectKind::AirDrag)] = 3;
+  effects.options[static_cast<std::size_t>(EffectOption::AirDragCoarsest)] = 0;
+  const auto v = velocities_by(EffectKind::AirDrag, state);
+  EXPECT_GT(v[0].y, -2);
+  EXPECT_EQ(v[1].y, -2);
 }
 
 }  // namespace
