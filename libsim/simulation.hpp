@@ -278,6 +278,10 @@ class Simulation {
   virtual std::string explain() const = 0;
 };
 
+/// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
+/// base::Error when the options' are too few for an effect, or the effect's too many.
+int least_substeps(const Scene& scene, const SimulationOptions& options);
+
 /// Fills, settles and returns the scene at frame 0. Errors are base::Error.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 

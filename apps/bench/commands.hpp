@@ -9,6 +9,9 @@ namespace apps {
 /// vip-bench accuracy: error and milliseconds of each setting, and what a knob buys.
 void add_accuracy_command(CLI::App& app);
 
+/// vip-bench effects: what each of a scene's effects adds to a frame.
+void add_effects_command(CLI::App& app);
+
 /// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
 void add_frame_command(CLI::App& app);
 

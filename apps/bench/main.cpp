@@ -6,6 +6,7 @@
 int main(int argc, char** argv) {
   CLI::App app{"What accuracy costs in time", "vip-bench"};
   apps::add_accuracy_command(app);
+  apps::add_effects_command(app);
   apps::add_frame_command(app);
   apps::add_growth_command(app);
   apps::add_headset_command(app);

@@ -64,7 +64,7 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   return out.str();
 }
 
-int least_substeps(const Scene& scene, const SimulationOptions& options) {
+int substeps_needed(const Scene& scene, const SimulationOptions& options) {
   const int usual = options.substeps > 0 ? options.substeps : substeps_of(scene, options.n_star);
   const EffectStep longest =
       longest_step(scene.effects, resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m);
@@ -87,7 +87,7 @@ int least_substeps(const Scene& scene, const SimulationOptions& options) {
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
   SolverParameters out;
   const double frame_dt = frame_dt_of(scene, options);
-  out.substeps = least_substeps(scene, options);
+  out.substeps = substeps_needed(scene, options);
   out.effects = coefficients_of(scene.effects);
   out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
   out.dt = static_cast<float>(frame_dt / out.substeps);
@@ -143,7 +143,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   out.acceleration_m_s2 = acceleration;
   const MethodTraits& method = traits_of(options.method);
   out.support_m = 2 * (method.adaptive() ? resolution.finest_spacing_m : resolution.spacing_m);
-  out.least = least_substeps(scene, options);
+  out.least = substeps_needed(scene, options);
   out.most = std::max(out.least, options.most_substeps > 0 ? options.most_substeps : usual_most);
   if (options.substeps > 0) out.most = out.least;
   return {out, fastest};

@@ -18,7 +18,7 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
 /// base::Error when the options' are too few for an effect, or the effect's too many.
-int least_substeps(const Scene& scene, const SimulationOptions& options);
+int substeps_needed(const Scene& scene, const SimulationOptions& options);
 /// The scene's effects, their step and the numbers of its scale; empty without effects.
 std::string effects_in_words(const Scene& scene, const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.

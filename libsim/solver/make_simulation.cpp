@@ -8,6 +8,7 @@ namespace sim {
 // Each back end is a namespace of its own, compiled from one text (libsim/exec/space.hpp).
 namespace cpu {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
+int substeps_needed(const Scene& scene, const SimulationOptions& options);
 }
 #ifdef SIM_HAS_CUDA
 namespace cuda {
@@ -25,6 +26,11 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
   return cpu::make_simulation(scene, options);
 }
 }  // namespace
+
+// Both back ends have the same rule.
+int least_substeps(const Scene& scene, const SimulationOptions& options) {
+  return cpu::substeps_needed(scene, options);
+}
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
   const bool resumes = !options.resume_from.empty();

@@ -64,6 +64,9 @@ class OutputOptionsE2e : public ::testing::Test {
             power_ + " --cell " + first_cell(power_) + " --out ",
             "vip-stats power merge" + power_.substr(power_.find(" protocols")) + " " + shard_ + " --json ",
             bench + " --json ",
+            effects_ + " --csv ",
+            effects_ + " --markdown ",
+            effects_ + " --svg ",
             growth_ + " --csv ",
             growth_ + " --svg ",
             accuracy_ + " --db ",
@@ -112,6 +115,8 @@ class OutputOptionsE2e : public ::testing::Test {
       "vip-bench accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
   inline static const std::string power_ =
       "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10";
+  inline static const std::string effects_ =
+      "vip-bench effects data/scenes/splash.toml --n-star 64 --frames 1 --warm-up 0";
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
   inline static const std::string table2_ =

@@ -1,0 +1,155 @@
+/// vip-bench effects: what each of a scene's effects adds to a frame.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+
+#include "apps/bench/cells.hpp"
+#include "apps/bench/commands.hpp"
+#include "apps/bench/effects_cost.hpp"
+#include "apps/bench/timed_run.hpp"
+#include "apps/common/finite_water.hpp"
+#include "apps/common/options.hpp"
+#include "apps/common/program.hpp"
+#include "apps/common/timing.hpp"
+#include "libsim/simulation.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct EffectsOptions {
+  std::string scene = "data/scenes/splash.toml";
+  std::string n_star = "4k", method = "HiRes", backend = "auto", tau = "fixed:-6";
+  std::string csv, markdown, svg;
+  int frames = 60, warm_up = 5, substeps = 0;
+};
+
+sim::SimulationOptions choice_of(const EffectsOptions& options) {
+  sim::SimulationOptions out;
+  out.method = sim::parse_method(options.method);
+  out.n_star = sim::parse_n_star(options.n_star);
+  out.backend = sim::choose_backend(options.backend);
+  out.temporal.fixed_tau = sim::parse_tau(options.tau);
+  out.substeps = options.substeps;
+  return out;
+}
+
+/// The variants' fluids, all there at once, so that their frames are timed in turn.
+struct Running {
+  EffectCost cost;
+  std::unique_ptr<sim::Simulation> fluid;
+};
+
+Running start(const EffectVariant& variant, const sim::SimulationOptions& choice, int warm_up) {
+  Running out{.cost = {.name = variant.name}, .fluid = nullptr};
+  const auto before = sim::device_bytes_taken(choice.backend);
+  out.fluid = make_settled(variant.scene, choice);
+  for (int frame = 0; frame < warm_up; ++frame) out.fluid->step_frame();
+  out.fluid->synchronize();
+  if (const auto after = sim::device_bytes_taken(choice.backend))
+    out.cost.device_bytes = static_cast<double>(*after - *before);
+  out.cost.column_bytes = static_cast<double>(out.fluid->particle_bytes());
+  return out;
+}
+
+void time_frame(Running& running, int frames) {
+  sim::Simulation& fluid = *running.fluid;
+  const double begin = milliseconds_now();
+  fluid.step_frame();
+  fluid.synchronize();
+  const double ms = milliseconds_now() - begin;
+  fluid.frame_time(ms);
+  running.cost.ms_frame += ms / frames;
+  running.cost.particles += static_cast<double>(fluid.particle_count()) / frames;
+}
+
+bool same(const std::vector<sim::ParticleState>& a, const std::vector<sim::ParticleState>& b) {
+  const auto equal = [](const sim::ParticleState& p, const sim::ParticleState& q) {
+    return p.id == q.id && p.level == q.level && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&
+           p.vx_m_s == q.vx_m_s && p.vy_m_s == q.vy_m_s && p.vz_m_s == q.vz_m_s;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal);
+}
+
+/// Launches of one more frame, which nobody times.
+void count_launches(Running& running) {
+  running.fluid->profile_launches(true);
+  running.fluid->step_frame();
+  for (const auto& pass : running.fluid->launch_times()) running.cost.launches += pass.launches;
+  running.fluid->profile_launches(false);
+}
+
+void run_effects(const EffectsOptions& options) {
+  check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
+  const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
+  const auto variants = variants_of(scene);
+  sim::SimulationOptions choice = choice_of(options);
+  // The same in every variant, so that an effect is not charged for its shorter substeps.
+  choice.substeps = sim::least_substeps(scene, choice);
+  std::vector<Running> all;
+  for (const EffectVariant& variant : variants) all.push_back(start(variant, choice, options.warm_up));
+  Progress progress("frames", static_cast<std::size_t>(options.frames));
+  for (int frame = 0; frame < options.frames; ++frame) {
+    for (Running& running : all) time_frame(running, options.frames);
+    progress.update(static_cast<std::size_t>(frame) + 1);
+  }
+  const auto bare = all.front().fluid->read_state();
+  std::vector<EffectCost> costs;
+  for (Running& running : all) {
+    check_finite(*running.fluid, scene.name + ", effects: " + running.cost.name);
+    running.cost.same_state = same(bare, running.fluid->read_state());
+    count_launches(running);
+    costs.push_back(running.cost);
+  }
+  const EffectsRun run{scene.name,
+                       sim::method_name(choice.method),
+                       sim::backend_name(choice.backend),
+                       options.n_star,
+                       options.frames,
+                       choice.substeps};
+  const TextTable table = to_table(run, costs);
+  std::printf("%s", to_markdown(table).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(table));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(run, costs));
+}
+
+constexpr const char* columns_help =
+    "A row for the bare scene, for each of its effects alone (with what it needs), for all, and for all "
+    "with\n"
+    "coefficients of 0. Their fluids step in turn, with the same number of substeps: the least that all the\n"
+    "effects together allow. What is added is over the bare scene. No picture is drawn. column_bytes count\n"
+    "the particles' columns and what saliency, temporal acceleration, nozzles and outlets keep;\n"
+    "device_bytes all of the device's memory (- on the CPU). same_state: after the timed frames all\n"
+    "particles are where they are without effects, bit for bit. Water with an effect is other water, so its\n"
+    "time holds what that changed too.";
+
+}  // namespace
+
+void add_effects_command(CLI::App& app) {
+  auto options = std::make_shared<EffectsOptions>();
+  auto* command = app.add_subcommand("effects", "What each of a scene's effects adds to a frame");
+  command->footer(columns_help);
+  command->add_option("scene", options->scene, "Scene file that lists effects")->capture_default_str();
+  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
+      ->capture_default_str();
+  add_method(*command, options->method);
+  add_backend(*command, options->backend);
+  command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")
+      ->capture_default_str();
+  add_count(*command, "--substeps", options->substeps, 0, 1000,
+            "Substeps in every frame; 0 = the least that the effects and the scene allow");
+  add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames of each variant");
+  add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
+  command->add_option("--csv", options->csv, "File for a row for each variant")->check(output_file());
+  command->add_option("--markdown", options->markdown, "File for the table")->check(output_file());
+  command->add_option("--svg", options->svg, "File for a picture with a bar for each variant")
+      ->check(output_file());
+  command->callback([options] { run_effects(*options); });
+}
+
+}  // namespace apps
