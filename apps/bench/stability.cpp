@@ -26,6 +26,7 @@ using sim::cases::Setting;
 
 struct StabilityOptions {
   std::string cases = "all", methods = "all", backend = "auto";
+  std::string effects;  ///< scene file whose effects the cases' water has
   std::string csv, markdown, svg;
   double most = 4, resolution = 1.5;
   bool quick = false, full = false;
@@ -160,13 +161,34 @@ void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::B
   if (broken) std::rethrow_exception(broken);
 }
 
+std::vector<sim::Effect> effects_of(const std::string& path) {
+  if (path.empty()) return {};
+  auto effects = sim::read_scene(base::find_input(path)).effects;
+  if (effects.empty())
+    throw base::Error("--effects " + path, "is a scene without effects",
+                      "give one that has [[effect]] tables");
+  return effects;
+}
+
+std::string in_words(const std::vector<sim::Effect>& effects) {
+  std::string out;
+  for (const auto& effect : effects) {
+    const auto& traits = sim::traits_of(effect.kind);
+    out += std::string("; effect ") + traits.word + " " + traits.key + " = " + shortest(effect.coefficient) +
+           sim::options_in_words(effect);
+  }
+  return out;
+}
+
 StabilityMap map_of(const StabilityOptions& options) {
   const auto backend = sim::choose_backend(options.backend);
+  const auto effects = effects_of(options.effects);
   StabilityMap out;
   out.most = options.most;
   out.resolution = options.resolution;
   out.circumstances = processor() + "; back end " + sim::backend_name(backend) + "; " +
-                      (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration";
+                      (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration" +
+                      in_words(effects);
   const auto methods = methods_of(options.methods);
   for (const auto method : methods) out.methods.push_back(sim::method_name(method));
   std::vector<Job> jobs;
@@ -177,7 +199,8 @@ StabilityMap map_of(const StabilityOptions& options) {
       jobs.push_back({one,
                       {.method = method,
                        .backend = backend,
-                       .size = options.full ? sim::cases::Size::Full : sim::cases::Size::Small}});
+                       .size = options.full ? sim::cases::Size::Full : sim::cases::Size::Small,
+                       .effects = effects}});
     }
   }
   measure_all(jobs, options, backend);
@@ -209,6 +232,7 @@ void add_stability_command(CLI::App& app) {
   command->add_option("--case", options->cases, "all, or ids with commas, such as S9 (docs/stability.md)")
       ->capture_default_str();
   command->add_option("--method", options->methods, "all, or names with commas")->capture_default_str();
+  command->add_option("--effects", options->effects, "Scene file whose effects the cases' water has");
   add_backend(*command, options->backend);
   auto* most = command->add_option("--most", options->most, "Largest factor of a frame step or a scale")
                    ->check(number_in(1.01, 64.0))

@@ -23,6 +23,7 @@ struct Setting {
   int iterations = 0;     ///< constraint projections a substep, 1 .. LiveNumbers::most_iterations
   double scale = 1;       ///< of HardCase::scaled, > 0
   Size size = Size::Small;
+  std::vector<Effect> effects = {};  ///< that the water has besides; what has settled before has none
 };
 
 /// One measured quantity with its gate.

@@ -19,7 +19,7 @@ Outcome run(const Setting& setting) {
   const bool fine = setting.method == MethodKind::HiRes;
   // Under temporal acceleration the densest is chaotic: 1.13 to 1.19 in eight seeds of its choice.
   const bool temporal = traits_of(setting.method).temporal;
-  Watch watch(scene, options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});
+  Watch watch(with_effects(scene, setting), options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});
   const double filled = centre_height(watch.state());
   double top = 0, fastest_rms = 0;
   const int frames = frames_of(setting, setting.size == Size::Small ? 1.5 : 4);

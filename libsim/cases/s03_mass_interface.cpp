@@ -25,7 +25,8 @@ Outcome run(const Setting& setting) {
   const State fine = block(MethodKind::HiRes, {0, height, 0}, {12 * d, 2 * height, 12 * d}, {},
                            static_cast<int>(start.size()));
   start.insert(start.end(), fine.begin(), fine.end());
-  Watch watch(scene, options_of(setting, scene, start), {.density = 1.08, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
+              {.density = 1.08, .outside_m = 0.1 * d});
   // The lattices settle in the first second.
   for (int frame = 0; frame < frames_of(setting, 1) && watch.step(); ++frame) {
   }

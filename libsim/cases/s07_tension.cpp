@@ -28,7 +28,8 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
   scene.gravity_m_s2 = 0;
-  Watch watch(scene, options_of(setting, scene, start), {.density = 1.5, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
+              {.density = 1.5, .outside_m = 0.1 * d});
   // A pair of a thousand that meets by chance is no clump: one in a hundred is.
   double close = 2, closest = 2, energy = 1;
   const double began = kinetic_energy(start);

@@ -21,7 +21,8 @@ Outcome collapse(const Setting& setting) {
     SimulationOptions options = options_of(one);
     options.n_star = std::lround(8 * 8 * height / d / 8);
     const double bound = 1.5 * std::sqrt(2 * gravity * height);
-    Watch watch(scene, options, {.density = 1.5, .speed_m_s = bound, .outside_m = 0.1 * d});
+    Watch watch(with_effects(scene, setting), options,
+                {.density = 1.5, .speed_m_s = bound, .outside_m = 0.1 * d});
     for (int frame = 0; frame < 30 && watch.step(); ++frame) {
     }
     const auto found =
@@ -48,7 +49,7 @@ Outcome dam(const Setting& setting) {
   // size alone. So all frames have a looser gate there, and most frames that which is asked.
   const auto& traits = traits_of(setting.method);
   const bool levels = traits.adaptive();
-  Watch watch(scene, options, {.density = levels ? 1.5 : 1.2, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options, {.density = levels ? 1.5 : 1.2, .outside_m = 0.1 * d});
   double error = 0;
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);
   for (int frame = 0; frame < frames && watch.step(); ++frame) error += watch.report().density_error_mean;

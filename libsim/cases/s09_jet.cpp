@@ -25,7 +25,8 @@ Outcome run(const Setting& setting) {
   const Vec3d low{12 - gap - length, 3.4, 3.4};
   const State start =
       block(setting.method, low, {low[0] + length, low[1] + width, low[2] + width}, {speed, 0, 0});
-  Watch watch(scene, options_of(setting, scene, start), {.density = 1.5, .outside_m = 1e-6});
+  Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
+              {.density = 1.5, .outside_m = 1e-6});
   // The wall takes rho A v^2 while the middle of the bar arrives: of the bar's momentum, v^2 / length a
   // second.
   const double dt = frame_dt_of(setting);

@@ -46,8 +46,9 @@ Outcome run(const Setting& setting) {
       options.particle_capacity = static_cast<std::int64_t>(start.size());
       return options;
     };
-    Watch reference(pool.scene, options_for(fine), {});
-    Watch watch(pool.scene, options_for(setting), {.density = 1.5, .outside_m = 0.1 * d});
+    Watch reference(with_effects(pool.scene, setting), options_for(fine), {});
+    Watch watch(with_effects(pool.scene, setting), options_for(setting),
+                {.density = 1.5, .outside_m = 0.1 * d});
     double least = 1;
     const int frames = frames_of(setting, 0.3);
     for (int frame = 1; frame <= frames; ++frame) {

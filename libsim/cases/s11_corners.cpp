@@ -79,7 +79,7 @@ Outcome run(const Setting& setting) {
   const Scene scene = tank({side, 3 * depth, side}, {side, depth, side});
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(side * side * depth / (d * d * d) / 8);
-  Watch watch(scene, options, {.density = 1.5, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});
   const double kick = 2 * setting.scale;  // m/s
   const int frames = frames_of(setting, small ? 5 : 60), period = frames_of(setting, 1.5);
   double densest = 0;

@@ -25,7 +25,7 @@ Outcome run(const Setting& setting) {
       for (int i = 0; i < n; ++i) start.push_back({i, 0, at, at, at, 0, 0, 0});
       SimulationOptions options = options_of(setting, scene, start);
       if (setting.substeps == 0) options.substeps = 3;
-      Watch watch(scene, options, {.outside_m = 0.1 * d});
+      Watch watch(with_effects(scene, setting), options, {.outside_m = 0.1 * d});
       const int frames = frames_of(setting, 0.5);
       for (int frame = 0; frame < frames && watch.step(); ++frame) {
       }

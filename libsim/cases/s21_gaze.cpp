@@ -45,7 +45,7 @@ Outcome run(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = Pool::n_star;
   options.start = pool.state;
-  Watch watch(pool.scene, options, {.density = 1.3, .outside_m = 0.1 * d});
+  Watch watch(with_effects(pool.scene, setting), options, {.density = 1.3, .outside_m = 0.1 * d});
   int beyond = 0;  // frames
   const auto frames_at = [&](const Vec3d& point, int frames, bool valid) {
     for (int frame = 0; frame < frames; ++frame) {

@@ -21,7 +21,7 @@ Outcome run(const Setting& setting) {
   scene.fill_max_m[1] *= setting.scale;
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 512 : setting.backend == Backend::Cpu ? 4096 : 32 * 1024;
-  Watch watch(scene, options, {.density = 1.5, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});
   // The first two frames lift the lattice to its rest density, by half a per cent at 512 particles.
   for (int frame = 0; frame < 2; ++frame) watch.step();
   const double start = energy(watch.state());

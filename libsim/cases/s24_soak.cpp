@@ -30,7 +30,7 @@ Outcome run(const Setting& setting) {
   for (Nozzle& nozzle : scene.nozzles) nozzle.speed_m_s *= setting.scale;
   SimulationOptions options = options_of(setting);
   options.n_star = small ? 64 : 2048;
-  Watch watch(scene, options, {.density = 2, .outside_m = 0.1 * d});
+  Watch watch(with_effects(scene, setting), options, {.density = 2, .outside_m = 0.1 * d});
   // The GPU takes the long run: three cores took seven minutes for it.
   const double seconds = small ? 20 : setting.backend == Backend::Cuda ? 300 : 120;
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);

@@ -54,6 +54,11 @@ Finding Watch::speed_finding() const { return at_most("fastest", fastest_, bound
 Finding Watch::outside_finding() const { return at_most("particles outside", out_, 0); }
 Outcome Watch::outcome(std::vector<Finding> findings) const { return {std::move(findings), stopped_}; }
 
+Scene with_effects(Scene scene, const Setting& setting) {
+  scene.effects.insert(scene.effects.end(), setting.effects.begin(), setting.effects.end());
+  return scene;
+}
+
 SimulationOptions options_of(const Setting& setting) {
   SimulationOptions out;
   out.method = setting.method;

@@ -57,6 +57,8 @@ class Watch {
   std::optional<Stop> stopped_;
 };
 
+/// The scene with the setting's effects.
+Scene with_effects(Scene scene, const Setting& setting);
 /// Method, back end and numbers of the setting. Ours-TSp runs at tau = -10: beta = 0.67.
 SimulationOptions options_of(const Setting& setting);
 /// The same for a run that begins with these particles, whose finest lie d apart.

@@ -1,0 +1,73 @@
+/// Hard cases in water with effects: those of each demo scene that lists some.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "libsim/cases/hard_case.hpp"
+#include "stats/base/file.hpp"
+
+namespace {
+
+using sim::cases::Setting;
+
+std::vector<sim::Scene> scenes_with_effects() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(base::resource("data/scenes")))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<sim::Scene> out;
+  for (const auto& file : files) {
+    sim::Scene scene = sim::read_scene(file);
+    if (!scene.effects.empty()) out.push_back(std::move(scene));
+  }
+  return out;
+}
+
+/// An effect may change where water comes to rest and how fast it gets there; these it may not.
+bool is_of_stability(const sim::cases::Finding& finding) {
+  return finding.name == "particles outside" || finding.name == "braked" ||
+         finding.name.starts_with("largest rho / rho_0");
+}
+
+void runs(const char* id, const Setting& plain) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto scenes = scenes_with_effects();
+  ASSERT_GE(scenes.size(), 3u);
+  for (const sim::Scene& scene : scenes) {
+    Setting setting = plain;
+    setting.effects = scene.effects;
+    const auto outcome = sim::cases::hard_case(id).run(setting);
+    std::printf("%s, %s, effects of %s: %s\n", id, sim::method_name(setting.method).c_str(),
+                scene.name.c_str(), outcome.text().c_str());
+    EXPECT_FALSE(outcome.stopped) << scene.name << ": " << outcome.text();
+    for (const auto& finding : outcome.findings)
+      EXPECT_TRUE(finding.passes() || !is_of_stability(finding)) << scene.name << ": " << outcome.text();
+  }
+}
+
+class EffectsCases : public testing::TestWithParam<std::tuple<const char*, sim::MethodKind>> {};
+class EffectsCasesGpu : public EffectsCases {};
+
+TEST_P(EffectsCases, StayStable) {
+  const auto [id, method] = GetParam();
+  runs(id, {.method = method});
+}
+TEST_P(EffectsCasesGpu, StayStable) {
+  const auto [id, method] = GetParam();
+  runs(id, {.method = method, .backend = sim::Backend::Cuda});
+}
+
+std::string name_of(const testing::TestParamInfo<EffectsCases::ParamType>& info) {
+  std::string out = std::string(std::get<0>(info.param)) + sim::method_name(std::get<1>(info.param));
+  std::erase(out, '-');
+  return out;
+}
+const auto cases = testing::Combine(
+    testing::Values("S1", "S9", "S11"),
+    testing::Values(sim::MethodKind::HiRes, sim::MethodKind::LoRes, sim::MethodKind::OursTsp));
+INSTANTIATE_TEST_SUITE_P(OfScenes, EffectsCases, cases, name_of);
+INSTANTIATE_TEST_SUITE_P(OfScenes, EffectsCasesGpu, cases, name_of);
+
+}  // namespace
