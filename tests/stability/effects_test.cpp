@@ -2,28 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-
 #include "libsim/cases/hard_case.hpp"
-#include "stats/base/file.hpp"
+#include "tests/stability/demo_scenes.hpp"
 
 namespace {
 
 using sim::cases::Setting;
-
-std::vector<sim::Scene> scenes_with_effects() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(base::resource("data/scenes")))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::vector<sim::Scene> out;
-  for (const auto& file : files) {
-    sim::Scene scene = sim::read_scene(file);
-    if (!scene.effects.empty()) out.push_back(std::move(scene));
-  }
-  return out;
-}
 
 /// An effect may change where water comes to rest and how fast it gets there; these it may not.
 bool is_of_stability(const sim::cases::Finding& finding) {
@@ -33,7 +17,7 @@ bool is_of_stability(const sim::cases::Finding& finding) {
 
 void runs(const char* id, const Setting& plain) {
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
-  const auto scenes = scenes_with_effects();
+  const auto scenes = stability_test::scenes_with_effects();
   ASSERT_GE(scenes.size(), 3u);
   for (const sim::Scene& scene : scenes) {
     Setting setting = plain;

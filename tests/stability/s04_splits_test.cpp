@@ -5,6 +5,7 @@
 
 #include "libsim/methods/preset.hpp"
 #include "tests/libsim/levels_helpers.hpp"
+#include "tests/stability/demo_scenes.hpp"
 
 namespace {
 
@@ -179,6 +180,24 @@ void splits_are_calm(Backend backend) {
 }
 TEST(S04Splits, AreCalm) { splits_are_calm(Backend::Cpu); }
 TEST(S04SplitsGpu, AreCalm) { splits_are_calm(Backend::Cuda); }
+
+/// In water with the effects of each demo scene, from one start. Effects move water too, so that only what is
+/// dense or not sound counts.
+void splits_with_effects_are_sound(Backend backend) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  Settled fine(backend);
+  for (const sim::Scene& scene : stability_test::scenes_with_effects()) {
+    fine.scene.effects = scene.effects;
+    auto options = options_for(backend, Settled::n_star, everywhere(3));
+    options.start = coarse_start(backend, fine, 0);
+    const Unrest unrest = split_within(middle_particles(*options.start, 1)[0], few, 0, fine, options);
+    std::printf("S4, effects of %s: max rho %.3f, largest kick in a frame %.2f m/s\n", scene.name.c_str(),
+                unrest.densest, unrest.kick);
+    EXPECT_LT(unrest.densest, 1.25) << scene.name;
+  }
+}
+TEST(S04Splits, WithEffectsAreSound) { splits_with_effects_are_sound(Backend::Cpu); }
+TEST(S04SplitsGpu, WithEffectsAreSound) { splits_with_effects_are_sound(Backend::Cuda); }
 
 // What the bounds above are there for breaks them: without the filter one particle kicks at 1.0 m/s.
 TEST(S04Splits, WithoutThrottleAreNotCalm) {
