@@ -67,8 +67,7 @@ struct Make {
   std::uint8_t* level;
   std::uint8_t* target;
   std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Descents descents;
   int first;
   float support;
   std::uint8_t new_level;
@@ -79,8 +78,7 @@ struct Make {
     level[i] = new_level;
     if (target) target[i] = new_level;
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
-    if (age) age[i] = 0;
-    if (waiting) waiting[i] = 0;
+    descents.make(i);
   }
 };
 
@@ -142,8 +140,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                 .level = p.level(),
                 .target = p.target(),
                 .history = p.history(),
-                .age = p.age(),
-                .waiting = p.waiting(),
+                .descents = particles.descents(),
                 .first = staying,
                 .support = supports.h[level],
                 .new_level = static_cast<std::uint8_t>(level)});

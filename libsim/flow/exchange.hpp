@@ -7,7 +7,7 @@ namespace sim::SIM_BACKEND {
 
 using ExchangeView = ColumnView<columns(Column::Position, Column::Id, Column::Level),
                                 columns(Column::Position, Column::Id, Column::Level), ColumnSet{},
-                                columns(Column::Target, Column::History, Column::Age, Column::Waiting)>;
+                                columns(Column::Target, Column::History)>;
 
 class Exchange {
  public:

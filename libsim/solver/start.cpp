@@ -100,6 +100,7 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start) {
   p.velocity.from_host(velocity);
   p.id.from_host(id);
   p.level.from_host(level);
+  state.particles.begin_descents();
   if (state.particles.has(Column::Saliency)) p.saliency.zero();
   if (state.particles.has(Column::Unrest)) {
     p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
