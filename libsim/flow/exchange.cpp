@@ -37,9 +37,14 @@ struct Leave {
   int* kept;
   int* ids;
   int made;
+  const std::uint8_t* level;
+  const float* temperature;  ///< nullptr where there is none
+  HeatLedger* heat;
   SIM_FN void operator()(int k) const {
-    kept[taken[k]] = 0;
-    if (k < made) ids[k] = id[taken[k]];
+    const int i = taken[k];
+    kept[i] = 0;
+    if (k < made) ids[k] = id[i];
+    if (temperature) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
   }
 };
 
@@ -100,7 +105,7 @@ Exchange::Cut Exchange::cut_at(std::int64_t need) {
 }
 
 int Exchange::run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found,
-                  int sites, int layers, int level, std::int64_t& reservoir) {
+                  int sites, int layers, int level, std::int64_t& reservoir, HeatLedger* heat) {
   const ExchangeView p(particles);
   const int n = p.size();
   mass_.resize(static_cast<std::size_t>(found));
@@ -121,7 +126,15 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
-  for_each("leave", cut.taken, Leave{lowest_first, p.id(), kept_.data(), id_.data(), made});
+  for_each("leave", cut.taken,
+           Leave{.taken = lowest_first,
+                 .id = p.id(),
+                 .kept = kept_.data(),
+                 .ids = id_.data(),
+                 .made = made,
+                 .level = p.level(),
+                 .temperature = p.temperature(),
+                 .heat = heat});
   if (made > cut.taken) {
     // Those just taken still count: the ids that they leave are in use again.
     list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
