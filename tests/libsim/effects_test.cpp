@@ -287,6 +287,7 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   const auto splash = scales("splash");
   EXPECT_NEAR(splash.reynolds, 900, 0.5);
   EXPECT_TRUE(std::isinf(splash.weber));
+  EXPECT_NEAR(scales("hot_jet").reynolds, 240, 0.5);
 }
 
 TEST(Effects, BelongToTheKeyOfAState) {
