@@ -38,13 +38,13 @@ struct Leave {
   int* ids;
   int made;
   const std::uint8_t* level;
-  const float* temperature;  ///< nullptr where there is none
-  HeatLedger* heat;
+  const float* temperature;
+  HeatLedger* heat;  ///< nullptr where there is no temperature
   SIM_FN void operator()(int k) const {
     const int i = taken[k];
     kept[i] = 0;
     if (k < made) ids[k] = id[i];
-    if (temperature) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
+    if (heat) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
   }
 };
 

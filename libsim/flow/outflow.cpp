@@ -10,15 +10,15 @@ struct Mark {
   Walls walls;
   int* stays;
   Outflow::Amount* left;
-  const float* temperature;  ///< nullptr where there is none
-  HeatLedger* heat;
+  const float* temperature;
+  HeatLedger* heat;  ///< nullptr where there is no temperature
   SIM_FN void operator()(int i) const {
     const bool gone = walls.through(xyz(position[i]));
     stays[i] = !gone;
     if (!gone) return;
     atomic_add(&left->particles, 1);
     atomic_add(&left->mass, 1 << level[i]);
-    if (temperature) atomic_add(&heat->drained, HeatLedger::of(temperature[i], level[i]));
+    if (heat) atomic_add(&heat->drained, HeatLedger::of(temperature[i], level[i]));
   }
 };
 

@@ -25,9 +25,9 @@ struct Pour {
   double first_lead, interval;  // s
   double first_turn;            // full turns
   const std::uint8_t* level;
-  float* temperature;  ///< nullptr where there is none
-  float warmth;        ///< of the jet, K above the reference
-  HeatLedger* heat;
+  float* temperature;
+  float warmth;      ///< of the jet, K above the reference
+  HeatLedger* heat;  ///< nullptr where there is no temperature
 
   SIM_FN void operator()(int k) const {
     const int site = k % sites;
@@ -43,7 +43,7 @@ struct Pour {
     const int i = which ? which[k] : first + k;
     position[i] = with_w(mouth + Vec3{r * cosf(angle), above, r * sinf(angle)}, position[i].w);
     velocity[i] = {0, gravity * lead - speed, 0, 0};
-    if (temperature) warm(i);
+    if (heat) warm(i);
   }
   /// A particle that is taken from the corners itself has not been told of.
   SIM_FN void warm(int i) const {
