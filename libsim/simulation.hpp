@@ -155,6 +155,13 @@ struct RelaxedStart {
   double compression = 0;  ///< mass-weighted mean of max(rho / rho_0 - 1, 0) that was left
 };
 
+/// Heat over the water's specific heat, in m_* K above the reference temperature, where the scene lists heat.
+/// held + taken + drained - poured - walls is constant.
+struct HeatReport {
+  double held = 0;                                            ///< by the water
+  double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
+};
+
 /// State of the fluid after a frame.
 struct FrameReport {
   int frame = 0;          ///< frames since the gate opened
@@ -177,6 +184,7 @@ struct FrameReport {
   std::int64_t drained = 0;    ///< left through outlets, in units of m_*
   std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured, in units of m_*; mass_units +
                                ///< reservoir + drained is constant
+  HeatReport heat;
   GuardCounts guards;
   TemporalReport temporal;
   SeenReport seen;  ///< the picture that saliency was given last

@@ -44,7 +44,7 @@ class PictureFolder {
   void write(int frame, const PreparedFluid& prepared, FluidPicture& picture, const sim::View& view,
              const sim::Offscreen& target) {
     sim::Simulation& fluid = *prepared.fluid;
-    OverlayPainter painter(prepared.finest_spacing_m);
+    OverlayPainter painter(prepared.scene, prepared.finest_spacing_m);
     legends_.clear();
     for (std::size_t i = 0; i < overlays_.size(); ++i) {
       if (i > 0) picture.draw(fluid, view, target.framebuffer());

@@ -17,15 +17,16 @@ constexpr float densest_error = 0.05F;
 }  // namespace
 
 const std::vector<std::string>& overlay_names() {
-  static const std::vector<std::string> names{"none",     "acuity", "manifold", "temporal", "combined",
-                                              "saliency", "level",  "speed",    "density",  "active"};
+  static const std::vector<std::string> names{"none",     "acuity",   "manifold",   "temporal",
+                                              "combined", "saliency", "level",      "speed",
+                                              "density",  "active",   "temperature"};
   return names;
 }
 
 const std::vector<std::string>& overlay_titles() {
   static const std::vector<std::string> titles{"none",       "acuity f_a", "manifold f_m", "temporal f_T",
                                                "combined F", "saliency s", "level",        "speed",
-                                               "density",    "active"};
+                                               "density",    "active",     "temperature"};
   return titles;
 }
 
@@ -103,6 +104,16 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
       field(sim::ParticleField::Active);
       overlay.classes = true;
       legend_ = "orange: moved by the velocity grid, green: solved";
+      break;
+    case OverlayKind::Temperature:
+      if (!heat_) {
+        legend_ = "temperature: the scene does not list heat";
+        return;
+      }
+      field(sim::ParticleField::Temperature);
+      overlay.low = static_cast<float>(temperatures_.least_k - reference_k_);
+      overlay.high = static_cast<float>(temperatures_.most_k - reference_k_);
+      legend_ = fmt::format("temperature {:.2f} to {:.2f} K", temperatures_.least_k, temperatures_.most_k);
       break;
     default:
       if (!take_saliency(kind, fluid)) {

@@ -19,11 +19,12 @@ enum class OverlayKind {
   Level,
   Speed,
   Density,
-  Active
+  Active,
+  Temperature
 };
 
-/// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active";
-/// others are a base::Error.
+/// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active",
+/// "temperature"; others are a base::Error.
 OverlayKind parse_overlay(std::string_view name);
 /// Several, separated by commas; at least one.
 std::vector<OverlayKind> parse_overlays(std::string_view names);
@@ -35,8 +36,13 @@ const std::vector<std::string>& overlay_titles();
 /// Takes the values of a simulation and paints them over the picture that was just drawn of it.
 class OverlayPainter {
  public:
-  /// `finest_spacing_m` is 2 r_*.
-  explicit OverlayPainter(double finest_spacing_m) : finest_spacing_m_(finest_spacing_m) {}
+  /// `finest_spacing_m` is 2 r_*. The scene says which temperatures there are.
+  OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
+      : finest_spacing_m_(finest_spacing_m), heat_(sim::lists_heat(scene)) {
+    if (!heat_) return;
+    reference_k_ = sim::reference_temperature(scene);
+    temperatures_ = sim::temperatures_of(scene);
+  }
   void paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture, unsigned framebuffer);
   /// What the colours of the last paint stand for, e.g. "speed 0 to 10 m/s".
   const std::string& legend() const { return legend_; }
@@ -45,6 +51,9 @@ class OverlayPainter {
   bool take_saliency(OverlayKind kind, const sim::Simulation& fluid);
 
   double finest_spacing_m_;
+  bool heat_;
+  double reference_k_ = 0;
+  sim::TemperatureRange temperatures_;
   std::vector<float> values_;
   std::vector<sim::ParticleSaliency> saliency_;
   std::vector<sim::RenderParticle> particles_;

@@ -37,9 +37,14 @@ struct Leave {
   int* kept;
   int* ids;
   int made;
+  const std::uint8_t* level;
+  const float* temperature;
+  HeatLedger* heat;  ///< nullptr where there is no temperature
   SIM_FN void operator()(int k) const {
-    kept[taken[k]] = 0;
-    if (k < made) ids[k] = id[taken[k]];
+    const int i = taken[k];
+    kept[i] = 0;
+    if (k < made) ids[k] = id[i];
+    if (heat) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
   }
 };
 
@@ -67,8 +72,7 @@ struct Make {
   std::uint8_t* level;
   std::uint8_t* target;
   std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Descents descents;
   int first;
   float support;
   std::uint8_t new_level;
@@ -79,8 +83,7 @@ struct Make {
     level[i] = new_level;
     if (target) target[i] = new_level;
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
-    if (age) age[i] = 0;
-    if (waiting) waiting[i] = 0;
+    descents.make(i);
   }
 };
 
@@ -102,7 +105,7 @@ Exchange::Cut Exchange::cut_at(std::int64_t need) {
 }
 
 int Exchange::run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found,
-                  int sites, int layers, int level, std::int64_t& reservoir) {
+                  int sites, int layers, int level, std::int64_t& reservoir, HeatLedger* heat) {
   const ExchangeView p(particles);
   const int n = p.size();
   mass_.resize(static_cast<std::size_t>(found));
@@ -123,7 +126,15 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
-  for_each("leave", cut.taken, Leave{lowest_first, p.id(), kept_.data(), id_.data(), made});
+  for_each("leave", cut.taken,
+           Leave{.taken = lowest_first,
+                 .id = p.id(),
+                 .kept = kept_.data(),
+                 .ids = id_.data(),
+                 .made = made,
+                 .level = p.level(),
+                 .temperature = p.temperature(),
+                 .heat = heat});
   if (made > cut.taken) {
     // Those just taken still count: the ids that they leave are in use again.
     list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
@@ -142,8 +153,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                 .level = p.level(),
                 .target = p.target(),
                 .history = p.history(),
-                .age = p.age(),
-                .waiting = p.waiting(),
+                .descents = particles.descents(),
                 .first = staying,
                 .support = supports.h[level],
                 .new_level = static_cast<std::uint8_t>(level)});

@@ -10,12 +10,15 @@ struct Mark {
   Walls walls;
   int* stays;
   Outflow::Amount* left;
+  const float* temperature;
+  HeatLedger* heat;  ///< nullptr where there is no temperature
   SIM_FN void operator()(int i) const {
     const bool gone = walls.through(xyz(position[i]));
     stays[i] = !gone;
     if (!gone) return;
     atomic_add(&left->particles, 1);
     atomic_add(&left->mass, 1 << level[i]);
+    if (heat) atomic_add(&heat->drained, HeatLedger::of(temperature[i], level[i]));
   }
 };
 
@@ -37,12 +40,19 @@ struct Keep {
 
 }  // namespace
 
-Outflow::Amount Outflow::run(Particles& particles, OutflowView p, const Walls& walls) {
+Outflow::Amount Outflow::run(Particles& particles, OutflowView p, const Walls& walls, HeatLedger* heat) {
   const int n = p.size();
   left_.resize(1);
   left_.zero();
   stays_.resize(static_cast<std::size_t>(n));
-  for_each("mark through", n, Mark{p.position(), p.level(), walls, stays_.data(), left_.data()});
+  for_each("mark through", n,
+           Mark{.position = p.position(),
+                .level = p.level(),
+                .walls = walls,
+                .stays = stays_.data(),
+                .left = left_.data(),
+                .temperature = p.temperature(),
+                .heat = heat});
   const Amount left = left_.to_host()[0];
   if (left.particles == 0) return left;
   const int after = n - left.particles;

@@ -1,6 +1,7 @@
 #pragma once
 /// What leaves through outlets: particles on the far side of a plane that has an opening.
 
+#include "libsim/flow/heat_ledger.hpp"
 #include "libsim/particles/particles.hpp"
 #include "libsim/particles/walls.hpp"
 
@@ -8,7 +9,8 @@ namespace sim::SIM_BACKEND {
 
 using OutflowView = ColumnView<columns(Column::Position, Column::Level),
                                columns(Column::Position, Column::Velocity, Column::Id, Column::Level,
-                                       Column::Predicted, Column::Density)>;
+                                       Column::Predicted, Column::Density),
+                               columns(Column::Temperature)>;
 
 class Outflow {
  public:
@@ -18,8 +20,9 @@ class Outflow {
   };
 
   /// Removes those that are through and keeps the others in their order, with their densities of the last
-  /// projection. The ids that leave are free. Waits for a read-back.
-  Amount run(Particles& particles, OutflowView view, const Walls& walls);
+  /// projection. The ids that leave are free. What heat leaves is told to `heat`, where there is any. Waits
+  /// for a read-back.
+  Amount run(Particles& particles, OutflowView view, const Walls& walls, HeatLedger* heat);
   std::size_t bytes() const;
 
  private:

@@ -46,8 +46,7 @@ struct PlaceChildren {
   int* id;
   std::uint8_t* level;
   std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Descents descents;
   LevelRules rules;
   LevelSupports supports;
   LevelCounts* counts;
@@ -64,8 +63,7 @@ struct PlaceChildren {
     position[i] = with_w(xyz(parent) + child_offset(turn, rules, code, parent.w / 4, c), supports.h[finer]);
     level[i] = static_cast<std::uint8_t>(finer);
     history[i] = steady_history(finer);
-    age[i] = 0;
-    waiting[i] = 0;
+    descents.split(i, 1 << code.k);
     if (c > 0) {
       id[i] = free_ids[fresh_sums[i] - 1];
       atomic_add(&counts->born, std::uint64_t{1});
@@ -97,8 +95,8 @@ void split_and_merge(LevelState& l, const LevelFluid& fluid, Particles& particle
   if (particles.size() == 0) return;
   fit_scratch(l, fluid.particles);
   const bool any_split = choose_splits(l, fluid);
-  merge_pairs(l, fluid);
-  if (l.rules.relays) relay_stranded(l, fluid);
+  merge_pairs(l, fluid, particles.descents());
+  if (l.rules.relays) relay_stranded(l, fluid, particles.descents());
   compact(l, fluid, particles, any_split);
   ++l.frame;
 }
@@ -131,8 +129,7 @@ void compact(LevelState& l, const LevelFluid& fluid, Particles& particles, bool 
                          .id = p.id(),
                          .level = p.level(),
                          .history = p.history(),
-                         .age = p.age(),
-                         .waiting = p.waiting(),
+                         .descents = particles.descents(),
                          .rules = l.rules,
                          .supports = fluid.supports,
                          .counts = l.counts.data(),

@@ -34,8 +34,7 @@ struct Joining {
   Vec4* velocity;
   std::uint8_t* level;
   std::uint8_t* history;
-  std::uint8_t* age;
-  std::uint8_t* waiting;
+  Descents descents;
   std::uint8_t* gone;
   LevelCounts* counts;
   LevelSupports supports;
@@ -54,8 +53,6 @@ struct Joining {
     velocity[i] = with_w(v, 0);
     level[i] = static_cast<std::uint8_t>(now);
     history[i] = steady_history(now);
-    age[i] = 0;
-    waiting[i] = 0;
   }
   /// One particle fewer, for so much energy.
   SIM_FN void leave(int i, float lost) const {
@@ -68,18 +65,18 @@ struct Joining {
     const float lost = loss(left, kept);
     const int coarser = level[kept] + 1;
     become(kept, mean(position, kept, left), mean(velocity, kept, left), supports.h[coarser], coarser);
+    descents.join(kept, left);
     leave(left, lost);
   }
 };
 
-inline Joining joining(LevelState& levels, const LevelFluid& fluid) {
+inline Joining joining(LevelState& levels, const LevelFluid& fluid, const Descents& descents) {
   const LevelView& p = fluid.particles;
   return {.position = p.position(),
           .velocity = p.velocity(),
           .level = p.level(),
           .history = p.history(),
-          .age = p.age(),
-          .waiting = p.waiting(),
+          .descents = descents,
           .gone = levels.gone.data(),
           .counts = levels.counts.data(),
           .supports = fluid.supports,

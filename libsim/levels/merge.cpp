@@ -216,7 +216,7 @@ struct Merge {
 
 }  // namespace
 
-void merge_pairs(LevelState& l, const LevelFluid& fluid) {
+void merge_pairs(LevelState& l, const LevelFluid& fluid, const Descents& descents) {
   const LevelView& p = fluid.particles;
   const int n = p.size();
   for_each("remember levels", n,
@@ -265,7 +265,7 @@ void merge_pairs(LevelState& l, const LevelFluid& fluid) {
                           .out = l.places.data(),
                           .rules = l.rules,
                           .supports = fluid.supports});
-  for_each("merge", n, Merge{joining(l, fluid), l.places.data()});
+  for_each("merge", n, Merge{joining(l, fluid, descents), l.places.data()});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -155,13 +155,14 @@ struct JoinHalves {
     const Vec3 v_left = joining.mean(v, j, left);
     joining.become(kept, joining.mean(x, j, kept), joining.mean(v, j, kept), h, level);
     joining.become(j, x_left, v_left, h, level);
+    joining.descents.share(j, kept, left);
     joining.leave(left, lost);
   }
 };
 
 }  // namespace
 
-void relay_stranded(LevelState& l, const LevelFluid& fluid) {
+void relay_stranded(LevelState& l, const LevelFluid& fluid, const Descents& descents) {
   const LevelView& p = fluid.particles;
   const int n = p.size();
   int* first = l.first_bid().data();
@@ -187,7 +188,8 @@ void relay_stranded(LevelState& l, const LevelFluid& fluid) {
                     .rules = l.rules,
                     .supports = fluid.supports,
                     .frame = l.frame});
-  for_each("join halves", n, JoinHalves{joining(l, fluid), p.id(), first, second, taken.data(), l.frame});
+  for_each("join halves", n,
+           JoinHalves{joining(l, fluid, descents), p.id(), first, second, taken.data(), l.frame});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -45,9 +45,9 @@ SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const Particl
 /// Fills split_code (0 = stays). False when nobody splits.
 bool choose_splits(LevelState& levels, const LevelFluid& fluid);
 /// Merges pairs in place: the particle with the lower id becomes the pair, the other is marked in `gone`.
-void merge_pairs(LevelState& levels, const LevelFluid& fluid);
+void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Merges what has waited without a partner through a coarser particle between two such.
-void relay_stranded(LevelState& levels, const LevelFluid& fluid);
+void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Makes the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
 void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 

@@ -20,9 +20,22 @@ enum class Life {
   Scratch  ///< within a substep
 };
 
-// The table, a row each: COLUMN(enumerator, member, type of a value, how long it lives), in the order in
-// which schedules list them. LIST is the neighbour list (neighbors/neighbour_list.hpp), which passes declare
-// like a column.
+/// What the particles that a split or a merge makes have of a column (particles/descent.hpp). The last four
+/// need no line anywhere else: such columns begin at 0, where no pass says otherwise, and splits, merges and
+/// nozzles treat them by their rule.
+enum class Descent {
+  None,      ///< nothing: the column is scratch
+  Own,       ///< what the passes that split, merge and pour say by its name
+  Copy,      ///< children have their parent's; a merged particle keeps what the one that stays had
+  MassMean,  ///< children have their parent's; a merged particle the mean by mass: m times it is conserved
+  Sum,       ///< children share their parent's by mass, a merged particle has the sum: it is conserved
+  Max,       ///< children have their parent's, a merged particle the larger
+  Reset      ///< 0
+};
+
+// The table, a row each: COLUMN(enumerator, member, type of a value, how long it lives, what splits and
+// merges make of it), in the order in which schedules list them. LIST is the neighbour list
+// (neighbors/neighbour_list.hpp), which passes declare like a column.
 //
 //   Position        x, y, z in m and the support radius h in m (h = 2 d = 4 r; mass = rho_0 d^3)
 //   Velocity        m/s, w unused
@@ -46,29 +59,33 @@ enum class Life {
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
 //   Rest            why and how long it was not solved (activation/activation.hpp)
 //   StartCell       where in the velocity grid the particle was when the frame began
-#define SIM_COLUMNS(COLUMN, LIST)                                   \
-  COLUMN(Position, position, Vec4, Core)                            \
-  COLUMN(Velocity, velocity, Vec4, Core)                            \
-  COLUMN(Id, id, int, Core)                                         \
-  COLUMN(Level, level, std::uint8_t, Core)                          \
-  COLUMN(Predicted, predicted, Vec4, Core)                          \
-  COLUMN(PredictedNext, predicted_next, Vec4, Scratch)              \
-  COLUMN(VelocityNext, velocity_next, Vec4, Scratch)                \
-  COLUMN(Lambda, lambda, float, Scratch)                            \
-  COLUMN(Density, density, float, Scratch)                          \
-  LIST(Neighbours, neighbours)                                      \
-  COLUMN(Target, target, std::uint8_t, Kept)                        \
-  COLUMN(History, history, std::uint8_t, Kept)                      \
-  COLUMN(Saliency, saliency, float, Kept)                           \
-  COLUMN(Unrest, unrest, float, Kept)                               \
-  COLUMN(SaliencyParts, saliency_parts, struct SaliencyParts, Kept) \
-  COLUMN(Waiting, waiting, std::uint8_t, Kept)                      \
-  COLUMN(Normal, normal, Vec4, Scratch)                             \
-  COLUMN(Ease, ease, float, Scratch)                                \
-  COLUMN(Age, age, std::uint8_t, Kept)                              \
-  COLUMN(Active, active, std::uint8_t, Kept)                        \
-  COLUMN(Rest, rest, std::uint8_t, Kept)                            \
-  COLUMN(StartCell, start_cell, int, Kept)
+//   Temperature     kelvin above the reference of the effect that keeps it
+//   TemperatureNext where conduction writes, then swapped with Temperature
+#define SIM_COLUMNS(COLUMN, LIST)                                         \
+  COLUMN(Position, position, Vec4, Core, Own)                             \
+  COLUMN(Velocity, velocity, Vec4, Core, Own)                             \
+  COLUMN(Id, id, int, Core, Own)                                          \
+  COLUMN(Level, level, std::uint8_t, Core, Own)                           \
+  COLUMN(Predicted, predicted, Vec4, Core, Copy)                          \
+  COLUMN(PredictedNext, predicted_next, Vec4, Scratch, None)              \
+  COLUMN(VelocityNext, velocity_next, Vec4, Scratch, None)                \
+  COLUMN(Lambda, lambda, float, Scratch, None)                            \
+  COLUMN(Density, density, float, Scratch, None)                          \
+  LIST(Neighbours, neighbours)                                            \
+  COLUMN(Target, target, std::uint8_t, Kept, Copy)                        \
+  COLUMN(History, history, std::uint8_t, Kept, Own)                       \
+  COLUMN(Saliency, saliency, float, Kept, Copy)                           \
+  COLUMN(Unrest, unrest, float, Kept, Copy)                               \
+  COLUMN(SaliencyParts, saliency_parts, struct SaliencyParts, Kept, Copy) \
+  COLUMN(Waiting, waiting, std::uint8_t, Kept, Reset)                     \
+  COLUMN(Normal, normal, Vec4, Scratch, None)                             \
+  COLUMN(Ease, ease, float, Scratch, None)                                \
+  COLUMN(Age, age, std::uint8_t, Kept, Reset)                             \
+  COLUMN(Active, active, std::uint8_t, Kept, Copy)                        \
+  COLUMN(Rest, rest, std::uint8_t, Kept, Copy)                            \
+  COLUMN(StartCell, start_cell, int, Kept, Copy)                          \
+  COLUMN(Temperature, temperature, float, Kept, MassMean)                 \
+  COLUMN(TemperatureNext, temperature_next, float, Scratch, None)
 
 enum class Column : unsigned {
 #define SIM_ENUMERATOR(Name, ...) Name,

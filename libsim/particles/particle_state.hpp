@@ -21,7 +21,8 @@ struct ParticleState {
 enum class ParticleField {
   Speed,         ///< m/s
   DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included
-  Active         ///< 1 = solved in the last frame, 0 = moved by the velocity grid
+  Active,        ///< 1 = solved in the last frame, 0 = moved by the velocity grid
+  Temperature    ///< K above the reference of the effect heat; 0 without it
 };
 
 }  // namespace sim

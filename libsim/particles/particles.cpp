@@ -13,6 +13,7 @@ namespace {
 template <class T>
 struct Extras {
   static constexpr int most = 8;
+  static_assert(kept_count<T>() <= most);
   const T* in[most];
   T* out[most];
   int count;
@@ -73,7 +74,8 @@ LevelSupports level_supports(double finest_support) {
 
 template <class Self, class Visit>
 void Particles::for_each_column(Self& self, Visit visit) {
-#define SIM_VISIT(Name, member, Type, life) visit(self.columns_.member, self.has(Column::Name), Life::life);
+#define SIM_VISIT(Name, member, Type, life, rule) \
+  visit(self.columns_.member, self.has(Column::Name), Life::life, Descent::rule);
 #define SIM_NOTHING(...)
   SIM_COLUMNS(SIM_VISIT, SIM_NOTHING)
 #undef SIM_VISIT
@@ -83,7 +85,7 @@ void Particles::for_each_column(Self& self, Visit visit) {
 template <class T>
 std::vector<Array<T>*> Particles::kept_columns() {
   std::vector<Array<T>*> out;
-  for_each_column(*this, [&](auto& column, bool declared, Life life) {
+  for_each_column(*this, [&](auto& column, bool declared, Life life, Descent) {
     if constexpr (std::is_same_v<decltype(column), Array<T>&>) {
       if (declared && life == Life::Kept) out.push_back(&column);
     }
@@ -91,10 +93,30 @@ std::vector<Array<T>*> Particles::kept_columns() {
   return out;
 }
 
+Descents Particles::descents() {
+  Descents out{};
+  const auto add = [](auto& ruled, auto& column, Descent rule) {
+    ruled.values[ruled.count] = column.data();
+    ruled.rule[ruled.count++] = rule;
+  };
+  for_each_column(*this, [&](auto& column, bool declared, Life, Descent rule) {
+    if (!declared || !by_rule(rule)) return;
+    if constexpr (std::is_same_v<decltype(column), Array<float>&>) add(out.floats, column, rule);
+    if constexpr (std::is_same_v<decltype(column), Array<std::uint8_t>&>) add(out.bytes, column, rule);
+  });
+  return out;
+}
+
+void Particles::begin_descents() {
+  for_each_column(*this, [](auto& column, bool declared, Life, Descent rule) {
+    if (declared && by_rule(rule)) column.zero();
+  });
+}
+
 void Particles::allocate(ColumnSet set, int n, int capacity) {
   set_ = set;
   capacity_ = std::max(n, capacity);
-  for_each_column(*this, [&](auto& column, bool wanted, Life) {
+  for_each_column(*this, [&](auto& column, bool wanted, Life, Descent) {
     if (wanted) {
       column.reserve(static_cast<std::size_t>(capacity_));
     } else {
@@ -106,7 +128,7 @@ void Particles::allocate(ColumnSet set, int n, int capacity) {
 
 void Particles::resize(int n) {
   n_ = n;
-  for_each_column(*this, [&](auto& column, bool wanted, Life) {
+  for_each_column(*this, [&](auto& column, bool wanted, Life, Descent) {
     if (wanted) column.resize(static_cast<std::size_t>(n));
   });
 }
@@ -121,7 +143,7 @@ std::size_t Particles::bytes() const {
   add(spare_floats_);
   add(spare_ints_);
   add(spare_parts_);
-  for_each_column(*this, [&](const auto& column, bool, Life) { sum += column.bytes(); });
+  for_each_column(*this, [&](const auto& column, bool, Life, Descent) { sum += column.bytes(); });
   return sum;
 }
 

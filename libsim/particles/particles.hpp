@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/particles/columns.hpp"
+#include "libsim/particles/descent.hpp"
 #include "libsim/particles/divergence.hpp"
 #include "libsim/particles/momentum.hpp"
 
@@ -57,7 +57,7 @@ LevelSupports level_supports(double finest_support);
 
 /// The memory of every column, n values where it is there and none where it is not.
 struct ColumnArrays {
-#define SIM_MEMBER(Name, member, Type, life) Array<Type> member;
+#define SIM_MEMBER(Name, member, Type, ...) Array<Type> member;
 #define SIM_NOTHING(...)
   SIM_COLUMNS(SIM_MEMBER, SIM_NOTHING)
 #undef SIM_MEMBER
@@ -81,12 +81,17 @@ class Particles {
   /// the number of particles. A source may be named more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
+  /// The columns that splits and merges treat by their rule.
+  Descents descents();
+  /// Sets them to 0, as a run begins.
+  void begin_descents();
+
   /// Every column, for starts, read-outs and tests. Passes go through a ColumnView.
   ColumnArrays& all() { return columns_; }
   const ColumnArrays& all() const { return columns_; }
 
  private:
-  /// Gives each column to visit(column, declared, life), in the table's order.
+  /// Gives each column to visit(column, declared, life, rule), in the table's order.
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit visit);
   /// The columns of one type that are declared and live with their particle.
@@ -135,7 +140,7 @@ class ColumnView {
   int capacity() const { return particles_->capacity(); }
   bool has(Column column) const { return particles_->has(column); }
 
-#define SIM_ACCESS(Name, member, Type, life)                                   \
+#define SIM_ACCESS(Name, member, Type, ...)                                    \
   std::conditional_t<may_write.has(Column::Name), Type*, const Type*> member() \
       const requires(may_read.has(Column::Name)) {                             \
     return particles_->all().member.data();                                    \
@@ -168,7 +173,7 @@ class ColumnView {
 
   template <Column C>
   auto& array() const {
-#define SIM_CHOOSE(Name, member, Type, life) \
+#define SIM_CHOOSE(Name, member, ...) \
   if constexpr (C == Column::Name) return particles_->all().member;
     SIM_COLUMNS(SIM_CHOOSE, SIM_NOTHING)
 #undef SIM_CHOOSE

@@ -57,7 +57,14 @@ std::string needs_mend(const Effect& effect) {
 }
 
 double natural_time(const Effect& effect, double d) {
-  if (traits_of(effect.kind).unit == EffectUnit::PerSecond) return 1 / effect.coefficient;
+  switch (traits_of(effect.kind).unit) {
+    case EffectUnit::PerSecond:
+      return 1 / effect.coefficient;
+    case EffectUnit::MetreSquaredPerSecond:
+      return d * d / effect.coefficient;
+    case EffectUnit::NewtonPerMetre:
+      break;
+  }
   return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
 }
 

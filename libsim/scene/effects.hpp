@@ -19,8 +19,9 @@ inline constexpr double rest_density_kg_m3 = 1000;
 /// What a coefficient is a coefficient of; the explicit step's natural time T follows from it, with the rest
 /// density rho_0 and the finest spacing d.
 enum class EffectUnit {
-  NewtonPerMetre,  ///< T = sqrt(rho_0 d^3 / c)
-  PerSecond        ///< T = 1 / c
+  NewtonPerMetre,        ///< T = sqrt(rho_0 d^3 / c)
+  PerSecond,             ///< T = 1 / c
+  MetreSquaredPerSecond  ///< T = d^2 / c
 };
 
 // The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
@@ -32,7 +33,9 @@ enum class EffectUnit {
   EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion,  \
          "Akinci et al. 2013, adhesion, of a plane")                               \
   EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                 \
-         "Macklin et al. 2014, air drag, of the exposed share")
+         "Macklin et al. 2014, air drag, of the exposed share")                    \
+  EFFECT(Heat, heat, diffusivity_m2_s, MetreSquaredPerSecond, 0.2, no_effect,      \
+         "Cleary and Monaghan 1999, conduction; Boussinesq's buoyancy")
 
 enum class EffectKind {
 #define SIM_ENUMERATOR(Name, ...) Name,
@@ -45,7 +48,11 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
 // is absent, least, most).
-#define SIM_EFFECT_OPTIONS(OPTION) OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)
+#define SIM_EFFECT_OPTIONS(OPTION)                           \
+  OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)  \
+  OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1) \
+  OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)   \
+  OPTION(HeatWall, Heat, wall_k, 0, 0, 1e4) /* 0: insulated */
 
 enum class EffectOption {
 #define SIM_ENUMERATOR(Name, ...) Name,

@@ -13,6 +13,7 @@ struct Nozzle {
   double speed_m_s = 0;                ///< of the water at the mouth
   int on_frames = 0;                   ///< a pulse lasts so long, from frame 0
   int off_frames = 0;                  ///< and then rests
+  double temperature_k = 0;            ///< of the water; 0 = the reference of the effect heat
 };
 
 /// A layer of the jet: a Vogel disc of `sites` particles, each of volume spacing^3. Layers follow each other

@@ -15,6 +15,7 @@ constexpr int newest_format = 2;
 constexpr double farthest_m = 1e4;
 // A double resolves 1e-10 m there.
 constexpr double farthest_origin_m = 1e6;
+constexpr double hottest_k = 1e4;
 
 Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   const auto v = table.numbers(key, 3, range);
@@ -86,6 +87,15 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
     table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
 }
 
+/// Only where heat is listed: without it nothing keeps a temperature.
+double temperature(const base::TomlTable& table, const Scene& scene) {
+  const double out = table.number("temperature_k", {1, hottest_k});
+  if (!lists_heat(scene))
+    table.fail("temperature_k", "needs the effect heat, of which there is none",
+               "list heat as an [[effect]], or leave the temperature out");
+  return out;
+}
+
 void read_nozzles(const base::TomlTable& root, Scene& scene) {
   for (const auto& table : root.tables("nozzle")) {
     Nozzle nozzle;
@@ -94,6 +104,7 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
     nozzle.speed_m_s = table.number("speed_m_s", {1e-2, 1000});
     nozzle.on_frames = static_cast<int>(table.integer("on_frames", {1, 1e6}));
     nozzle.off_frames = static_cast<int>(table.integer("off_frames", {0, 1e6}));
+    if (table.has("temperature_k")) nozzle.temperature_k = temperature(table, scene);
     check_place(table, nozzle, scene);
     if (nozzle.speed_m_s > scene.v_ref_m_s)
       table.fail("speed_m_s", "is faster than time.v_ref_m_s, from which the substeps follow",
@@ -108,16 +119,33 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
                        "use at most half of the tank's width");
 }
 
+/// min_m and max_m of a table.
+template <class Box>
+void read_box(const base::TomlTable& table, const Vec3d& origin_m, Box& box) {
+  box.min_m = place(table, "min_m", origin_m);
+  box.max_m = place(table, "max_m", origin_m);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(box.max_m[k] - box.min_m[k] >= 1e-3))
+      table.fail("max_m", "leaves the box empty", "make each entry at least 1 mm larger than in min_m");
+  }
+}
+
+void read_warm(const base::TomlTable& root, Scene& scene) {
+  for (const auto& table : root.tables("warm")) {
+    WarmBox box;
+    read_box(table, scene.origin_m, box);
+    box.temperature_k = temperature(table, scene);
+    scene.warm.push_back(box);
+  }
+}
+
 std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& origin_m) {
   std::vector<VisibleBox> out;
   for (const auto& table : root.tables("visible")) {
-    VisibleBox box{table.string("name"), place(table, "min_m", origin_m), place(table, "max_m", origin_m)};
+    VisibleBox box{table.string("name"), {}, {}};
     if (box.name.empty() || box.name.size() > 64)
       table.fail("name", "is empty or too long", "use 1 to 64 characters");
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!(box.max_m[k] - box.min_m[k] >= 1e-3))
-        table.fail("max_m", "leaves the box empty", "make each entry at least 1 mm larger than in min_m");
-    }
+    read_box(table, origin_m, box);
     out.push_back(std::move(box));
   }
   return out;
@@ -157,6 +185,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   if (format < 2 && root.has("effect"))
     root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");
   scene.effects = read_effects(root);
+  read_warm(root, scene);
   read_nozzles(root, scene);
   scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
   scene.view = camera(root.table("view"), scene.origin_m);

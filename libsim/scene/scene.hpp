@@ -11,6 +11,7 @@
 
 #include "libsim/scene/central_force.hpp"
 #include "libsim/scene/effects.hpp"
+#include "libsim/scene/heat.hpp"
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/outlet.hpp"
 
@@ -54,6 +55,7 @@ struct Scene {
   double gravity_m_s2 = 9.81;
   std::optional<CentralForce> central_force;  ///< beside gravity
   std::vector<Effect> effects;                ///< each kind once; a coefficient of 0 is listed and dropped
+  std::vector<WarmBox> warm;                  ///< with the effect heat only
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
   double v_ref_m_s = 0;

@@ -63,6 +63,7 @@ class FluidSimulation final : public Simulation {
       settle(state_, scene_, options_);
       state_.one_level = !adaptive();
     }
+    if (options.resume_from.empty()) warm_up(state_, scene_);
     if (options.wall_impulse || !options.gauges.empty())
       state_.impulse.begin(options.gauges, scene.tank_size_m, state_.finest_support);
   }
@@ -161,6 +162,7 @@ class FluidSimulation final : public Simulation {
     out.particles_out = state_.jets.taken + state_.drained.particles;
     out.drained = state_.drained.mass;
     out.reservoir = state_.jets.reservoir;
+    out.heat = heat_of(state_);
     out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
     out.seen = state_.saliency.input.seen();
     out.start = relaxed_;

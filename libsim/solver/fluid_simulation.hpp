@@ -63,6 +63,9 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
 std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
 /// Particles of a start, in columns that have room for them, and the mass units that they make.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
+/// Temperatures of the water as frame 0 begins, by the scene's boxes, and an empty ledger of heat; nothing
+/// where no stage calls for them.
+void warm_up(FluidState& state, const Scene& scene);
 /// Places and velocities of particles that are there, by id. base::Error for an id that nobody has.
 void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// The scene's jets as they stand before `frame`.

@@ -27,6 +27,7 @@ void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,
           state.parameters.most_speed, state.lists_hold, state.lists_by_slot);
   keep_columns(archive, state.particles);
+  if (state.particles.has(Column::Temperature)) archive(state.heat);
   keep_jets(archive, state.jets);
   archive(state.levels.forced, state.levels.frame, state.levels.counts);
   archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser,

@@ -28,6 +28,8 @@ std::vector<float> field_of(const Particles& particles, ParticleField field) {
   } else if (field == ParticleField::Active && particles.has(Column::Active)) {
     const auto active = particles.all().active.to_host();
     for (std::size_t i = 0; i < n; ++i) out[i] = active[i] != 0;
+  } else if (field == ParticleField::Temperature && particles.has(Column::Temperature)) {
+    out = particles.all().temperature.to_host();
   }
   return out;
 }
@@ -39,6 +41,21 @@ void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>&
     const SaliencyParts p = parts.empty() ? SaliencyParts{} : parts[i];
     out[i] = {p.acuity, p.manifold, p.temporal, p.combined, s[i], target[i]};
   }
+}
+
+HeatReport heat_of(const FluidState& state) {
+  HeatReport out;
+  if (!state.particles.has(Column::Temperature)) return out;
+  const auto temperature = state.particles.all().temperature.to_host();
+  const auto level = state.particles.all().level.to_host();
+  for (std::size_t i = 0; i < level.size(); ++i)
+    out.held += static_cast<double>(temperature[i]) * static_cast<double>(1 << level[i]);
+  const HeatLedger ledger = state.heat.to_host()[0];
+  out.poured = HeatLedger::amount(ledger.poured);
+  out.taken = HeatLedger::amount(ledger.taken);
+  out.drained = HeatLedger::amount(ledger.drained);
+  out.from_walls = HeatLedger::amount(ledger.walls);
+  return out;
 }
 
 LevelEvents events_of(const LevelCounts& counts) {

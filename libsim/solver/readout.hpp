@@ -18,6 +18,9 @@ std::vector<float> field_of(const Particles& particles, ParticleField field);
 void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
                    const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out);
 
+/// What the water holds and what has come and gone; all zero without temperatures.
+HeatReport heat_of(const FluidState& state);
+
 LevelEvents events_of(const LevelCounts& counts);
 
 /// By id.

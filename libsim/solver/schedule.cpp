@@ -94,7 +94,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
   // Set when a particle is made.
-  ColumnSet written = out.columns | columns(Column::Target, Column::History, Column::Waiting, Column::Age);
+  ColumnSet written = out.columns | columns(Column::Target, Column::History) | ruled_columns();
   for (const auto& stage : stages) {
     const std::string reason = reason_for(stage, demand);
     if (reason.empty()) {

@@ -100,10 +100,30 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start) {
   p.velocity.from_host(velocity);
   p.id.from_host(id);
   p.level.from_host(level);
+  state.particles.begin_descents();
   if (state.particles.has(Column::Saliency)) p.saliency.zero();
   if (state.particles.has(Column::Unrest)) {
     p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
   }
+}
+
+void warm_up(FluidState& state, const Scene& scene) {
+  if (!state.particles.has(Column::Temperature)) return;
+  state.heat.resize(1);
+  state.heat.zero();
+  auto& p = state.particles.all();
+  std::vector<float> temperature(static_cast<std::size_t>(state.particles.size()));
+  const auto position = p.position.to_host();
+  for (std::size_t i = 0; i < temperature.size(); ++i) {
+    const Vec3d at{static_cast<double>(position[i].x), static_cast<double>(position[i].y),
+                   static_cast<double>(position[i].z)};
+    for (const WarmBox& box : scene.warm) {
+      bool inside = true;
+      for (std::size_t k = 0; k < 3; ++k) inside = inside && at[k] >= box.min_m[k] && at[k] < box.max_m[k];
+      if (inside) temperature[i] = static_cast<float>(box.temperature_k - reference_temperature(scene));
+    }
+  }
+  p.temperature.from_host(temperature);
 }
 
 void put_again(FluidState& state, const std::vector<ParticleState>& particles) {

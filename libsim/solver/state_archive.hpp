@@ -120,7 +120,7 @@ template <class Archive>
 void keep_columns(Archive& archive, Particles& particles) {
   auto& columns = particles.all();
   const auto n = static_cast<std::size_t>(particles.size());
-#define SIM_KEEP(Name, member, Type, life)                                               \
+#define SIM_KEEP(Name, member, ...)                                                      \
   if (particles.has(Column::Name)) {                                                     \
     archive(columns.member);                                                             \
     if constexpr (Archive::reads) {                                                      \

@@ -43,7 +43,12 @@ void add(std::ostream& text, const Scene& s) {
     text << ' ' << v[0] << ' ' << v[1] << ' ' << v[2];
   for (const Nozzle& n : s.nozzles)
     text << " nozzle " << n.diameter_m << ' ' << n.position_m[0] << ' ' << n.position_m[1] << ' '
-         << n.position_m[2] << ' ' << n.speed_m_s << ' ' << n.on_frames << ' ' << n.off_frames;
+         << n.position_m[2] << ' ' << n.speed_m_s << ' ' << n.on_frames << ' ' << n.off_frames << ' '
+         << n.temperature_k;
+  for (const WarmBox& w : s.warm) {
+    text << " warm " << w.temperature_k;
+    for (std::size_t k = 0; k < 3; ++k) text << ' ' << w.min_m[k] << ' ' << w.max_m[k];
+  }
   for (const Outlet& o : s.outlets)
     text << " outlet " << static_cast<int>(o.wall) << ' ' << o.min_m[0] << ' ' << o.min_m[1] << ' '
          << o.max_m[0] << ' ' << o.max_m[1];

@@ -6,6 +6,7 @@
 
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/render/png.hpp"
+#include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/small_dam.hpp"
@@ -128,6 +129,29 @@ TEST_F(ViewE2e, PaintsEachValueOverTheWater) {
                          (folder / "none").string());
   EXPECT_EQ(none.exit_code, 0);
   EXPECT_NE(none.out.find("computes none"), std::string::npos) << none.out;
+  const auto cold = small_run("--overlay temperature --png " + (folder / "cold").string());
+  EXPECT_EQ(cold.exit_code, 0);
+  EXPECT_NE(cold.out.find("does not list heat"), std::string::npos) << cold.out;
+}
+
+TEST_F(ViewE2e, PaintsTheTemperatureOfAHotJet) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto ended = view(
+      "--headless data/scenes/hot_jet.toml --backend cpu --n-star 64 --frames 3 --every 2 --size 64x48 "
+      "--overlay none,temperature --png " +
+      (folder / "hot").string());
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  EXPECT_NE(ended.out.find("temperature 293.15 to 353.15 K"), std::string::npos) << ended.out;
+  // Yellow, which neither cold water nor the room is.
+  const auto yellow = [&](const std::string& name) {
+    const auto picture = sim::read_png(folder / "hot" / name);
+    int count = 0;
+    for (std::size_t i = 0; i + 3 < picture.rgba.size(); i += 4)
+      count += picture.rgba[i] > 120 && picture.rgba[i] > picture.rgba[i + 2] + 60;
+    return count;
+  };
+  EXPECT_EQ(yellow("frame_0002.png"), 0);
+  EXPECT_GT(yellow("frame_0002_temperature.png"), 20);
 }
 
 TEST_F(ViewE2e, SeveralOverlaysMakeAPictureEach) {

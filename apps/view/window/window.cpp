@@ -31,7 +31,9 @@ struct Closed {};
 /// A fluid that runs, and what is drawn of it.
 struct Running {
   explicit Running(PreparedFluid fluid)
-      : prepared(std::move(fluid)), picture(prepared.scene), painter(prepared.finest_spacing_m) {}
+      : prepared(std::move(fluid)),
+        picture(prepared.scene),
+        painter(prepared.scene, prepared.finest_spacing_m) {}
 
   PreparedFluid prepared;
   FluidPicture picture;

@@ -2,6 +2,7 @@
 /// Everything a stage may touch.
 
 #include "libsim/activation/activation.hpp"
+#include "libsim/flow/heat_ledger.hpp"
 #include "libsim/flow/jets.hpp"
 #include "libsim/flow/outflow.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
@@ -98,7 +99,8 @@ struct FluidState {
   CoarseGrid coarse;
   Jets jets;
   Outflow outflow;
-  Drained drained;  ///< since the run began
+  Drained drained;         ///< since the run began
+  Array<HeatLedger> heat;  ///< one, where particles have a temperature
   SaliencyState saliency;
   LevelState levels;
   /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong

@@ -17,19 +17,20 @@ void sort(FluidState& state) {
 using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Only those whom the frame solves need lists.
+/// Only those whom the frame solves need lists, unless the others conduct heat.
 void list_active(FluidState& state, SubstepView p) {
   const Witness witness = state.witness(p.id(), 0);
   sort(state);
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
-  if (state.one_level || state.substep + 1 < state.parameters.substeps) {
-    state.neighbours.build(p, state.grid, state.active(), witness);
-  } else {
-    // The next frame's levels compare everyone.
+  // The next frame's levels compare everyone.
+  const bool hold = !state.one_level && state.substep + 1 == state.parameters.substeps;
+  if (hold || state.parameters.effects[EffectKind::Heat] > 0) {
     state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
-    state.lists_hold = true;
+    state.lists_hold = hold;
+  } else {
+    state.neighbours.build(p, state.grid, state.active(), witness);
   }
 }
 

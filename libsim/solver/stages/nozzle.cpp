@@ -10,7 +10,7 @@ namespace {
 
 using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                            columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-                           columns(Column::Target)>;
+                           columns(Column::Target), columns(Column::Temperature)>;
 
 /// Places particles in the layers whose turn comes within the frame. A layer that passes the mouth `lead`
 /// seconds after the frame's start begins it u lead - g lead^2 / 2 above the mouth at the speed u - g lead.
@@ -24,6 +24,10 @@ struct Pour {
   int sites;
   double first_lead, interval;  // s
   double first_turn;            // full turns
+  const std::uint8_t* level;
+  float* temperature;
+  float warmth;      ///< of the jet, K above the reference
+  HeatLedger* heat;  ///< nullptr where there is no temperature
 
   SIM_FN void operator()(int k) const {
     const int site = k % sites;
@@ -39,10 +43,22 @@ struct Pour {
     const int i = which ? which[k] : first + k;
     position[i] = with_w(mouth + Vec3{r * cosf(angle), above, r * sinf(angle)}, position[i].w);
     velocity[i] = {0, gravity * lead - speed, 0, 0};
+    if (heat) warm(i);
+  }
+  /// A particle that is taken from the corners itself has not been told of.
+  SIM_FN void warm(int i) const {
+    if (which) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
+    temperature[i] = warmth;
+    atomic_add(&heat->poured, HeatLedger::of(warmth, level[i]));
   }
 };
 
-void pour(const FluidState& state, Columns p, const Nozzle& nozzle, const LayersDue& due, std::int64_t number,
+float warmth_of(const Nozzle& nozzle, const SolverParameters& parameters) {
+  const float reference = parameters.effects[EffectOption::HeatReference];
+  return nozzle.temperature_k > 0 ? static_cast<float>(nozzle.temperature_k) - reference : 0;
+}
+
+void pour(FluidState& state, Columns p, const Nozzle& nozzle, const LayersDue& due, std::int64_t number,
           int sites, int layers, const int* which, int first) {
   const auto f = [](double value) { return static_cast<float>(value); };
   const double turns = static_cast<double>(number) / (2 * std::numbers::pi);
@@ -58,7 +74,11 @@ void pour(const FluidState& state, Columns p, const Nozzle& nozzle, const Layers
                 .sites = sites,
                 .first_lead = due.first_time_s,
                 .interval = due.interval_s,
-                .first_turn = turns - std::floor(turns)});
+                .first_turn = turns - std::floor(turns),
+                .level = p.level(),
+                .temperature = p.temperature(),
+                .warmth = warmth_of(nozzle, state.parameters),
+                .heat = state.heat.data()});
 }
 
 /// Adds up the mass that wants each level within a sphere.
@@ -116,7 +136,7 @@ void run_nozzle(FluidState& state, Columns p, const Nozzle& nozzle, Poured& befo
   } else {
     const int n = p.size();
     layers = jets.exchange.run(state.particles, state.supports, jets.columns.lowest_first(), found,
-                               layer.sites, due.count, jets.level, jets.reservoir);
+                               layer.sites, due.count, jets.level, jets.reservoir, state.heat.data());
     pour(state, p, nozzle, due, before.layers, layer.sites, layers, nullptr, p.size() - layers * layer.sites);
     jets.taken += n + layers * layer.sites - p.size();
   }

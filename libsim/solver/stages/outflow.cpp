@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 void run(FluidState& state, OutflowView p) {
-  const Outflow::Amount left = state.outflow.run(state.particles, p, state.walls);
+  const Outflow::Amount left = state.outflow.run(state.particles, p, state.walls, state.heat.data());
   if (left.particles == 0) return;
   state.drained.particles += left.particles;
   state.drained.mass += left.mass;

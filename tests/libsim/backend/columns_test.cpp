@@ -64,6 +64,47 @@ SIM_TEST(Columns, OfEachStageAreThoseOfItsView) {
     EXPECT_FALSE(hires.columns.has(column)) << column_name(column);
 }
 
+SIM_TEST(Columns, SplitAndMergeByTheRuleOfTheirRow) {
+  static_assert(may_descend<float>(Life::Kept, Descent::MassMean));
+  static_assert(may_descend<Vec4>(Life::Kept, Descent::Copy));
+  static_assert(may_descend<float>(Life::Scratch, Descent::None));
+  static_assert(!may_descend<float>(Life::Kept, Descent::None), "a column that lives needs a rule");
+  static_assert(!may_descend<float>(Life::Core, Descent::None));
+  static_assert(!may_descend<float>(Life::Scratch, Descent::Copy), "scratch has none");
+  static_assert(!may_descend<std::uint8_t>(Life::Kept, Descent::MassMean), "a byte has no mean");
+  static_assert(!may_descend<int>(Life::Kept, Descent::Sum));
+  static_assert(ruled_columns().bits == columns(Column::Waiting, Column::Age, Column::Temperature).bits);
+}
+
+/// Three of one column: 0 is a copy of its parent, 1 and 2 are two that meet, or give each other halves of 0.
+std::vector<float> after(Descent rule, void (*change)(const RuledColumns<float>&)) {
+  std::vector<float> values{8, 2, 6};
+  RuledColumns<float> column{};
+  column.values[0] = values.data();
+  column.rule[0] = rule;
+  column.count = 1;
+  change(column);
+  return values;
+}
+SIM_TEST(Columns, RulesAreWhatTheySay) {
+  const auto split = [](const RuledColumns<float>& c) { c.split(0, 4); };
+  EXPECT_EQ(after(Descent::MassMean, split)[0], 8);
+  EXPECT_EQ(after(Descent::Sum, split)[0], 2);
+  EXPECT_EQ(after(Descent::Max, split)[0], 8);
+  EXPECT_EQ(after(Descent::Reset, split)[0], 0);
+  const auto join = [](const RuledColumns<float>& c) { c.join(1, 2); };
+  EXPECT_EQ(after(Descent::MassMean, join)[1], 4);
+  EXPECT_EQ(after(Descent::Sum, join)[1], 8);
+  EXPECT_EQ(after(Descent::Max, join)[1], 6);
+  EXPECT_EQ(after(Descent::Reset, join)[1], 0);
+  // Of masses 2, 1, 1: m times it, or its sum, stays.
+  const auto share = [](const RuledColumns<float>& c) { c.share(0, 1, 2); };
+  EXPECT_EQ(after(Descent::MassMean, share), (std::vector<float>{7, 5, 6}));
+  EXPECT_EQ(after(Descent::Sum, share), (std::vector<float>{10, 6, 6}));
+  EXPECT_EQ(after(Descent::Max, share), (std::vector<float>{8, 8, 6}));
+  EXPECT_EQ(after(Descent::Reset, share), (std::vector<float>{0, 0, 6}));
+}
+
 SIM_TEST(Columns, FollowTheirParticlesWhenTheyAreKept) {
   Particles particles;
   particles.allocate(all_columns(), 3);
@@ -74,6 +115,7 @@ SIM_TEST(Columns, FollowTheirParticlesWhenTheyAreKept) {
   for (auto* bytes : {&c.target, &c.history, &c.waiting, &c.active, &c.rest}) bytes->zero();
   c.saliency_parts.zero();
   c.unrest.zero();
+  c.temperature.from_host({1.5f, 2.5f, 3.5f});
   c.id.from_host({7, 8, 9});
   c.level.from_host({0, 1, 2});
   c.age.from_host({10, 11, 12});
@@ -88,6 +130,7 @@ SIM_TEST(Columns, FollowTheirParticlesWhenTheyAreKept) {
   EXPECT_EQ(c.age.to_host(), (std::vector<std::uint8_t>{12, 10}));
   EXPECT_EQ(c.saliency.to_host(), (std::vector<float>{0.3f, 0.1f}));
   EXPECT_EQ(c.start_cell.to_host(), (std::vector<int>{6, 4}));
+  EXPECT_EQ(c.temperature.to_host(), (std::vector<float>{3.5f, 1.5f}));
 }
 
 }  // namespace

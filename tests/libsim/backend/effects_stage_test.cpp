@@ -193,5 +193,65 @@ SIM_TEST(AirDrag, LeavesOutLevelsCoarserThanItsOwnDetail) {
   EXPECT_EQ(v[1].y, -2);
 }
 
+/// theta of `points` after one step of conduction.
+std::vector<float> temperatures_after(FluidState& state, const std::vector<float>& before) {
+  state.heat.resize(1);
+  state.heat.zero();
+  state.particles.all().temperature.from_host(before);
+  for (const Stage& stage : passes_of(EffectKind::Heat)) stage.run(state);
+  return state.particles.all().temperature.to_host();
+}
+
+SIM_TEST(Heat, StaysInTheWaterForMixedMasses) {
+  NEEDS_EFFECTS;
+  const auto points = mixed_ball();
+  auto state = state_of(points, false);
+  state.parameters.effects.values[index_of(EffectKind::Heat)] = 0.2f;
+  std::vector<float> theta;
+  for (const Vec4& p : points) theta.push_back(p.x > 0 ? 10.0f : 0.0f);
+  const auto after = temperatures_after(state, theta);
+  double held = 0, now = 0, moved = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    held += mass(points[i]) * static_cast<double>(theta[i]);
+    now += mass(points[i]) * static_cast<double>(after[i]);
+    moved += mass(points[i]) * std::abs(static_cast<double>(after[i] - theta[i]));
+  }
+  EXPECT_GT(moved, 0.01 * held);
+  EXPECT_NEAR(now / held, 1, 1e-6);
+}
+
+SIM_TEST(Heat, OneLevelAndMixedKernelsAgreeAndALinearCourseStays) {
+  NEEDS_EFFECTS;
+  constexpr int side = 9;
+  const auto points = cube(side, 0.1f);
+  std::vector<float> theta;
+  for (const Vec4& p : points) theta.push_back(10 * p.x);
+  std::vector<float> after[2];
+  for (const bool one : {true, false}) {
+    auto state = state_of(points, one);
+    state.parameters.effects.values[index_of(EffectKind::Heat)] = 0.1f;
+    after[one] = temperatures_after(state, theta);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(after[0][i], after[1][i], 1e-5f);
+  const std::size_t middle = static_cast<std::size_t>((4 * side + 4) * side + 4);
+  EXPECT_NEAR(after[0][middle], theta[middle], 1e-4f);
+  EXPECT_GT(after[0][0], theta[0] + 1e-3f) << "at the rim it levels out";
+}
+
+SIM_TEST(Heat, WarmWaterIsLiftedAndColdWaterIsNot) {
+  NEEDS_EFFECTS;
+  auto state = state_of({{0, 0, 0, 0.1f}, {5, 0, 0, 0.2f}}, false);
+  auto& effects = state.parameters.effects;
+  effects.values[index_of(EffectKind::Heat)] = 1e-6f;
+  effects.options[static_cast<std::size_t>(EffectOption::HeatExpansion)] = 0.01;
+  temperatures_after(state, {10, 0});
+  const auto v = state.particles.all().velocity.to_host();
+  EXPECT_NEAR(v[0].y, 9.81f * 0.1f * state.parameters.dt, 1e-6f);
+  EXPECT_EQ(v[1].y, 0);
+  effects.options[static_cast<std::size_t>(EffectOption::HeatExpansion)] = 0;
+  temperatures_after(state, {10, 0});
+  EXPECT_EQ(state.particles.all().velocity.to_host()[0].y, v[0].y);
+}
+
 }  // namespace
 }  // namespace sim::SIM_BACKEND

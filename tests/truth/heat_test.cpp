@@ -1,0 +1,225 @@
+/// Heat measured back: the diffusivity by the slab's closed form, the walls' temperature by another, the
+/// buoyancy by the acceleration of water that is warm in one half; and the total heat, which stays.
+
+#include "libsim/scene/heat.hpp"
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+using sim::EffectKind;
+using sim::EffectOption;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+constexpr double d = 0.05;  // of level 0
+constexpr double within = 0.15;
+
+/// Water in a tank that it fills up to its surface.
+struct Pool {
+  const char* name = "";
+  MethodKind method = MethodKind::HiRes;
+  std::optional<sim::TargetRegion> targets{};
+  double beta = 1;
+  Backend backend = Backend::Cpu;
+};
+/// The front half in z is fine, the rest coarse.
+sim::TargetRegion half_fine(const Vec3d& size) {
+  return {{size[0] / 2, size[1] / 2, size[2] / 2 + 50}, 50, 0, 3};
+}
+std::vector<Pool> pools(const Vec3d& size, Backend backend) {
+  return {{"level 0", MethodKind::HiRes, {}, 1, backend},
+          {"level 3", MethodKind::LoRes, {}, 1, backend},
+          {"mixed levels", MethodKind::Ours, half_fine(size), 1, backend},
+          {"beta 0.67", MethodKind::HiRes, {}, 0.67, backend}};
+}
+
+sim::Effect heat(double diffusivity, double expansion, double wall_k = 0) {
+  sim::Effect out{EffectKind::Heat, diffusivity};
+  const auto set = [&](EffectOption option, double value) {
+    out.options[static_cast<std::size_t>(option)] = value;
+  };
+  set(EffectOption::HeatExpansion, expansion);
+  set(EffectOption::HeatReference, 300);
+  set(EffectOption::HeatWall, wall_k);
+  return out;
+}
+
+sim::Scene pool_scene(const Vec3d& size, const sim::Effect& effect) {
+  auto scene = fluid_test::tank({size[0], 2 * size[1], size[2]}, size, 30);
+  scene.effects = {effect};
+  return scene;
+}
+/// x < half of the pool at 310 K, the rest at 300 K.
+void warm_left(sim::Scene& scene) { scene.warm = {{{-1, -1, -1}, {scene.fill_max_m[0] / 2, 100, 100}, 310}}; }
+
+std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& scene) {
+  sim::SimulationOptions options;
+  options.backend = pool.backend;
+  options.method = pool.method;
+  const Vec3d& size = scene.fill_max_m;
+  options.n_star = std::llround(size[0] * size[1] * size[2] / (8 * d * d * d));
+  options.forced_targets = pool.targets;
+  if (pool.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(pool.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  return sim::make_simulation(scene, options);
+}
+
+/// Places, masses in m_*, velocities and temperatures, K above the reference.
+struct Warm {
+  Vec3d at, v;
+  double mass, theta;
+};
+std::vector<Warm> warm_state(const sim::Simulation& fluid) {
+  std::vector<float> theta;
+  fluid.read_field(sim::ParticleField::Temperature, theta);
+  const auto ids = fluid.read_ids();
+  std::map<int, double> by_id;
+  for (std::size_t i = 0; i < ids.size(); ++i) by_id[ids[i]] = static_cast<double>(theta[i]);
+  std::vector<Warm> out;
+  for (const auto& p : fluid.read_state())
+    out.push_back({place(p), velocity(p), static_cast<double>(1 << p.level), by_id.at(p.id)});
+  return out;
+}
+double mean_of(const std::vector<Warm>& state, const std::function<double(const Warm&)>& f) {
+  double sum = 0, mass = 0;
+  for (const Warm& p : state) {
+    sum += p.mass * f(p);
+    mass += p.mass;
+  }
+  return sum / mass;
+}
+
+/// theta of the insulated slab of length 1 whose half x < 1/2 begins at 1, after the time D t / L^2.
+double slab(double x, double time) {
+  double out = 0.5;
+  for (int n = 1; n < 200; n += 2) {
+    const double sign = n % 4 == 1 ? 1 : -1;
+    out += sign * 2 / (pi * n) * std::cos(n * pi * x) * std::exp(-n * n * pi * pi * time);
+  }
+  return out;
+}
+
+/// The part of cos(pi x / L) decays as exp(-D (pi / L)^2 t).
+void a_step_diffuses(const Pool& pool) {
+  NEEDS_EFFECTS;
+  const Vec3d size{32 * d, 12 * d, 12 * d};
+  constexpr double given = 0.05;
+  auto scene = pool_scene(size, heat(given, 0));
+  warm_left(scene);
+  const auto fluid = start_of(pool, scene);
+  const double k = pi / size[0];
+  const auto wave = [&] {
+    return mean_of(warm_state(*fluid), [&](const Warm& p) { return p.theta * std::cos(k * p.at[0]); });
+  };
+  const double before = wave();
+  constexpr int frames = 60;
+  for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
+  const double time = frames * scene.frame_dt_s;
+  const double back = -std::log(wave() / before) / (k * k * time) / given;
+  const double off = std::sqrt(mean_of(warm_state(*fluid), [&](const Warm& p) {
+    return std::pow(p.theta / 10 - slab(p.at[0] / size[0], given * time / (size[0] * size[0])), 2);
+  }));
+  std::printf("heat, %s: diffusivity %.3f of what was given, %.3f of the step off the slab\n", pool.name,
+              back, off);
+  EXPECT_NEAR(back, 1, within) << pool.name;
+  EXPECT_LT(off, 0.05) << pool.name;
+}
+
+/// Between side walls of 310 K the mean of a slab that begins at 300 K comes nearer by 8 / pi^2 sum 1 / n^2
+/// exp(-n^2 pi^2 D t / L^2), n odd; the floor is kept out of it by looking at the wave alone.
+void walls_warm(const Pool& pool) {
+  NEEDS_EFFECTS;
+  // The floor and four sides: theta = 10 - 10 X(x) Z(z) Y(y), with Y open above.
+  const Vec3d size{16 * d, 12 * d, 16 * d};
+  constexpr double given = 0.05;
+  const auto scene = pool_scene(size, heat(given, 0, 310));
+  const auto fluid = start_of(pool, scene);
+  constexpr int frames = 40;
+  for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
+  const auto state = warm_state(*fluid);
+  const double depth = 2 * mean_of(state, [](const Warm& p) { return p.at[1]; });
+  const auto cold = [&](double length, double diffusivity) {
+    double sum = 0;
+    for (int n = 1; n < 200; n += 2)
+      sum += 8 / (pi * pi * n * n) *
+             std::exp(-n * n * pi * pi * diffusivity * frames * scene.frame_dt_s / (length * length));
+    return sum;
+  };
+  const double left = 1 - mean_of(state, [](const Warm& p) { return p.theta; }) / 10;
+  double low = 0.1 * given, high = 10 * given;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = std::sqrt(low * high);
+    (cold(size[0], middle) * cold(size[2], middle) * cold(2 * depth, middle) > left ? low : high) = middle;
+  }
+  const auto report = fluid->report();
+  std::printf("heat, %s: walls of their own temperature warm with %.3f of the diffusivity given\n", pool.name,
+              low / given);
+  EXPECT_NEAR(low / given, 1, within) << pool.name;
+  EXPECT_NEAR(report.heat.from_walls / report.heat.held, 1, 1e-5) << pool.name;
+}
+
+/// theta = T cos(k x), k = pi / L: the pressure that keeps the water together leaves the acceleration
+/// g beta T cos(k x) (1 - cosh(k y) + tanh(k H) sinh(k y)), whose mean over y is beta's measure. In the time
+/// between the two looks the surface has hardly swung back, as k g t^2 is small. What the last substep gave,
+/// and the pressure has not met, is in both.
+void warm_water_rises(const Pool& pool) {
+  NEEDS_EFFECTS;
+  const Vec3d size{32 * d, 16 * d, 12 * d};
+  constexpr double expansion = 0.1;
+  auto scene = pool_scene(size, heat(1e-6, expansion));
+  scene.gravity_m_s2 = 1;
+  const double k = pi / size[0];
+  constexpr int slices = 64;
+  for (int s = 0; s < slices; ++s) {
+    const double from = size[0] * s / slices, to = size[0] * (s + 1) / slices;
+    scene.warm.push_back({{from, -1, -1}, {to, 100, 100}, 300 + 10 * std::cos(k * (from + to) / 2)});
+  }
+  auto still = scene;
+  still.effects = {heat(1e-6, 0)};
+  constexpr int first = 3, last = 13;
+  double solved = 0;
+  const auto rise = [&](const sim::Scene& of) {
+    const auto fluid = start_of(pool, of);
+    const auto speed = [&] {
+      return mean_of(warm_state(*fluid), [&](const Warm& p) { return p.v[1] * std::cos(k * p.at[0]); });
+    };
+    double before = 0;
+    for (int frame = 1; frame <= last; ++frame) {
+      fluid->step_frame();
+      if (frame == first) before = speed();
+    }
+    const auto report = fluid->report();
+    solved = static_cast<double>(report.temporal.active) / static_cast<double>(report.particles);
+    return speed() - before;
+  };
+  const double speed = rise(scene) - rise(still);
+  const double kh = k * size[1];
+  const double share = 1 - std::sinh(kh) / kh + std::tanh(kh) * (std::cosh(kh) - 1) / kh;
+  const double expected = scene.gravity_m_s2 * expansion * 10 / 2 * share * (last - first) * scene.frame_dt_s;
+  std::printf("heat, %s: expansion %.3f of what was given, %.2f of the particles solved at last\n", pool.name,
+              speed / expected, solved);
+  EXPECT_NEAR(speed / expected, 1, within) << pool.name;
+}
+
+void steps_diffuse(Backend backend) {
+  for (const Pool& pool : pools({32 * d, 12 * d, 12 * d}, backend)) a_step_diffuses(pool);
+}
+void walls_of_their_own(Backend backend) {
+  for (const Pool& pool : pools({16 * d, 12 * d, 16 * d}, backend)) walls_warm(pool);
+}
+void buoyancy(Backend backend) {
+  for (const Pool& pool : pools({32 * d, 16 * d, 12 * d}, backend)) warm_water_rises(pool);
+}
+
+TEST(TruthHeat, AStepDiffusesAsInTheSlab) { steps_diffuse(Backend::Cpu); }
+TEST(TruthHeat, WallsOfTheirOwnTemperatureWarmTheWater) { walls_of_their_own(Backend::Cpu); }
+TEST(TruthHeat, WarmWaterRisesWithItsBuoyancy) { buoyancy(Backend::Cpu); }
+TEST(TruthHeatGpu, AStepDiffusesAsInTheSlab) { steps_diffuse(Backend::Cuda); }
+TEST(TruthHeatGpu, WallsOfTheirOwnTemperatureWarmTheWater) { walls_of_their_own(Backend::Cuda); }
+TEST(TruthHeatGpu, WarmWaterRisesWithItsBuoyancy) { buoyancy(Backend::Cuda); }
+
+}  // namespace
