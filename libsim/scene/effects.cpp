@@ -57,8 +57,15 @@ std::string needs_mend(const Effect& effect) {
 }
 
 double natural_time(const Effect& effect, double d) {
-  if (traits_of(effect.kind).unit == EffectUnit::PerSecond) return 1 / effect.coefficient;
-  return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
+  switch (traits_of(effect.kind).unit) {
+    case EffectUnit::NewtonPerMetre:
+      return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
+    case EffectUnit::PerSecond:
+      return 1 / effect.coefficient;
+    case EffectUnit::Unlimited:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -20,13 +20,16 @@ inline constexpr double rest_density_kg_m3 = 1000;
 /// density rho_0 and the finest spacing d.
 enum class EffectUnit {
   NewtonPerMetre,  ///< T = sqrt(rho_0 d^3 / c)
-  PerSecond        ///< T = 1 / c
+  PerSecond,       ///< T = 1 / c
+  Unlimited        ///< of any unit, where no step is too long: T has no end
 };
 
 // The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
 // substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
 // one file in libsim/solver/effects; they run in the table's order, after the viscosity.
 #define SIM_EFFECTS(EFFECT)                                                        \
+  EFFECT(Viscosity, viscosity, viscosity_m2_s, Unlimited, 1, no_effect,            \
+         "Weiler et al. 2018, implicit, of pairs of any size")                     \
   EFFECT(Cohesion, cohesion, tension_n_m, NewtonPerMetre, 0.2, no_effect,          \
          "Akinci et al. 2013, cohesion and curvature, as energies of the surface") \
   EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion,  \
@@ -45,7 +48,10 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
 // is absent, least, most).
-#define SIM_EFFECT_OPTIONS(OPTION) OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)
+#define SIM_EFFECT_OPTIONS(OPTION)                        \
+  OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200) \
+  OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)       \
+  OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)
 
 enum class EffectOption {
 #define SIM_ENUMERATOR(Name, ...) Name,
