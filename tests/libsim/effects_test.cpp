@@ -143,7 +143,10 @@ TEST(Effects, OfCoefficientZeroCostNothingAndChangeNoBit) {
   for (const auto& method : sim::all_methods()) {
     auto scene = small_dam();
     const Cost bare = cost_of(scene, method.kind);
-    scene.effects = {{EffectKind::Cohesion, 0}, {EffectKind::Adhesion, 0}, {EffectKind::AirDrag, 0}};
+    scene.effects = {{EffectKind::Viscosity, 0},
+                     {EffectKind::Cohesion, 0},
+                     {EffectKind::Adhesion, 0},
+                     {EffectKind::AirDrag, 0}};
     const Cost zero = cost_of(scene, method.kind);
     EXPECT_EQ(zero.launches, bare.launches) << method.name;
     EXPECT_EQ(zero.bytes, bare.bytes) << method.name;

@@ -1,4 +1,4 @@
-/// Viscosity measured back from the motion.
+/// The effect viscosity measured back from standing shear waves between walls, without gravity.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
@@ -8,129 +8,131 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 
-double env(const char* name, double usual) {
-  const char* v = std::getenv(name);
-  return v ? std::atof(v) : usual;
-}
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
-struct Cell {
-  int level = 0;
-  bool mixed = false;
+constexpr double d = 0.05;  // of level 0
+constexpr int spacings = 12;
+constexpr int frames = 12;  // of two substeps, in which the wave falls to 1 / e
+
+/// An upright column, three widths high, between four walls. Its particles move along y: where the walls let
+/// it slip v = U cos(pi x / a), which decays at nu (pi / a)^2; where they hold it v = U sin(pi x / a)
+/// sin(pi z / a), at twice that.
+struct Wave {
+  bool sticks = false;
+  int level = 0;                               ///< of the start
+  MethodKind method = MethodKind::HiRes;       ///< that holds this level
+  std::optional<sim::TargetRegion> targets{};  ///< in widths, from the column's middle
   double beta = 1;
-  double nu = 0.1;
+  Backend backend = Backend::Cpu;
+
+  double spacing() const { return d * std::cbrt(1 << level); }
+  double width() const { return spacings * spacing(); }
+  double viscosity() const { return 0.3 * std::sqrt(1 << level); }  // the same motion at every size
+  double decay_time() const { return width() * width() / ((sticks ? 2 : 1) * pi * pi * viscosity()); }
+  double shape(const Vec3d& x) const {
+    const double k = pi / width();
+    return sticks ? std::sin(k * x[0]) * std::sin(k * x[2]) : std::cos(k * x[0]);
+  }
 };
 
-sim::Effect viscosity(double nu, double stick, double steps) {
-  sim::Effect out{EffectKind::Viscosity, nu};
-  out.options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = stick;
-  out.options[static_cast<std::size_t>(sim::EffectOption::ViscositySteps)] = steps;
-  return out;
+std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
+  const double a = wave.width(), middle = 3 * a;
+  auto scene = fluid_test::tank({a, 2 * middle, a}, {});
+  scene.gravity_m_s2 = 0;
+  scene.viscosity_m2_s = 0;
+  scene.frame_dt_s = wave.decay_time() / frames;
+  scene.effects = {{EffectKind::Viscosity, wave.viscosity()}};
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = wave.sticks;
+  sim::SimulationOptions options;
+  options.backend = wave.backend;
+  options.method = wave.method;
+  options.substeps = 2;
+  options.start = lattice(
+      wave.spacing(), scene.tank_size_m, [&](const Vec3d& x) { return std::abs(x[1] - middle) < 1.5 * a; },
+      [](const Vec3d&) { return Vec3d{}; });
+  for (auto& p : *options.start) p.level = wave.level;
+  options.n_star = static_cast<std::int64_t>(options.start->size() << wave.level) / 8 + 1;
+  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  if (wave.targets) {
+    options.forced_targets = *wave.targets;
+    auto& region = *options.forced_targets;
+    region.centre_m = {a * (0.5 + region.centre_m[0]), middle + a * region.centre_m[1],
+                       a * (0.5 + region.centre_m[2])};
+    region.radius_m *= a;
+  }
+  if (wave.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(wave.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  return sim::make_simulation(scene, options);
 }
 
-TEST(VExplore, TaylorGreen) {
-  const int level = static_cast<int>(env("LEVEL", 0));
-  const bool mixed = env("MIXED", 0) > 0;
-  const double beta = env("BETA", 1), nu = env("NU", 0.1), steps = env("STEPS", 30), U = env("U", 0.3);
-  const int spacings = static_cast<int>(env("SPACINGS", 16));
-  const double d = 0.05, spacing = d * std::cbrt(1 << level), length = spacings * spacing;
-  auto scene = fluid_test::tank({length, 2 * length, length}, {length, length, length}, 0);
-  scene.gravity_m_s2 = env("G", 9.81);
-  scene.effects = {viscosity(nu, 0, steps)};
-  scene.viscosity_m2_s = env("XSPH", 0);
-  sim::SimulationOptions options;
-  options.method = mixed ? MethodKind::Ours : level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
-  options.n_star = std::llround(std::pow(length / d, 3) / 8);
-  options.substeps = static_cast<int>(env("SUB", 2));
-  if (mixed) options.forced_targets = sim::TargetRegion{{0, length/2, length/2}, 0.7*length, 0, 3};
-  if (beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);
-  }
-  const auto fluid = sim::make_simulation(scene, options);
-  for (int k = 0; k < env("SETTLE", 60); ++k) fluid->step_frame();
-  const double k = pi / length;
-  const auto flow = [&](const Vec3d& x) {
-    return Vec3d{U * std::sin(k * x[0]) * std::cos(k * x[2]), 0, -U * std::cos(k * x[0]) * std::sin(k * x[2])};
-  };
-  const auto strength = [&](const State& state) {
+/// nu by the decay of the wave in the column's middle third, over what the scene lists. At the start a
+/// particle moves by two spacings in a decay time.
+double viscosity_back(const Wave& wave) {
+  const auto fluid = column_of(wave);
+  for (int k = 0; k < 10; ++k) fluid->step_frame();  // levels come about
+  const double speed = 2 * wave.spacing() / wave.decay_time();
+  fluid->put(moving(fluid->read_state(), [&](const Vec3d& x) { return Vec3d{0, speed * wave.shape(x), 0}; }));
+  std::vector<double> t, logs;
+  for (int k = 1; k <= frames; ++k) {
+    fluid->step_frame();
+    const State state = fluid->read_state();
+    const double middle = mean(state, [](const auto& p) { return place(p)[1]; });
     double along = 0, norm = 0;
     for (const auto& p : state) {
-      const Vec3d v = velocity(p), e = flow(place(p));
-      along += mass(p) * (v[0] * e[0] + v[2] * e[2]);
-      norm += mass(p) * (e[0] * e[0] + e[2] * e[2]);
+      if (std::abs(place(p)[1] - middle) > wave.width() / 2) continue;
+      const double shape = wave.shape(place(p));
+      along += mass(p) * velocity(p)[1] * shape;
+      norm += mass(p) * shape * shape;
     }
-    return along / norm;
-  };
-  fluid->put(moving(fluid->read_state(), flow));
-  std::vector<double> t, logs;
-  const double rate = 2 * nu * k * k;
-  const int frames = static_cast<int>(std::ceil(1.5 / rate / scene.frame_dt_s));
-  for (int f = 1; f <= frames; ++f) {
-    fluid->step_frame();
-    t.push_back(f * scene.frame_dt_s);
-    logs.push_back(std::log(std::max(1e-3, strength(fluid->read_state()))));
+    t.push_back(static_cast<double>(k) / frames);
+    logs.push_back(std::log(std::max(along / norm, 1e-9)));
   }
-  const double back = -fit(t, logs).slope / (2 * k * k);
+  const double back = -fit(t, logs).slope;
   std::string levels;
   for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
-  std::printf("TG level %d mixed %d beta %.2f nu %.3f: %d frames, back %.3f r2 %.4f first %.3f last %.3f levels%s\n", level, mixed,
-              beta, nu, frames, back / nu, fit(t, logs).r2, logs.front() / (-rate * t.front()), logs.back() / (-rate * t.back()), levels.c_str());
+  std::printf("walls that %s, level %d, beta %.2f, by level%s: viscosity %.3f of what was given\n",
+              wave.sticks ? "hold" : "let slip", wave.level, wave.beta, levels.c_str(), back);
+  return back;
 }
 
-TEST(VExplore, Wave) {
-  const int level = static_cast<int>(env("LEVEL", 0));
-  const bool mixed = env("MIXED", 0) > 0;
-  const double beta = env("BETA", 1), steps = env("STEPS", 30), stick = env("STICK", 1), way = env("WAY", 2);
-  const int n = static_cast<int>(env("SPACINGS", 12)), len = static_cast<int>(env("LEN", 3));
-  const double d = 0.05, spacing = d * std::cbrt(1 << level), a = n * spacing;
-  const double nu = env("NU", 0.3) * std::pow(1 << level, 0.5);
-  const double tau = a * a / ((1 + stick) * pi * pi * nu), U = way * spacing / tau;
-  auto scene = fluid_test::tank({a, (len + 3) * a, a}, {a, a, a}, 0);
-  scene.effects = {viscosity(nu, stick, steps)};
-  scene.viscosity_m2_s = 0;
-  scene.gravity_m_s2 = 0;
-  sim::SimulationOptions options;
-  options.method = mixed ? MethodKind::Ours : level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
-  const double middle = (len + 3) * a / 2;
-  const auto flow = [&](const Vec3d& x) {
-    return Vec3d{0, U * (stick > 0 ? std::sin(pi * x[0] / a) * std::sin(pi * x[2] / a) : std::cos(pi * x[0] / a)), 0};
-  };
-  State start = lattice(spacing, scene.tank_size_m, [&](const Vec3d& x) { return std::abs(x[1] - middle) < len * a / 2; }, [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : start) p.level = level;
-  options.n_star = static_cast<std::int64_t>(start.size() << level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
-  scene.frame_dt_s = tau / env("FRAMES", 12);
-  options.substeps = static_cast<int>(env("SUB", 2));
-  options.start = start;
-  if (mixed) options.forced_targets = sim::TargetRegion{{a / 2, middle, a}, 0.5 * a, 0, 3};
-  if (beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);
-  }
-  const auto fluid = sim::make_simulation(scene, options);
-  for (int k = 0; k < env("SETTLE", 10); ++k) fluid->step_frame();
-  fluid->put(moving(fluid->read_state(), flow));
-  const auto strength = [&](const State& state) {
-    double along = 0, norm = 0;
-    const double ym = mean(state, [](auto& p) { return place(p)[1]; });
-    for (const auto& p : state) {
-      const Vec3d v = velocity(p), e = flow(place(p));
-      if (std::abs(place(p)[1] - ym) > a / 2) continue;
-      along += mass(p) * v[1] * e[1];
-      norm += mass(p) * e[1] * e[1];
+constexpr double within = 0.15;
+sim::TargetRegion half_fine() { return {{0, 0, 0.5}, 0.5, 0, 3}; }
+
+void waves_of_one_level(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true}) {
+    for (const int level : {0, 3}) {
+      const auto method = level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
+      EXPECT_NEAR(viscosity_back({.sticks = sticks, .level = level, .method = method, .backend = backend}), 1,
+                  within);
     }
-    return along / norm;
-  };
-  std::vector<double> t, logs;
-  for (int f = 1; f <= static_cast<int>(env("FRAMES", 12)); ++f) {
-    fluid->step_frame();
-    t.push_back(f * scene.frame_dt_s / tau);
-    logs.push_back(std::log(std::max(1e-3, strength(fluid->read_state()))));
   }
-  std::string levels;
-  for (const auto c : fluid->report().particles_by_level) levels += " " + std::to_string(c);
-  std::printf("wave stick %.0f level %d mixed %d beta %.2f nu %.3f U %.2f dt %.4f: back %.3f r2 %.4f first %.3f last %.3f levels%s\n", stick, level, mixed,
-              beta, nu, U, scene.frame_dt_s / options.substeps, -fit(t, logs).slope, fit(t, logs).r2, -logs.front() / t.front(), -logs.back() / t.back(), levels.c_str());
 }
+void waves_of_mixed_levels(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true}) {
+    EXPECT_NEAR(viscosity_back({.sticks = sticks,
+                                .level = 3,
+                                .method = MethodKind::Ours,
+                                .targets = half_fine(),
+                                .backend = backend}),
+                1, within);
+  }
+}
+void waves_that_rest_in_turns(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true})
+    EXPECT_NEAR(viscosity_back({.sticks = sticks, .beta = 0.67, .backend = backend}), 1, within);
+}
+
+TEST(TruthViscosity, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cpu); }
+TEST(TruthViscosity, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cpu); }
+TEST(TruthViscositySlow, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cpu); }
+TEST(TruthViscosityGpu, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cuda); }
+TEST(TruthViscosityGpu, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cuda); }
+TEST(TruthViscosityGpu, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cuda); }
 
 }  // namespace
