@@ -63,8 +63,9 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
     out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
   }
   const Scales scales = scales_of(scene, options.n_star);
-  out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s; Reynolds " << scales.reynolds
-      << ", Weber " << scales.weber << ", Bond " << scales.bond << "\n";
+  out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s, " << scales.viscosity_m2_s
+      << " m2/s; Reynolds " << scales.reynolds << ", Weber " << scales.weber << ", Bond " << scales.bond
+      << "\n";
   return out.str();
 }
 

@@ -215,9 +215,22 @@ using Columns =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
                columns(Column::PredictedNext, Column::VelocityNext, Column::Normal, Column::Velocity)>;
 
+template <bool First, bool OneLevel, class Selection>
+Friction<First, OneLevel, Selection> friction_of(FluidState& state, Columns p, Selection select) {
+  const auto& k = state.parameters;
+  return {.select = select,
+          .position = p.position(),
+          .moving = First ? p.velocity() : p.velocity_next(),
+          .neighbours = state.neighbours.view(),
+          .images = {state.walls, 1 - 2 * k.effects[EffectOption::ViscosityStick]},
+          .rate = pair_rate * k.dt * k.effects[EffectKind::Viscosity],
+          .residual = p.predicted_next(),
+          .direction = p.velocity_next(),
+          .bent = p.normal()};
+}
+
 template <bool OneLevel, class Selection>
 void solve(FluidState& state, Columns p, Selection select) {
-  const auto& k = state.parameters;
   const int n = p.size();
   const float finest = state.finest_support;
   auto& solver = state.conjugate_gradient;
@@ -229,32 +242,26 @@ void solve(FluidState& state, Columns p, Selection select) {
   Vec4* const residual = p.predicted_next();
   Vec4* const direction = p.velocity_next();
   Vec4* const bent = p.normal();
-  const Friction<true, OneLevel, Selection> first{
-      .select = select,
-      .position = p.position(),
-      .moving = p.velocity(),
-      .neighbours = state.neighbours.view(),
-      .images = {state.walls, 1 - 2 * k.effects[EffectOption::ViscosityStick]},
-      .rate = pair_rate * k.dt * k.effects[EffectKind::Viscosity],
-      .residual = residual,
-      .direction = direction,
-      .bent = bent};
-  const Friction<false, OneLevel, Selection> then{first.select,     first.position, direction,
-                                                  first.neighbours, first.images,   first.rate,
-                                                  residual,         direction,      bent};
   if constexpr (!Selection::everyone)
-    for_each_team("viscous shares", n, Shares<OneLevel>{select, first.position, first.neighbours, bent});
-  for_each_team("viscous residual", n, first);
+    for_each_team("viscous shares", n, Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent});
+  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select));
   solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest},
              TakeTurn{step});
-  const int steps = static_cast<int>(k.effects[EffectOption::ViscositySteps]);
+  const int steps = static_cast<int>(state.parameters.effects[EffectOption::ViscositySteps]);
   for (int s = 0; s < steps; ++s) {
     if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
-    for_each_team("viscous pairs", n, then);
+    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select));
     solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest},
                TakeAlong{step});
     solver.sum("viscous advance", n, p.capacity(),
-               Advance{p.position(), direction, bent, p.velocity(), residual, step, finest}, TakeTurn{step});
+               Advance{.position = p.position(),
+                       .direction = direction,
+                       .bent = bent,
+                       .velocity = p.velocity(),
+                       .residual = residual,
+                       .step = step,
+                       .finest_support = finest},
+               TakeTurn{step});
   }
 }
 
