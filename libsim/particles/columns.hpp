@@ -42,8 +42,8 @@ enum class Descent {
 //   Id              unique, kept for life
 //   Level           mass level; mass = 2^level m_*
 //   Predicted       position at the end of the substep as far as it is solved, and h
-//   PredictedNext   where a projection writes, then swapped with Predicted; later the substep's kicks
-//   VelocityNext    where a velocity filter writes, then swapped with Velocity
+//   PredictedNext   where a projection writes, then swapped with Predicted; the substep's kicks; of effects
+//   VelocityNext    where a velocity filter writes, then swapped with Velocity; later of effects
 //   Lambda          change of the density constraint's multiplier in this projection, kg m2
 //   Density         rho / rho_0, walls included
 //   Target          level that the particle should have

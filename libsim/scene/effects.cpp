@@ -58,14 +58,16 @@ std::string needs_mend(const Effect& effect) {
 
 double natural_time(const Effect& effect, double d) {
   switch (traits_of(effect.kind).unit) {
+    case EffectUnit::NewtonPerMetre:
+      return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
     case EffectUnit::PerSecond:
       return 1 / effect.coefficient;
     case EffectUnit::MetreSquaredPerSecond:
       return d * d / effect.coefficient;
-    case EffectUnit::NewtonPerMetre:
+    case EffectUnit::Unlimited:
       break;
   }
-  return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -19,15 +19,18 @@ inline constexpr double rest_density_kg_m3 = 1000;
 /// What a coefficient is a coefficient of; the explicit step's natural time T follows from it, with the rest
 /// density rho_0 and the finest spacing d.
 enum class EffectUnit {
-  NewtonPerMetre,        ///< T = sqrt(rho_0 d^3 / c)
-  PerSecond,             ///< T = 1 / c
-  MetreSquaredPerSecond  ///< T = d^2 / c
+  NewtonPerMetre,         ///< T = sqrt(rho_0 d^3 / c)
+  PerSecond,              ///< T = 1 / c
+  MetreSquaredPerSecond,  ///< T = d^2 / c
+  Unlimited               ///< of any unit, where no step is too long: T has no end
 };
 
 // The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
 // substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
 // one file in libsim/solver/effects; they run in the table's order, after the viscosity.
 #define SIM_EFFECTS(EFFECT)                                                        \
+  EFFECT(Viscosity, viscosity, viscosity_m2_s, Unlimited, 1, no_effect,            \
+         "Weiler et al. 2018, implicit, of pairs of any size")                     \
   EFFECT(Cohesion, cohesion, tension_n_m, NewtonPerMetre, 0.2, no_effect,          \
          "Akinci et al. 2013, cohesion and curvature, as energies of the surface") \
   EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion,  \
@@ -49,6 +52,8 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
 // is absent, least, most).
 #define SIM_EFFECT_OPTIONS(OPTION)                           \
+  OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)    \
+  OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)          \
   OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)  \
   OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1) \
   OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)   \

@@ -59,7 +59,9 @@ Scales scales_of(const Scene& scene, std::int64_t n_star) {
   const auto over = [](double what, double by) { return what == 0 ? 0 : what / by; };
   const double inertia = rest_density_kg_m3 * out.speed_m_s * out.speed_m_s;
   const double weight = rest_density_kg_m3 * scene.gravity_m_s2 * out.length_m;
-  out.reynolds = over(out.speed_m_s * out.length_m, viscosity_of(scene, n_star));
+  out.viscosity_m2_s = viscosity_of(scene, n_star) +
+                       static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
+  out.reynolds = over(out.speed_m_s * out.length_m, out.viscosity_m2_s);
   out.weber = over(inertia * out.length_m, tension);
   out.bond = over(weight * out.length_m, tension);
   return out;

@@ -29,10 +29,11 @@ int substeps_of(const Scene& scene, std::int64_t n_star);
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
 /// Numbers that say what rules a scene: L = the water's shortest side, v = time.v_ref_m_s, the water's
-/// viscosity, gravity and tension. 0 where nothing moves or falls; otherwise infinite where what they divide
-/// by is absent.
+/// viscosity and that of the effect, gravity and tension. 0 where nothing moves or falls; otherwise infinite
+/// where what they divide by is absent.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
+  double viscosity_m2_s = 0;  ///< nu, the water's and the effect's
   double reynolds = 0;  ///< v L / nu
   double weber = 0;     ///< rho_0 v^2 L / sigma
   double bond = 0;      ///< rho_0 g L^2 / sigma

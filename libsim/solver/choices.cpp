@@ -53,14 +53,19 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   out << "  effects: ";
   for (const Effect& effect : scene.effects) {
     const auto& traits = traits_of(effect.kind);
-    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect) << ", ";
+    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect)
+        << ", ";
   }
   const EffectStep longest = longest_step(scene.effects, d);
-  if (longest.of == no_effect) return out.str() + "which ask for no shorter substeps\n";
-  out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
+  if (longest.of == no_effect) {
+    out << "which ask for no shorter substeps\n";
+  } else {
+    out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
+  }
   const Scales scales = scales_of(scene, options.n_star);
-  out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s; Reynolds " << scales.reynolds
-      << ", Weber " << scales.weber << ", Bond " << scales.bond << "\n";
+  out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s, " << scales.viscosity_m2_s
+      << " m2/s; Reynolds " << scales.reynolds << ", Weber " << scales.weber << ", Bond " << scales.bond
+      << "\n";
   return out.str();
 }
 

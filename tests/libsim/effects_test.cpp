@@ -192,6 +192,22 @@ TEST(Effects, TheirExplicitLimitRaisesTheSubstepsAndSaysSo) {
                   AllOf(HasSubstr("effect air_drag"), HasSubstr("lower rate_per_s"))));
 }
 
+TEST(Effects, ViscosityAsksForNoShorterSubstepsAndAddsToTheWaters) {
+  NEEDS_EFFECTS;
+  auto scene = small_dam();
+  scene.effects = {{EffectKind::Viscosity, 1000}};
+  EXPECT_EQ(sim::longest_step(scene.effects, 0.01).of, sim::no_effect);
+  EXPECT_NEAR(sim::scales_of(scene, 64).viscosity_m2_s, 1000.005, 1e-6);
+  for (const auto& method : sim::all_methods()) {
+    const auto fluid = sim::make_simulation(scene, options_of(method.kind));
+    EXPECT_THAT(fluid->explain(), AllOf(HasSubstr("ask for no shorter substeps"), HasSubstr("1000 m2/s")));
+    for (int frame = 0; frame < 8; ++frame) fluid->step_frame();
+    EXPECT_EQ(fluid->substeps().taken, sim::substeps_of(scene, 64)) << method.name;
+    for (const auto& p : fluid->read_state())
+      ASSERT_LT(std::hypot(p.vx_m_s, p.vy_m_s, p.vz_m_s), 1.5f) << method.name;
+  }
+}
+
 TEST(Effects, AreCheckedInScenesThatNoFileDescribes) {
   NEEDS_EFFECTS;
   const auto fails = [](std::vector<sim::Effect> effects, const std::string& with) {
@@ -209,7 +225,10 @@ TEST(Effects, AreCheckedInScenesThatNoFileDescribes) {
 TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
   NEEDS_EFFECTS;
   auto scene = small_dam();
-  scene.effects = {{EffectKind::Cohesion, 20}, {EffectKind::Adhesion, 10}, {EffectKind::AirDrag, 2}};
+  scene.effects = {{EffectKind::Viscosity, 0.05},
+                   {EffectKind::Cohesion, 20},
+                   {EffectKind::Adhesion, 10},
+                   {EffectKind::AirDrag, 2}};
   auto options = options_of(sim::MethodKind::Ours);
   options.wall_impulse = true;
   const auto fluid = sim::make_simulation(scene, options);
@@ -284,6 +303,9 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   EXPECT_NEAR(puddle.reynolds, 160, 0.5);
   EXPECT_NEAR(puddle.weber, 2.67, 0.005);
   EXPECT_NEAR(puddle.bond, 2.09, 0.005);
+  const auto honey = scales("honey");
+  EXPECT_NEAR(honey.reynolds, 6.4, 0.005);
+  EXPECT_EQ(honey.viscosity_m2_s, 0.5);
   const auto splash = scales("splash");
   EXPECT_NEAR(splash.reynolds, 900, 0.5);
   EXPECT_TRUE(std::isinf(splash.weber));

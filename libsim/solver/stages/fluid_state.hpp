@@ -13,6 +13,7 @@
 #include "libsim/pressure/coarse_grid.hpp"
 #include "libsim/saliency/saliency.hpp"
 #include "libsim/scene/effects.hpp"
+#include "libsim/solver/stages/conjugate_gradient.hpp"
 #include "libsim/solver/stages/part_clock.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -109,6 +110,7 @@ struct FluidState {
   Activation activation;
   Array<Guards> guards;
   ImpulseRecorder impulse;
+  ConjugateGradient conjugate_gradient;
   PartClock clock;
 
   /// Who was solved in the last frame; nullptr when everyone was.

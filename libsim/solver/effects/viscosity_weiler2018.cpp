@@ -1,0 +1,283 @@
+/// Viscosity of fluids as thick as honey: implicit, so that no step is too long for it.
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// A pair pulls along the direction e between its particles, by their relative velocity u:
+///   m_i dv_i / dt = -rho_0 sum_j V_i V_j w_ij (e u) e,
+/// the form of Weiler et al. 2018, Eq. 7 and 8, symmetric in i and j and central: momentum and spin stay, and
+/// nothing brakes what turns as a whole. As printed w is the slope of a kernel over r. Here w = c nu / h^5
+/// (1 - q^2)^(3/2), which on the cubic lattice, where fluid at rest lies, is 1.02 to 1.05 of its integral in
+/// every direction. nu = 1/2 int w x^2 y^2 / r^2 dV gives c.
+constexpr float pair_rate = 640 / (pi * pi);
+
+/// w_ij V_j over c nu V_i.
+SIM_FN float weight_of(const Kernel& kernel, float mass_ratio, float r2) {
+  const float inverse = reciprocal(kernel.h2);
+  const float t = at_least(1 - r2 * inverse, 0.0f);
+  return mass_ratio * inverse * inverse * kernel.h * inverse * t * rough_root(t);
+}
+
+/// Behind a wall the fluid goes on as its image. Where it slips, the image moves as in a mirror. Where it
+/// sticks, the image moves against that, so that the velocity along the wall is 0 there. Pairs with images
+/// are as symmetric as others. Images of images, behind edges, are left out.
+struct Images {
+  Walls walls;
+  float turn;  ///< of the image's velocity: 1 slips, -1 sticks
+
+  /// May a particle there have a neighbour behind wall k? Coarsest neighbours have twice its support.
+  SIM_FN bool near(int k, Vec4 at) const { return walls.distance(k, xyz(at)) < 1.5f * at.w; }
+  /// Is there a wall for both?
+  SIM_FN bool between(int k, Vec4 a, Vec4 b) const {
+    return !walls.absent(k, xyz(a)) && !walls.absent(k, xyz(b));
+  }
+  SIM_FN Vec4 place(int k, Vec4 at) const {
+    return with_w(xyz(at) - 2 * walls.distance(k, xyz(at)) * walls.planes[k].normal, at.w);
+  }
+  SIM_FN Vec4 velocity(int k, Vec4 v) const {
+    const Vec3 normal = walls.planes[k].normal;
+    return with_w(turn * (xyz(v) - 2 * dot(normal, xyz(v)) * normal), 0);
+  }
+};
+
+/// Particles that rest keep out of the system: they take the mean change of those around them later. A pair
+/// of solved ones pulls for them too, as much harder as its neighbourhoods are thinner. w of `bent` becomes
+/// all the neighbours' weight over that of the solved ones, 0 for those who rest.
+template <bool OneLevel>
+struct Shares {
+  ActiveParticles select;
+  const Vec4* position;
+  Neighbours neighbours;
+  Vec4* bent;
+
+  /// What particle j adds; see SIM_LANES.
+  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
+    const Vec4 other = position[j];
+    const Vec3 offset = xyz(self) - xyz(other);
+    const float weight = weight_of(pair.with(other.w), pair.mass_ratio(other.w), dot(offset, offset));
+    all += weight;
+    solved += select.moves(j) * weight;
+  }
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if (i < 0) {
+      bent[~i] = {0, 0, 0, 0};
+      return;
+    }
+    const Vec4 self = position[i];
+    const PairKernel<OneLevel> pair(self.w);
+    float all = 0;
+    float solved = 0;
+    const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    SIM_LANES(all, solved)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, all, solved);
+    all = team.sum(all);
+    solved = team.sum(solved);
+    if (team.rank() == 0) bent[i] = {0, 0, 0, all > 0 ? quotient(all, at_least(solved, all / most)) : 1};
+  }
+  /// Of the pull of a neighbourhood where nearly all rest.
+  static constexpr float most = 4;
+};
+
+/// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the product sum_i m_i a_i b_i:
+/// A is symmetric in it, and every step of theirs, not only the last, keeps momentum and spin. First:
+/// residual and direction of the velocity. Then: A times the direction.
+template <bool First, bool OneLevel, class Selection>
+struct Friction {
+  Selection select;
+  const Vec4* position;
+  const Vec4* moving;  ///< velocity or direction
+  Neighbours neighbours;
+  Images images;
+  float rate;  ///< c nu dt, m2
+  Vec4* residual;
+  Vec4* direction;
+  Vec4* bent;  ///< A times direction
+  // w of residual and direction is that of Shares.
+
+  struct Self {
+    Vec4 at, moving;
+    float share;
+    PairKernel<OneLevel> pair;
+  };
+
+  SIM_FN float share_of(int i) const {
+    if constexpr (Selection::everyone) return 1;
+    return First ? bent[i].w : moving[i].w;
+  }
+  SIM_FN void add(float share, Vec4 other, Vec4 v, const Self& me, float& x, float& y, float& z) const {
+    const Kernel kernel = me.pair.with(other.w);
+    const float dx = me.at.x - other.x;
+    const float dy = me.at.y - other.y;
+    const float dz = me.at.z - other.z;
+    const float r2 = dx * dx + dy * dy + dz * dz;
+    float ratio = me.pair.mass_ratio(other.w);
+    if constexpr (!Selection::everyone) ratio *= share > 0 ? (me.share + share) / 2 : 0;
+    const float parting = dx * (me.moving.x - v.x) + dy * (me.moving.y - v.y) + dz * (me.moving.z - v.z);
+    const float along =
+        quotient(weight_of(kernel, ratio, r2) * parting, at_least(r2, coincident * coincident * kernel.h2));
+    x -= along * dx;
+    y -= along * dy;
+    z -= along * dz;
+  }
+  /// What particle j adds; see SIM_LANES.
+  SIM_FN void add_one(int j, const Self& me, float& x, float& y, float& z) const {
+    add(share_of(j), position[j], moving[j], me, x, y, z);
+  }
+  /// What its image behind wall k adds.
+  SIM_FN void add_image(int k, int j, const Self& me, float& x, float& y, float& z) const {
+    const Vec4 other = position[j];
+    if (images.between(k, me.at, other))
+      add(share_of(j), images.place(k, other), images.velocity(k, moving[j]), me, x, y, z);
+  }
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) {
+        if constexpr (First) residual[~i] = direction[~i] = {0, 0, 0, 0};
+        return;
+      }
+    }
+    const Vec4 at = position[i];
+    const Self me{at, moving[i], share_of(i), PairKernel<OneLevel>(at.w)};
+    float x = 0;
+    float y = 0;
+    float z = 0;
+    const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    SIM_LANES(x, y, z)
+    for (int n = team.rank(); n < count; n += Team::size) add_one(run[n], me, x, y, z);
+    for (int k = 0; k < images.walls.count; ++k) {
+      if (!images.near(k, at)) continue;
+      if (team.rank() == 0) add_image(k, i, me, x, y, z);
+      for (int n = team.rank(); n < count; n += Team::size) add_image(k, run[n], me, x, y, z);
+    }
+    x = team.sum(x);
+    y = team.sum(y);
+    z = team.sum(z);
+    if (team.rank() > 0) return;
+    const float scale = rate * mass_of(at.w, 1);
+    if constexpr (First) {
+      residual[i] = direction[i] = {scale * x, scale * y, scale * z, me.share};
+    } else {
+      bent[i] = with_w(xyz(me.moving) - scale * Vec3{x, y, z}, 0);
+    }
+  }
+};
+
+/// m_i a_i b_i, masses in m_*.
+struct Product {
+  const Vec4* position;
+  const Vec4* a;
+  const Vec4* b;
+  float finest_support;
+  SIM_FN float operator()(int i) const {
+    return mass_units_of(position[i].w, finest_support) * dot(xyz(a[i]), xyz(b[i]));
+  }
+};
+
+/// x += alpha p, r -= alpha A p; then m_i r_i r_i.
+struct Advance {
+  const Vec4* position;
+  const Vec4* direction;
+  const Vec4* bent;
+  Vec4* velocity;
+  Vec4* residual;
+  const ConjugateStep* step;
+  float finest_support;
+  SIM_FN float operator()(int i) const {
+    velocity[i] = with_w(xyz(velocity[i]) + step->along * xyz(direction[i]), 0);
+    const Vec3 r = xyz(residual[i]) - step->along * xyz(bent[i]);
+    residual[i] = with_w(r, residual[i].w);
+    return mass_units_of(position[i].w, finest_support) * dot(r, r);
+  }
+};
+
+/// p = r + beta p.
+struct Turn {
+  const Vec4* residual;
+  Vec4* direction;
+  const ConjugateStep* step;
+  SIM_FN void operator()(int i) const {
+    direction[i] = with_w(xyz(residual[i]) + step->turn * xyz(direction[i]), residual[i].w);
+  }
+};
+
+using Columns =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
+               columns(Column::PredictedNext, Column::VelocityNext, Column::Normal, Column::Velocity)>;
+
+template <bool First, bool OneLevel, class Selection>
+Friction<First, OneLevel, Selection> friction_of(FluidState& state, Columns p, Selection select) {
+  const auto& k = state.parameters;
+  return {.select = select,
+          .position = p.position(),
+          .moving = First ? p.velocity() : p.velocity_next(),
+          .neighbours = state.neighbours.view(),
+          .images = {state.walls, 1 - 2 * k.effects[EffectOption::ViscosityStick]},
+          .rate = pair_rate * k.dt * k.effects[EffectKind::Viscosity],
+          .residual = p.predicted_next(),
+          .direction = p.velocity_next(),
+          .bent = p.normal()};
+}
+
+template <bool OneLevel, class Selection>
+void solve(FluidState& state, Columns p, Selection select) {
+  const int n = p.size();
+  const float finest = state.finest_support;
+  auto& solver = state.conjugate_gradient;
+  if (solver.step.size() == 0) {
+    solver.step.resize(1);
+    solver.step.zero();
+  }
+  ConjugateStep* const step = solver.step.data();
+  Vec4* const residual = p.predicted_next();
+  Vec4* const direction = p.velocity_next();
+  Vec4* const bent = p.normal();
+  if constexpr (!Selection::everyone)
+    for_each_team("viscous shares", n, Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent});
+  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select));
+  solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest},
+             TakeTurn{step});
+  const int steps = static_cast<int>(state.parameters.effects[EffectOption::ViscositySteps]);
+  for (int s = 0; s < steps; ++s) {
+    if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
+    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select));
+    solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest},
+               TakeAlong{step});
+    solver.sum("viscous advance", n, p.capacity(),
+               Advance{.position = p.position(),
+                       .direction = direction,
+                       .bent = bent,
+                       .velocity = p.velocity(),
+                       .residual = residual,
+                       .step = step,
+                       .finest_support = finest},
+               TakeTurn{step});
+  }
+}
+
+template <class Selection>
+void solve_for(FluidState& state, Columns p, Selection select) {
+  state.one_level ? solve<true>(state, p, select) : solve<false>(state, p, select);
+}
+
+void run(FluidState& state, Columns p) {
+  state.all_active ? solve_for(state, p, AllParticles{}) : solve_for(state, p, state.active());
+}
+
+}  // namespace
+
+std::vector<Stage> viscosity_stages() {
+  return {stage_of<run>({.name = "viscosity", .phase = Phase::SubstepEnd})};
+}
+
+}  // namespace sim::SIM_BACKEND

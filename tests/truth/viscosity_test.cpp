@@ -1,0 +1,138 @@
+/// The effect viscosity measured back from standing shear waves between walls, without gravity.
+
+#include "libsim/scene/effects.hpp"
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+using sim::EffectKind;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+constexpr double d = 0.05;  // of level 0
+constexpr int spacings = 12;
+constexpr int frames = 12;  // of two substeps, in which the wave falls to 1 / e
+
+/// An upright column, three widths high, between four walls. Its particles move along y: where the walls let
+/// it slip v = U cos(pi x / a), which decays at nu (pi / a)^2; where they hold it v = U sin(pi x / a)
+/// sin(pi z / a), at twice that.
+struct Wave {
+  bool sticks = false;
+  int level = 0;                               ///< of the start
+  MethodKind method = MethodKind::HiRes;       ///< that holds this level
+  std::optional<sim::TargetRegion> targets{};  ///< in widths, from the column's middle
+  double beta = 1;
+  Backend backend = Backend::Cpu;
+
+  double spacing() const { return d * std::cbrt(1 << level); }
+  double width() const { return spacings * spacing(); }
+  double viscosity() const { return 0.3 * std::sqrt(1 << level); }  // the same motion at every size
+  double decay_time() const { return width() * width() / ((sticks ? 2 : 1) * pi * pi * viscosity()); }
+  double shape(const Vec3d& x) const {
+    const double k = pi / width();
+    return sticks ? std::sin(k * x[0]) * std::sin(k * x[2]) : std::cos(k * x[0]);
+  }
+};
+
+std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
+  const double a = wave.width(), middle = 3 * a;
+  auto scene = fluid_test::tank({a, 2 * middle, a}, {});
+  scene.gravity_m_s2 = 0;
+  scene.viscosity_m2_s = 0;
+  scene.frame_dt_s = wave.decay_time() / frames;
+  scene.effects = {{EffectKind::Viscosity, wave.viscosity()}};
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = wave.sticks;
+  sim::SimulationOptions options;
+  options.backend = wave.backend;
+  options.method = wave.method;
+  options.substeps = 2;
+  options.start = lattice(
+      wave.spacing(), scene.tank_size_m, [&](const Vec3d& x) { return std::abs(x[1] - middle) < 1.5 * a; },
+      [](const Vec3d&) { return Vec3d{}; });
+  for (auto& p : *options.start) p.level = wave.level;
+  options.n_star = static_cast<std::int64_t>(options.start->size() << wave.level) / 8 + 1;
+  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  if (wave.targets) {
+    options.forced_targets = *wave.targets;
+    auto& region = *options.forced_targets;
+    region.centre_m = {a * (0.5 + region.centre_m[0]), middle + a * region.centre_m[1],
+                       a * (0.5 + region.centre_m[2])};
+    region.radius_m *= a;
+  }
+  if (wave.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(wave.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  return sim::make_simulation(scene, options);
+}
+
+/// nu by the decay of the wave in the column's middle third, over what the scene lists. At the start a
+/// particle moves by two spacings in a decay time.
+double viscosity_back(const Wave& wave) {
+  const auto fluid = column_of(wave);
+  for (int k = 0; k < 10; ++k) fluid->step_frame();  // levels come about
+  const double speed = 2 * wave.spacing() / wave.decay_time();
+  fluid->put(moving(fluid->read_state(), [&](const Vec3d& x) { return Vec3d{0, speed * wave.shape(x), 0}; }));
+  std::vector<double> t, logs;
+  for (int k = 1; k <= frames; ++k) {
+    fluid->step_frame();
+    const State state = fluid->read_state();
+    const double middle = mean(state, [](const auto& p) { return place(p)[1]; });
+    double along = 0, norm = 0;
+    for (const auto& p : state) {
+      if (std::abs(place(p)[1] - middle) > wave.width() / 2) continue;
+      const double shape = wave.shape(place(p));
+      along += mass(p) * velocity(p)[1] * shape;
+      norm += mass(p) * shape * shape;
+    }
+    t.push_back(static_cast<double>(k) / frames);
+    logs.push_back(std::log(std::max(along / norm, 1e-9)));
+  }
+  const double back = -fit(t, logs).slope;
+  std::string levels;
+  for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
+  std::printf("walls that %s, level %d, beta %.2f, by level%s: viscosity %.3f of what was given\n",
+              wave.sticks ? "hold" : "let slip", wave.level, wave.beta, levels.c_str(), back);
+  return back;
+}
+
+constexpr double within = 0.15;
+sim::TargetRegion half_fine() { return {{0, 0, 0.5}, 0.5, 0, 3}; }
+
+void waves_of_one_level(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true}) {
+    for (const int level : {0, 3}) {
+      const auto method = level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
+      EXPECT_NEAR(viscosity_back({.sticks = sticks, .level = level, .method = method, .backend = backend}), 1,
+                  within);
+    }
+  }
+}
+void waves_of_mixed_levels(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true}) {
+    EXPECT_NEAR(viscosity_back({.sticks = sticks,
+                                .level = 3,
+                                .method = MethodKind::Ours,
+                                .targets = half_fine(),
+                                .backend = backend}),
+                1, within);
+  }
+}
+void waves_that_rest_in_turns(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const bool sticks : {false, true})
+    EXPECT_NEAR(viscosity_back({.sticks = sticks, .beta = 0.67, .backend = backend}), 1, within);
+}
+
+TEST(TruthViscosity, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cpu); }
+TEST(TruthViscosity, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cpu); }
+TEST(TruthViscositySlow, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cpu); }
+TEST(TruthViscosityGpu, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cuda); }
+TEST(TruthViscosityGpu, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cuda); }
+TEST(TruthViscosityGpu, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cuda); }
+
+}  // namespace
