@@ -23,6 +23,9 @@ enum class EffectUnit {
   PerSecond        ///< T = 1 / c
 };
 
+/// The longest substep of an effect that sets no limit.
+inline constexpr double any_step = std::numeric_limits<double>::infinity();
+
 // The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
 // substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
 // one file in libsim/solver/effects; they run in the table's order, after the viscosity.
@@ -32,7 +35,9 @@ enum class EffectUnit {
   EFFECT(Adhesion, adhesion, work_n_m, NewtonPerMetre, 0.2, EffectKind::Cohesion,  \
          "Akinci et al. 2013, adhesion, of a plane")                               \
   EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                 \
-         "Macklin et al. 2014, air drag, of the exposed share")
+         "Macklin et al. 2014, air drag, of the exposed share")                    \
+  EFFECT(Foam, foam, emission_per_s, PerSecond, any_step, no_effect,               \
+         "Ihmsen et al. 2012, spray, foam and bubbles, by volume")
 
 enum class EffectKind {
 #define SIM_ENUMERATOR(Name, ...) Name,
@@ -45,7 +50,20 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
 // is absent, least, most).
-#define SIM_EFFECT_OPTIONS(OPTION) OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)
+#define SIM_EFFECT_OPTIONS(OPTION)                                   \
+  OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)          \
+  OPTION(FoamApproachFrom, Foam, approach_from_per_s, 3, 0, 1e4)     \
+  OPTION(FoamApproachSpan, Foam, approach_span_per_s, 12, 1e-3, 1e4) \
+  OPTION(FoamCrestFrom, Foam, crest_from_per_m2, 0, 0, 1e6)          \
+  OPTION(FoamCrestSpan, Foam, crest_span_per_m2, 4, 1e-6, 1e6)       \
+  OPTION(FoamEnergyFrom, Foam, energy_from_j_kg, 2, 0, 1e6)          \
+  OPTION(FoamEnergySpan, Foam, energy_span_j_kg, 18, 1e-6, 1e6)      \
+  OPTION(FoamLifetime, Foam, lifetime_s, 3, 0.01, 1e4)               \
+  OPTION(FoamDiameter, Foam, diameter_m, 0.05, 1e-5, 1)              \
+  OPTION(FoamAirDrag, Foam, air_drag_per_s, 0.5, 0, 1e3)             \
+  OPTION(FoamRise, Foam, rise_m_s, 0.3, 1e-3, 10)                    \
+  OPTION(FoamMost, Foam, most_particles, 65536, 1, 1048576)          \
+  OPTION(FoamCoarsest, Foam, coarsest_level, 3, 0, 3)
 
 enum class EffectOption {
 #define SIM_ENUMERATOR(Name, ...) Name,

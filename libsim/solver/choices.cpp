@@ -53,7 +53,8 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   out << "  effects: ";
   for (const Effect& effect : scene.effects) {
     const auto& traits = traits_of(effect.kind);
-    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect) << ", ";
+    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect)
+        << ", ";
   }
   const EffectStep longest = longest_step(scene.effects, d);
   if (longest.of == no_effect) return out.str() + "which ask for no shorter substeps\n";
@@ -127,6 +128,14 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   const double speed = start_speed(scene, start);
   const double swing = scene.central_force ? scene.central_force->omega_per_s * reach_of(scene, start) : 0;
   return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
+}
+
+float most_speed(const Scene& scene, const Resolution& resolution, const SolverParameters& parameters,
+                 const std::vector<ParticleState>& start) {
+  const double fall = 3 * fall_speed(scene, start);
+  const double most = fall > 0 ? fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)
+                               : 4 * resolution.finest_spacing_m / static_cast<double>(parameters.dt);
+  return static_cast<float>(most);
 }
 
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {

@@ -14,6 +14,18 @@ struct PackForDrawing {
   }
 };
 
+/// What it still holds of its volume in the last quarter of a mean life shows.
+struct PackFoam {
+  const Vec4* place;
+  float radius, fades_s;
+  Vec4* out;
+  SIM_FN void operator()(int slot) const {
+    const Vec4 at = place[slot];
+    const float left = at_most(at_least(at.w / fades_s, 0.0f), 1.0f);
+    out[slot] = with_w(xyz(at), radius * cbrtf(left));
+  }
+};
+
 }  // namespace
 
 std::vector<float> field_of(const Particles& particles, ParticleField field) {
@@ -70,6 +82,41 @@ void render_particles_of(const Particles& particles, std::vector<RenderParticle>
 
 void pack_for_drawing(const Particles& particles, Vec4* out) {
   for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
+}
+
+FoamReport report_of(const FoamPool& pool) {
+  FoamReport out;
+  if (pool.capacity() == 0) return out;
+  const FoamLedger ledger = pool.ledger.to_host()[0];
+  out.emitted = ledger.emitted;
+  out.dissolved = ledger.dissolved;
+  out.dropped = ledger.dropped;
+  out.left = ledger.left;
+  const auto place = pool.place.to_host();
+  const auto velocity = pool.velocity.to_host();
+  for (std::size_t slot = 0; slot < place.size(); ++slot) {
+    if (!(place[slot].w > 0)) continue;
+    const float water = velocity[slot].w;
+    ++(water < FoamKinds::spray ? out.spray : water > FoamKinds::bubble ? out.bubbles : out.foam);
+  }
+  return out;
+}
+
+void pack_foam(const FluidState& state, Vec4* out) {
+  const EffectCoefficients& e = state.parameters.effects;
+  for_each("pack foam", state.foam.capacity(),
+           PackFoam{.place = state.foam.place.data(),
+                    .radius = 0.5f * e[EffectOption::FoamDiameter],
+                    .fades_s = 0.25f * e[EffectOption::FoamLifetime],
+                    .out = out});
+}
+
+void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out) {
+  Array<Vec4> packed(static_cast<std::size_t>(state.foam.capacity()));
+  pack_foam(state, packed.data());
+  out.clear();
+  for (const Vec4& p : packed.to_host())
+    if (p.w > 0) out.push_back({p.x, p.y, p.z, p.w});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -147,6 +147,23 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
 }
 
+void begin_foam(FluidState& state, double frame_dt_s, int coarsest_level) {
+  const EffectCoefficients& e = state.parameters.effects;
+  const double ratio = static_cast<double>(state.supports.h[coarsest_level]) / 2 /
+                       static_cast<double>(e[EffectOption::FoamDiameter]);
+  // Approach and crest may both be at their full potential.
+  const double births =
+      2 * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * 6 / M_PI * std::pow(ratio, 3);
+  constexpr double most_births = 256;
+  if (births > most_births) {
+    throw base::Error("effect foam",
+                      "a particle of water may make " + std::to_string(std::llround(births)) +
+                          " of foam in a frame; at most 256 are told apart",
+                      "raise diameter_m, lower emission_per_s, or use a larger --n-star");
+  }
+  state.foam.begin(static_cast<int>(e[EffectOption::FoamMost]), state.particles.capacity());
+}
+
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options) {
   // Levels and activity wait until the water rests.
   Demand demand;

@@ -4,6 +4,7 @@
 #include "libsim/activation/activation.hpp"
 #include "libsim/flow/jets.hpp"
 #include "libsim/flow/outflow.hpp"
+#include "libsim/foam/foam_pool.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -99,6 +100,7 @@ struct FluidState {
   Jets jets;
   Outflow outflow;
   Drained drained;  ///< since the run began
+  FoamPool foam;    ///< of no capacity where the scene lists none
   SaliencyState saliency;
   LevelState levels;
   /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong
