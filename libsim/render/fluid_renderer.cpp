@@ -51,14 +51,15 @@ FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
 
 FluidRenderer::~FluidRenderer() = default;
 
-void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer) {
+void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
+                         const ParticleBuffer* foam) {
   if (views.empty() || views.size() > most_views) {
     throw base::Error("renderer", std::to_string(views.size()) + " views", "draw one view or two");
   }
   for (const View& view : views) check_view(view);
   State& s = *state_;
   s.timer.start();
-  s.draw_views(particles, views, framebuffer);
+  s.draw_views(particles, views, framebuffer, foam);
   s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
   glUseProgram(0);
 }

@@ -98,7 +98,10 @@ class FluidRenderer {
 
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
   /// sRGB and nothing outside them. Returns without waiting for the device.
-  void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer);
+  /// `foam`: diffuse particles, of a scene that lists the effect; others have no pass that would draw them.
+  /// Entries without a radius are nobody. The water's G-buffer does not hold them.
+  void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
+            const ParticleBuffer* foam = nullptr);
 
   /// Paints values over the views of the last draw, in the same framebuffer. base::Error when nothing was
   /// drawn or the range is empty.
