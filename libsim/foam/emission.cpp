@@ -60,7 +60,8 @@ struct Surface {
     Vec3 wall;
     walls.missing(xyz(self), self.w, wall);
     normal[i] = with_w(self.w * (sum.normal - wall), 0);
-    approach[i] = sum.approach;
+    // Inside the water the others' weights are 1 less the particle's own.
+    approach[i] = sum.approach / (1 - mass_of(1, 1) * Kernel(1).density(0));
   }
 };
 
@@ -109,13 +110,14 @@ struct CountBirths {
     births[i] = 0;
     const float energy = rules.energy(specific_energy(xyz(velocity[i])));
     if (!(energy > 0) || level[i] > rules.coarsest) return;
-    const float potential = energy * (rules.approach(approach[i]) + rules.crest(crest(i)));
+    const float potential =
+        energy * (rules.approach(approach[i]) + rules.crest_weight * rules.crest(crest(i)));
     const float volume = rules.rate * rules.dt * potential * mass_of(position[i].w, 1);
     const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id[i]), frame, 0xf0a3u);
     births[i] = static_cast<int>(volume / rules.volume + static_cast<float>(chance >> 8) / 16777216.0f);
   }
 
-  /// Curvature times surface per volume, 1/m2; 0 where the surface is not pushed on.
+  /// Curvature of a convex surface that is pushed on, 1/m; 0 elsewhere.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);
@@ -126,7 +128,7 @@ struct CountBirths {
     const Vec4 self = position[i];
     SumCurvature sum{.self = self, .out = out, .normal = normal};
     water.with_pairs(self, sum);
-    return sum.weight > 0 ? sum.curved / sum.weight * size / self.w : 0;
+    return sum.weight > 0 ? sum.curved / sum.weight : 0;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "libsim/render/render_passes.hpp"
 #include "stats/base/error.hpp"
@@ -43,6 +44,19 @@ void check_view(const View& view) {
 }
 
 }  // namespace
+
+std::string passes_in_words(const Scene& scene) {
+  const float foam = coefficients_of(scene.effects)[EffectKind::Foam];
+  std::ostringstream out;
+  out << "  picture: clear, splat small, splat wide, occlusion, front, wet tiles, filter, clean-up, normals, "
+         "thickness, ";
+  if (foam > 0) {
+    out << "foam (the scene lists " << traits_of(EffectKind::Foam).key << " = " << foam << "), shade\n";
+  } else {
+    out << "shade\n  -  foam                not called for\n";
+  }
+  return out.str();
+}
 
 FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
   check_options(options);

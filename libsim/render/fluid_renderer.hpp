@@ -83,6 +83,9 @@ struct PassTime {
   double ms = 0;
 };
 
+/// The renderer's passes in order, and why those are there that not every scene has. Needs no context.
+std::string passes_in_words(const Scene& scene);
+
 /// Needs a current OpenGL 4.5 context at every call and when it is destroyed. Leaves the GL state of a new
 /// context except for the viewport. The same particles, views and options give the same picture, bit for bit,
 /// on one driver, in whatever order the particles are drawn by the device; of equal depths the lower index is

@@ -35,12 +35,6 @@ void dispatch_particles(std::int64_t count) {
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
 }
 
-bool shows_foam(const Scene& scene) {
-  return std::any_of(scene.effects.begin(), scene.effects.end(), [](const Effect& effect) {
-    return effect.kind == EffectKind::Foam && effect.coefficient > 0;
-  });
-}
-
 }  // namespace
 
 void bind_storage(std::initializer_list<unsigned> buffers) {
@@ -56,7 +50,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
       timer(chosen.time_passes),
-      foam(shows_foam(scene)) {
+      foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));

@@ -52,12 +52,13 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 // is absent, least, most).
 #define SIM_EFFECT_OPTIONS(OPTION)                                   \
   OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)          \
-  OPTION(FoamApproachFrom, Foam, approach_from_per_s, 3, 0, 1e4)     \
-  OPTION(FoamApproachSpan, Foam, approach_span_per_s, 12, 1e-3, 1e4) \
-  OPTION(FoamCrestFrom, Foam, crest_from_per_m2, 0, 0, 1e6)          \
-  OPTION(FoamCrestSpan, Foam, crest_span_per_m2, 4, 1e-6, 1e6)       \
-  OPTION(FoamEnergyFrom, Foam, energy_from_j_kg, 2, 0, 1e6)          \
-  OPTION(FoamEnergySpan, Foam, energy_span_j_kg, 18, 1e-6, 1e6)      \
+  OPTION(FoamApproachFrom, Foam, approach_from_per_s, 0, 0, 1e4)     \
+  OPTION(FoamApproachSpan, Foam, approach_span_per_s, 20, 1e-3, 1e4) \
+  OPTION(FoamCrestFrom, Foam, crest_from_per_m, 0, 0, 1e6)           \
+  OPTION(FoamCrestSpan, Foam, crest_span_per_m, 4, 1e-6, 1e6)        \
+  OPTION(FoamCrestWeight, Foam, crest_weight, 10, 0, 1e3)            \
+  OPTION(FoamEnergyFrom, Foam, energy_from_j_kg, 5, 0, 1e6)          \
+  OPTION(FoamEnergySpan, Foam, energy_span_j_kg, 15, 1e-6, 1e6)      \
   OPTION(FoamLifetime, Foam, lifetime_s, 3, 0.01, 1e4)               \
   OPTION(FoamDiameter, Foam, diameter_m, 0.05, 1e-5, 1)              \
   OPTION(FoamAirDrag, Foam, air_drag_per_s, 0.5, 0, 1e3)             \

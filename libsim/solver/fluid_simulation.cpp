@@ -333,7 +333,7 @@ class FluidSimulation final : public Simulation {
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
     begin_jets(state_, scene_, options_, resolution_, frame_);
-    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, frame_dt(), coarsest_level_);
+    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_, frame_dt());
   }
 
   template <class Archive>

@@ -73,9 +73,9 @@ void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// The scene's jets as they stand before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
-/// The pool of the scene's foam, with nobody in it. base::Error when its particles are too small to be told
-/// from one another: one of water would make hundreds of them in a frame.
-void begin_foam(FluidState& state, double frame_dt_s, int coarsest_level);
+/// The pool of the scene's foam, with nobody in it. base::Error when its particles are so small that a frame
+/// may make more than an int counts.
+void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s);
 /// Lets the water come to rest, at one level and behind the gate where there is one; the walls are the tank's
 /// then. base::Error when a particle was not finite.
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);

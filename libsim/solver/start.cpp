@@ -147,19 +147,17 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
 }
 
-void begin_foam(FluidState& state, double frame_dt_s, int coarsest_level) {
+void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s) {
   const EffectCoefficients& e = state.parameters.effects;
-  const double ratio = static_cast<double>(state.supports.h[coarsest_level]) / 2 /
-                       static_cast<double>(e[EffectOption::FoamDiameter]);
-  // Approach and crest may both be at their full potential.
-  const double births =
-      2 * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * 6 / M_PI * std::pow(ratio, 3);
-  constexpr double most_births = 256;
-  if (births > most_births) {
-    throw base::Error("effect foam",
-                      "a particle of water may make " + std::to_string(std::llround(births)) +
-                          " of foam in a frame; at most 256 are told apart",
-                      "raise diameter_m, lower emission_per_s, or use a larger --n-star");
+  const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
+  const Vec3d& tank = scene.tank_size_m;
+  // Approach and crest may both be at their full potential, in a tank full of water.
+  const double most = (1 + static_cast<double>(e[EffectOption::FoamCrestWeight])) *
+                      static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] * tank[1] * tank[2] /
+                      (0.52 * diameter * diameter * diameter);
+  if (most > std::numeric_limits<int>::max()) {
+    throw base::Error("effect foam", "its particles are too small: a frame may make more than can be counted",
+                      "raise diameter_m, or lower emission_per_s");
   }
   state.foam.begin(static_cast<int>(e[EffectOption::FoamMost]), state.particles.capacity());
 }

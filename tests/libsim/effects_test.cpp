@@ -143,7 +143,10 @@ TEST(Effects, OfCoefficientZeroCostNothingAndChangeNoBit) {
   for (const auto& method : sim::all_methods()) {
     auto scene = small_dam();
     const Cost bare = cost_of(scene, method.kind);
-    scene.effects = {{EffectKind::Cohesion, 0}, {EffectKind::Adhesion, 0}, {EffectKind::AirDrag, 0}};
+    scene.effects = {{EffectKind::Cohesion, 0},
+                     {EffectKind::Adhesion, 0},
+                     {EffectKind::AirDrag, 0},
+                     {EffectKind::Foam, 0}};
     const Cost zero = cost_of(scene, method.kind);
     EXPECT_EQ(zero.launches, bare.launches) << method.name;
     EXPECT_EQ(zero.bytes, bare.bytes) << method.name;
@@ -285,6 +288,9 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   const auto splash = scales("splash");
   EXPECT_NEAR(splash.reynolds, 900, 0.5);
   EXPECT_TRUE(std::isinf(splash.weber));
+  const auto spray = scales("sea_spray");
+  EXPECT_NEAR(spray.reynolds, 2000, 0.5);
+  EXPECT_TRUE(std::isinf(spray.weber));
 }
 
 TEST(Effects, BelongToTheKeyOfAState) {

@@ -15,6 +15,7 @@ FoamRules rules_of(const SolverParameters& k) {
           .rate = e[EffectKind::Foam],
           .approach = {e[EffectOption::FoamApproachFrom], e[EffectOption::FoamApproachSpan]},
           .crest = {e[EffectOption::FoamCrestFrom], e[EffectOption::FoamCrestSpan]},
+          .crest_weight = e[EffectOption::FoamCrestWeight],
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
           .coarsest = static_cast<int>(e[EffectOption::FoamCoarsest]),
           .lifetime = e[EffectOption::FoamLifetime],
