@@ -26,6 +26,11 @@ struct PackFoam {
   }
 };
 
+PackFoam packing(const FluidState& state, const Vec4* place, Vec4* out) {
+  const EffectCoefficients& e = state.parameters.effects;
+  return {place, 0.5f * e[EffectOption::FoamDiameter], 0.25f * e[EffectOption::FoamLifetime], out};
+}
+
 }  // namespace
 
 std::vector<float> field_of(const Particles& particles, ParticleField field) {
@@ -103,20 +108,18 @@ FoamReport report_of(const FoamPool& pool) {
 }
 
 void pack_foam(const FluidState& state, Vec4* out) {
-  const EffectCoefficients& e = state.parameters.effects;
-  for_each("pack foam", state.foam.capacity(),
-           PackFoam{.place = state.foam.place.data(),
-                    .radius = 0.5f * e[EffectOption::FoamDiameter],
-                    .fades_s = 0.25f * e[EffectOption::FoamLifetime],
-                    .out = out});
+  for_each("pack foam", state.foam.capacity(), packing(state, state.foam.place.data(), out));
 }
 
 void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out) {
-  Array<Vec4> packed(static_cast<std::size_t>(state.foam.capacity()));
-  pack_foam(state, packed.data());
+  std::vector<Vec4> place = state.foam.place.to_host();
+  const PackFoam pack = packing(state, place.data(), place.data());
   out.clear();
-  for (const Vec4& p : packed.to_host())
-    if (p.w > 0) out.push_back({p.x, p.y, p.z, p.w});
+  for (int slot = 0; slot < state.foam.capacity(); ++slot) {
+    pack(slot);
+    const Vec4& at = place[static_cast<std::size_t>(slot)];
+    if (at.w > 0) out.push_back({at.x, at.y, at.z, at.w});
+  }
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -102,9 +102,9 @@ TEST_F(FoamGl, FarFoamFadesInsteadOfGrowing) {
   // A tenth of the size at the same place is a hundredth of the light, however small on the screen.
   const auto bare = drawn(sea(1), {});
   const auto light = [&](float radius) {
-    const auto image = drawn(sea(1), {{0.01F, 0.01F, -1, radius}});
-    return std::transform_reduce(image.rgba.begin(), image.rgba.end(), bare.rgba.begin(), 0, std::plus<>(),
-                                 [](int a, int b) { return std::abs(a - b); });
+    const auto picture = drawn(sea(1), {{0.01F, 0.01F, -1, radius}});
+    return std::transform_reduce(picture.rgba.begin(), picture.rgba.end(), bare.rgba.begin(), 0,
+                                 std::plus<>(), [](int a, int b) { return std::abs(a - b); });
   };
   const int whole = light(0.06F), small = light(0.006F);
   EXPECT_GT(whole, 500);
@@ -117,9 +117,9 @@ TEST_F(FoamGl, OrderDoesNotMatter) {
   for (int k = 0; k < 200; ++k)
     foam.push_back({0.3F * std::sin(static_cast<float>(k)), 0.3F * std::cos(static_cast<float>(3 * k)),
                     -1 - 0.01F * static_cast<float>(k), 0.03F});
-  const auto image = drawn(sea(1), foam);
+  const auto picture = drawn(sea(1), foam);
   std::reverse(foam.begin(), foam.end());
-  EXPECT_EQ(drawn(sea(1), foam).rgba, image.rgba);
+  EXPECT_EQ(drawn(sea(1), foam).rgba, picture.rgba);
 }
 
 }  // namespace
