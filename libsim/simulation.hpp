@@ -162,6 +162,16 @@ struct HeatReport {
   double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
 };
 
+/// Diffuse particles of the effect foam since the simulation was made: emitted = spray + foam + bubbles +
+/// dissolved + dropped + left.
+struct FoamReport {
+  std::uint64_t emitted = 0;                       ///< that the water's motion asked for
+  std::uint64_t dissolved = 0;                     ///< at the end of their time on the water
+  std::uint64_t dropped = 0;                       ///< that found no room in the pool
+  std::uint64_t left = 0;                          ///< through an outlet, or no longer finite
+  std::uint64_t spray = 0, foam = 0, bubbles = 0;  ///< that are there: in the air, on the water, in it
+};
+
 /// State of the fluid after a frame.
 struct FrameReport {
   int frame = 0;          ///< frames since the gate opened
@@ -189,6 +199,7 @@ struct FrameReport {
   TemporalReport temporal;
   SeenReport seen;  ///< the picture that saliency was given last
   RelaxedStart start;
+  FoamReport foam;
 };
 
 /// What may change while the fluid runs.
@@ -271,6 +282,13 @@ class Simulation {
   /// False when this back end cannot (the CPU, or a context on another device) or the buffer is too small:
   /// read_particles and upload instead.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
+  /// The most diffuse particles of the effect foam that there can be; 0 where the scene lists none.
+  virtual std::int64_t foam_capacity() const { return 0; }
+  /// Places and radii of those that are there, copied to the host.
+  virtual void read_foam(std::vector<RenderParticle>& out) const { out.clear(); }
+  /// As copy_to_gl: foam_capacity() entries, of which those without radius are nobody. False also without
+  /// foam.
+  virtual bool copy_foam_to_gl(const GlBufferRef&) { return false; }
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
   /// Switches the clock round every launch of this back end on, forgetting what it had measured, or off. It

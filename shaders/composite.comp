@@ -5,6 +5,10 @@ layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Nearness { float nearness[]; };
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
+#ifdef FOAM
+#include "foam.glsl"
+layout(std430, binding = 3) buffer Cover { uint cover[]; };
+#endif
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light that deep water sends back
@@ -54,6 +58,19 @@ vec3 encode_srgb(vec3 c) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 
+#ifdef FOAM
+// White, lit by sun and sky.
+vec3 foam_light(vec3 n) { return vec3(0.42, 0.45, 0.48) + vec3(0.52, 0.50, 0.46) * max(dot(n, sun), 0.0); }
+
+// How much of a pixel foam covers: on the water or before it, and below its surface. Leaves the pixel empty for the
+// next picture.
+vec2 foam_cover(int at) {
+  const vec2 depths = vec2(cover[2 * at], cover[2 * at + 1]) / foam_units;
+  cover[2 * at] = cover[2 * at + 1] = 0u;
+  return 1.0 - exp(-depths);
+}
+#endif
+
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, size.xy))) return;
@@ -71,15 +88,26 @@ void main() {
   const bool is_water = nearness[at] > 0.0;
   const float water_cover = is_water ? outline_cover(pixel) : 0.0;
   vec3 light = vec3(0.0);
+#ifdef FOAM
+  const vec2 foam = foam_cover(at);
+  vec3 foam_normal = vec3(0.0, 1.0, 0.0);
+#endif
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
   if (is_water) {
     const float distance_m = per_depth / nearness[at];
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
-    const vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+    vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+#ifdef FOAM
+    shaded = mix(shaded, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
+    foam_normal = n;
+#endif
     light = mix(light, shaded, water_cover);
     // Water that touches the near wall lies behind its frame.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
+#ifdef FOAM
+  light = mix(light, foam_light(foam_normal), foam.x);
+#endif
   imageStore(picture, pixel + ivec2(origin.xy), vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0));
 }

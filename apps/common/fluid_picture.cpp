@@ -11,11 +11,23 @@ void FluidPicture::take(sim::Simulation& fluid) {
   } else {
     buffer_.set_count(fluid.particle_count());
   }
+  take_foam(fluid);
   taken_frame_ = fluid.frame();
 }
 
+void FluidPicture::take_foam(sim::Simulation& fluid) {
+  if (fluid.foam_capacity() == 0) return;
+  foam_.reserve(fluid.foam_capacity());
+  if (fluid.copy_foam_to_gl(foam_.gl())) {
+    foam_.set_count(fluid.foam_capacity());
+  } else {
+    fluid.read_foam(particles_);
+    foam_.upload(particles_);
+  }
+}
+
 void FluidPicture::show(std::span<const sim::View> views, unsigned framebuffer) {
-  renderer_.draw(buffer_, views, framebuffer);
+  renderer_.draw(buffer_, views, framebuffer, &foam_);
   drawn_frame_ = taken_frame_;
 }
 

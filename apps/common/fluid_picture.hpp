@@ -43,8 +43,10 @@ class FluidPicture {
   bool uploaded() const { return uploaded_; }
 
  private:
+  void take_foam(sim::Simulation& fluid);
+
   sim::FluidRenderer renderer_;
-  sim::ParticleBuffer buffer_;
+  sim::ParticleBuffer buffer_, foam_;
   sim::GBuffer seen_;
   const sim::GBuffer* before_ = nullptr;
   int taken_frame_ = 0;             ///< of the simulation

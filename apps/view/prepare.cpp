@@ -7,6 +7,7 @@
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/render/fluid_renderer.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
@@ -95,7 +96,9 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   }
   for (const auto& line : price_lines(options, prepared.setting, prepared.scene))
     std::printf("sweep  %s\n", line.c_str());
-  if (options.explain) std::printf("%s\n", prepared.fluid->explain().c_str());
+  if (options.explain) {
+    std::printf("%s%s\n", prepared.fluid->explain().c_str(), sim::passes_in_words(prepared.scene).c_str());
+  }
   return prepared;
 }
 

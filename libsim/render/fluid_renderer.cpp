@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "libsim/render/render_passes.hpp"
 #include "stats/base/error.hpp"
@@ -44,6 +45,19 @@ void check_view(const View& view) {
 
 }  // namespace
 
+std::string passes_in_words(const Scene& scene) {
+  const float foam = coefficients_of(scene.effects)[EffectKind::Foam];
+  std::ostringstream out;
+  out << "  picture: clear, splat small, splat wide, occlusion, front, wet tiles, filter, clean-up, normals, "
+         "thickness, ";
+  if (foam > 0) {
+    out << "foam (the scene lists " << traits_of(EffectKind::Foam).key << " = " << foam << "), shade\n";
+  } else {
+    out << "shade\n  -  foam                not called for\n";
+  }
+  return out.str();
+}
+
 FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
   check_options(options);
   state_ = std::make_unique<State>(scene, options);
@@ -51,14 +65,15 @@ FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
 
 FluidRenderer::~FluidRenderer() = default;
 
-void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer) {
+void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
+                         const ParticleBuffer* foam) {
   if (views.empty() || views.size() > most_views) {
     throw base::Error("renderer", std::to_string(views.size()) + " views", "draw one view or two");
   }
   for (const View& view : views) check_view(view);
   State& s = *state_;
   s.timer.start();
-  s.draw_views(particles, views, framebuffer);
+  s.draw_views(particles, views, framebuffer, foam);
   s.particles_drawn = particles.count() * static_cast<std::int64_t>(views.size());
   glUseProgram(0);
 }

@@ -83,6 +83,9 @@ struct PassTime {
   double ms = 0;
 };
 
+/// The renderer's passes in order, and why those are there that not every scene has. Needs no context.
+std::string passes_in_words(const Scene& scene);
+
 /// Needs a current OpenGL 4.5 context at every call and when it is destroyed. Leaves the GL state of a new
 /// context except for the viewport. The same particles, views and options give the same picture, bit for bit,
 /// on one driver, in whatever order the particles are drawn by the device; of equal depths the lower index is
@@ -98,7 +101,10 @@ class FluidRenderer {
 
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
   /// sRGB and nothing outside them. Returns without waiting for the device.
-  void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer);
+  /// `foam`: diffuse particles, of a scene that lists the effect; others have no pass that would draw them.
+  /// Entries without a radius are nobody. The water's G-buffer does not hold them.
+  void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
+            const ParticleBuffer* foam = nullptr);
 
   /// Paints values over the views of the last draw, in the same framebuffer. base::Error when nothing was
   /// drawn or the range is empty.

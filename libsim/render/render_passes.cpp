@@ -49,7 +49,8 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
     : options(chosen),
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
-      timer(chosen.time_passes) {
+      timer(chosen.time_passes),
+      foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));
@@ -226,11 +227,21 @@ void FluidRenderer::State::smooth_thickness() {
   timer.mark("thickness");
 }
 
+void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
+  splat_foam_program.use();
+  glUniform1ui(splat_foam_program.uniform("foam_count"), static_cast<GLuint>(from.count()));
+  each_view([&](const ViewTargets& t) {
+    bind_storage({from.gl_name(), t.filter_a.name(), t.normals.name(), t.foam.name()});
+    dispatch_particles(from.count());
+  });
+  timer.mark("foam");
+}
+
 void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
   composite.use();
   picture.begin(framebuffer, views);
   each_view([&](const ViewTargets& t) {
-    bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name()});
+    bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name()});
     dispatch_pixels(t.width, t.height);
   });
   picture.end(framebuffer, views);
@@ -238,14 +249,14 @@ void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuff
 }
 
 void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<const View> views,
-                                      unsigned framebuffer) {
+                                      unsigned framebuffer, const ParticleBuffer* foam_from) {
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
   count_ = from.count();
   views_drawn = views.size();
   // The passes of the last draw wrote these buffers; what a resize fills is no shader access.
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    targets[i].resize(views[i], options.thickness_step);
+    targets[i].resize(views[i], options.thickness_step, foam);
     targets[i].follow(count_);
     write_block(targets[i]);
   }
@@ -256,6 +267,7 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   }
   smooth_depth();
   smooth_thickness();
+  if (foam && foam_from && foam_from->count() > 0) splat_foam(*foam_from);
   shade(views, framebuffer);
 }
 

@@ -28,6 +28,7 @@ struct FluidRenderer::State {
   RenderOptions options;
   std::array<float, 4> tank;
   PassTimer timer;
+  bool foam;  // the scene lists it: a pass more, and a composite that shows what it left
   GlProgram clear_targets = compute_program("clear.comp");
   GlProgram splat = compute_program("splat.comp");
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
@@ -41,7 +42,8 @@ struct FluidRenderer::State {
   GlProgram normals = compute_program("normals.comp");
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
-  GlProgram composite = compute_program("composite.comp");
+  GlProgram composite = compute_program("composite.comp", foam ? "#define FOAM\n" : "");
+  GlProgram splat_foam_program = foam ? compute_program("foam_splat.comp") : GlProgram();
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
   PictureTarget picture;
@@ -55,7 +57,8 @@ struct FluidRenderer::State {
 
   /// A view of the last draw, ready to be read.
   const ViewTargets& drawn(std::size_t view) const;
-  void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer);
+  void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer,
+                  const ParticleBuffer* foam_from);
 
  private:
   /// A pass: `dispatch` for one view after another with its ViewBlock bound, then the barrier. The device may
@@ -71,6 +74,7 @@ struct FluidRenderer::State {
   void find_front();
   void smooth_depth();
   void smooth_thickness();
+  void splat_foam(const ParticleBuffer& from);
   void shade(std::span<const View> views, unsigned framebuffer);
 
   GLuint particles_ = 0;  // of this draw

@@ -10,7 +10,7 @@ constexpr std::int64_t list_header_words = 12;  // of wide_list.glsl
 
 }  // namespace
 
-void ViewTargets::resize(const View& new_view, int thickness_step) {
+void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foam) {
   view = new_view;
   const bool same_size = width == view.viewport.width && height == view.viewport.height;
   if (same_size) return;
@@ -25,6 +25,10 @@ void ViewTargets::resize(const View& new_view, int thickness_step) {
   normals.reserve(16 * pixels);
   blocks.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 15) / 16));
   for (GlBuffer* buffer : {&thickness, &thickness_a, &thickness_b}) buffer->reserve(4 * cells);
+  if (with_foam) {
+    foam.reserve(8 * pixels);
+    foam.fill(0);
+  }
   wet.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 7) / 8));
   wet.fill(1);  // nothing in the buffers holds for this size
 }

@@ -25,8 +25,9 @@ struct ViewTargets {
   GlBuffer wet;                       ///< which tiles hold water, see wet_tiles.glsl
   GlBuffer thickness;                 ///< fixed point
   GlBuffer thickness_a, thickness_b;  ///< smoothed thickness ends in thickness_a, in fixed-point units
+  GlBuffer foam;                      ///< two words a pixel, see foam.glsl; empty between pictures
 
-  void resize(const View& new_view, int thickness_step);
+  void resize(const View& new_view, int thickness_step, bool with_foam);
   /// Makes room for `count` particles.
   void follow(std::int64_t count);
 

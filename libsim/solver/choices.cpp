@@ -134,6 +134,14 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
 }
 
+float most_speed(const Scene& scene, const Resolution& resolution, const SolverParameters& parameters,
+                 const std::vector<ParticleState>& start) {
+  const double fall = 3 * fall_speed(scene, start);
+  const double most = fall > 0 ? fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)
+                               : 4 * resolution.finest_spacing_m / static_cast<double>(parameters.dt);
+  return static_cast<float>(most);
+}
+
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {
   const double omega = scene.central_force ? scene.central_force->omega_per_s : 0;
   return scene.gravity_m_s2 + omega * omega * reach_of(scene, start);

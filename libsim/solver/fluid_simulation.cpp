@@ -166,6 +166,7 @@ class FluidSimulation final : public Simulation {
     out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
     out.seen = state_.saliency.input.seen();
     out.start = relaxed_;
+    out.foam = report_of(state_.foam);
     return out;
   }
 
@@ -184,11 +185,21 @@ class FluidSimulation final : public Simulation {
   void synchronize() override { SIM_BACKEND::synchronize(); }
   std::size_t particle_bytes() const override {
     return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
-           state_.outflow.bytes() + state_.saliency.bytes() + state_.activation.bytes();
+           state_.outflow.bytes() + state_.saliency.bytes() + state_.activation.bytes() + state_.foam.bytes();
   }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
     render_particles_of(state_.particles, out);
+  }
+
+  std::int64_t foam_capacity() const override { return state_.foam.capacity(); }
+  void read_foam(std::vector<RenderParticle>& out) const override { render_foam_of(state_, out); }
+  bool copy_foam_to_gl(const GlBufferRef& buffer) override {
+    const auto room = static_cast<std::size_t>(state_.foam.capacity());
+    const bool shared = room > 0 && buffer.bytes >= room * sizeof(Vec4) && foam_gl_.accept({buffer});
+    if (shared) pack_foam(state_, static_cast<Vec4*>(foam_gl_.map()[0]));
+    foam_gl_.unmap();
+    return shared;
   }
 
   std::vector<float> radii_m() const override {
@@ -304,7 +315,7 @@ class FluidSimulation final : public Simulation {
     coarsest_level_ = adaptive() ? std::max(coarsest, options_.levels - 1) : coarsest;
     lay_out(static_cast<int>(start.size()), capacity);
     keeper_.begin(start, finest_level_, coarsest_level_);
-    state_.parameters.most_speed = static_cast<float>(speed_bound(start));
+    state_.parameters.most_speed = most_speed(scene_, resolution_, state_.parameters, start);
     substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
                              start_acceleration(scene_, start));
     put_in(state_, start);
@@ -324,6 +335,7 @@ class FluidSimulation final : public Simulation {
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
     begin_jets(state_, scene_, options_, resolution_, frame_);
+    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_, frame_dt());
   }
 
   template <class Archive>
@@ -343,15 +355,6 @@ class FluidSimulation final : public Simulation {
     lay_out(n, capacity);
     keep(in);
     in.finish();
-  }
-
-  /// Three times what falling gives. Water that strikes a wall shoots up at twice that (PeersDam: 8.7 m/s
-  /// where it falls at 4.4); what is faster is no water's speed. Without gravity and speed there is no such
-  /// measure; then two supports of the finest a substep.
-  double speed_bound(const std::vector<ParticleState>& start) const {
-    const double fall = 3 * fall_speed(scene_, start);
-    if (fall > 0) return fall + 3 * capillary_speed(scene_.effects, resolution_.finest_spacing_m);
-    return 4 * resolution_.finest_spacing_m / static_cast<double>(state_.parameters.dt);
   }
 
   void set_substeps(int count) {
@@ -377,7 +380,7 @@ class FluidSimulation final : public Simulation {
   SubstepCount substeps_taken_;
   MomentumAccount momentum_;
   ToleranceSwitch tolerance_;
-  GlSharing gl_{GlSharing::Access::Overwrite};
+  GlSharing gl_{GlSharing::Access::Overwrite}, foam_gl_{GlSharing::Access::Overwrite};
   int frame_;
   TwoFramesAgo<double> compression_;           ///< mean of max(rho / rho_0 - 1, 0)
   int finest_level_ = 0, coarsest_level_ = 0;  ///< that particles can have

@@ -33,6 +33,7 @@ void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser,
           state.saliency.frames_since);
   keep_activation(archive, state.activation);
+  if (state.foam.capacity() > 0) archive(state.foam);
   // Only methods with levels look at neighbours before anything moves.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);

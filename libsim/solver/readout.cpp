@@ -14,6 +14,23 @@ struct PackForDrawing {
   }
 };
 
+/// What it still holds of its volume in the last quarter of a mean life shows.
+struct PackFoam {
+  const Vec4* place;
+  float radius, fades_s;
+  Vec4* out;
+  SIM_FN void operator()(int slot) const {
+    const Vec4 at = place[slot];
+    const float left = at_most(at_least(at.w / fades_s, 0.0f), 1.0f);
+    out[slot] = with_w(xyz(at), radius * cbrtf(left));
+  }
+};
+
+PackFoam packing(const FluidState& state, const Vec4* place, Vec4* out) {
+  const EffectCoefficients& e = state.parameters.effects;
+  return {place, 0.5f * e[EffectOption::FoamDiameter], 0.25f * e[EffectOption::FoamLifetime], out};
+}
+
 }  // namespace
 
 std::vector<float> field_of(const Particles& particles, ParticleField field) {
@@ -87,6 +104,39 @@ void render_particles_of(const Particles& particles, std::vector<RenderParticle>
 
 void pack_for_drawing(const Particles& particles, Vec4* out) {
   for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
+}
+
+FoamReport report_of(const FoamPool& pool) {
+  FoamReport out;
+  if (pool.capacity() == 0) return out;
+  const FoamLedger ledger = pool.ledger.to_host()[0];
+  out.emitted = ledger.emitted;
+  out.dissolved = ledger.dissolved;
+  out.dropped = ledger.dropped;
+  out.left = ledger.left;
+  const auto place = pool.place.to_host();
+  const auto velocity = pool.velocity.to_host();
+  for (std::size_t slot = 0; slot < place.size(); ++slot) {
+    if (!(place[slot].w > 0)) continue;
+    const float water = velocity[slot].w;
+    ++(water < FoamKinds::spray ? out.spray : water > FoamKinds::bubble ? out.bubbles : out.foam);
+  }
+  return out;
+}
+
+void pack_foam(const FluidState& state, Vec4* out) {
+  for_each("pack foam", state.foam.capacity(), packing(state, state.foam.place.data(), out));
+}
+
+void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out) {
+  std::vector<Vec4> place = state.foam.place.to_host();
+  const PackFoam pack = packing(state, place.data(), place.data());
+  out.clear();
+  for (int slot = 0; slot < state.foam.capacity(); ++slot) {
+    pack(slot);
+    const Vec4& at = place[static_cast<std::size_t>(slot)];
+    if (at.w > 0) out.push_back({at.x, at.y, at.z, at.w});
+  }
 }
 
 }  // namespace sim::SIM_BACKEND

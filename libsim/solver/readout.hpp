@@ -31,4 +31,11 @@ void render_particles_of(const Particles& particles, std::vector<RenderParticle>
 /// The same in the back end's memory, one entry a particle.
 void pack_for_drawing(const Particles& particles, Vec4* out);
 
+/// Zero where there is no foam.
+FoamReport report_of(const FoamPool& pool);
+/// Place and radius of each diffuse particle, which shrinks as it dissolves.
+void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out);
+/// The same in the back end's memory, one entry for each place of the pool; free places have no radius.
+void pack_foam(const FluidState& state, Vec4* out);
+
 }  // namespace sim::SIM_BACKEND

@@ -167,6 +167,21 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
 }
 
+void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s) {
+  const EffectCoefficients& e = state.parameters.effects;
+  const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
+  const Vec3d& tank = scene.tank_size_m;
+  // Approach and crest may both be at their full potential, in a tank full of water.
+  const double most = (1 + static_cast<double>(e[EffectOption::FoamCrestWeight])) *
+                      static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] * tank[1] * tank[2] /
+                      (0.52 * diameter * diameter * diameter);
+  if (most > std::numeric_limits<int>::max()) {
+    throw base::Error("effect foam", "its particles are too small: a frame may make more than can be counted",
+                      "raise diameter_m, or lower emission_per_s");
+  }
+  state.foam.begin(static_cast<int>(e[EffectOption::FoamMost]), state.particles.capacity());
+}
+
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options) {
   // Levels and activity wait until the water rests.
   Demand demand;

@@ -123,6 +123,7 @@ const Rooms rooms{
     {"libsim/flow", 2},
     {"libsim/impulse", 2},
     {"libsim/activation", 2},
+    {"libsim/foam", 3},
     {"libsim/levels", 3},
     {"libsim/saliency", 3},
     {"libsim", 4},

@@ -310,6 +310,9 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   EXPECT_NEAR(splash.reynolds, 900, 0.5);
   EXPECT_TRUE(std::isinf(splash.weber));
   EXPECT_NEAR(scales("hot_jet").reynolds, 240, 0.5);
+  const auto spray = scales("sea_spray");
+  EXPECT_NEAR(spray.reynolds, 2000, 0.5);
+  EXPECT_TRUE(std::isinf(spray.weber));
 }
 
 TEST(Effects, BelongToTheKeyOfAState) {

@@ -5,6 +5,7 @@
 #include "libsim/flow/heat_ledger.hpp"
 #include "libsim/flow/jets.hpp"
 #include "libsim/flow/outflow.hpp"
+#include "libsim/foam/foam_pool.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -102,6 +103,7 @@ struct FluidState {
   Outflow outflow;
   Drained drained;         ///< since the run began
   Array<HeatLedger> heat;  ///< one, where particles have a temperature
+  FoamPool foam;           ///< of no capacity where the scene lists none
   SaliencyState saliency;
   LevelState levels;
   /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong

@@ -1,0 +1,281 @@
+#include "libsim/foam/emission.hpp"
+
+#include "libsim/foam/water_round.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Uniform in [0, 1) for one of a few numbers that a diffuse particle draws.
+SIM_FN float draw(std::uint32_t seed, std::uint32_t which) {
+  return static_cast<float>(random_bits(seed, which) >> 8) * (1.0f / 16777216.0f);
+}
+
+SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
+
+/// Two sums over the water round particle i.
+struct SumSurface {
+  Vec4 self;
+  Vec3 v;
+  int i;
+  const Vec4* velocity;
+  Vec3 normal{};
+  float approach = 0;
+
+  SIM_FN void operator()(int j, Vec4 other) {
+    const float h = 0.5f * (self.w + other.w);
+    const Vec3 offset = xyz(self) - xyz(other);
+    const float r2 = dot(offset, offset);
+    if (j == i || r2 >= h * h) return;
+    const Kernel kernel(h);
+    const float volume = mass_of(other.w, 1);
+    const float t = kernel.h2 - r2;
+    // Outwards: -grad W points from j to i.
+    normal += 6 * volume * kernel.poly6 * t * t * offset;
+    const float r = sqrtf(at_least(r2, coincident * coincident * kernel.h2));
+    const Vec3 along = v - xyz(velocity[j]);
+    // |v_ij| (1 - v_ij x_ij) of unit vectors: nothing where they part, twice the speed where they meet.
+    approach += volume * kernel.density(r2) * (length(along) - dot(along, offset) / r) / r;
+  }
+};
+
+/// n_i = -h_i sum_j V_j grad W_ij and the mean of |v_ij| (1 - v_ij x_ij) / r_ij (Eq. 2, over the distance).
+struct Surface {
+  const Vec4* position;
+  const Vec4* velocity;
+  WaterRound water;
+  Walls walls;
+  Potential energy;
+  Vec4* normal;
+  float* approach;
+
+  SIM_FN void operator()(int i) const {
+    normal[i] = {0, 0, 0, 0};
+    approach[i] = 0;
+    const Vec3 v = xyz(velocity[i]);
+    if (!(energy(specific_energy(v)) > 0)) return;
+    const Vec4 self = position[i];
+    SumSurface sum{.self = self, .v = v, .i = i, .velocity = velocity};
+    water.with_pairs(self, sum);
+    Vec3 wall;
+    walls.missing(xyz(self), self.w, wall);
+    normal[i] = with_w(self.w * (sum.normal - wall), 0);
+    // Inside the water the others' weights are 1 less the particle's own.
+    approach[i] = sum.approach / (1 - mass_of(1, 1) * Kernel(1).density(0));
+  }
+};
+
+/// |n| from which a particle counts as a part of the surface, and the cosine between its velocity and n from
+/// which it pushes the surface on (Eq. 6).
+constexpr float least_normal = 0.3f;
+constexpr float least_push = 0.6f;
+
+/// Mean of (1 - n_i n_j) / r_ij over neighbours in the surface that lie below its tangent plane: convex
+/// crests count, troughs do not (Eq. 4 and 5, over the distance).
+struct SumCurvature {
+  Vec4 self;
+  Vec3 out;
+  const Vec4* normal;
+  float curved = 0;
+  float weight = 0;
+
+  SIM_FN void operator()(int j, Vec4 other) {
+    const float h = 0.5f * (self.w + other.w);
+    const Vec3 offset = xyz(self) - xyz(other);
+    const float r2 = dot(offset, offset);
+    if (r2 >= h * h || r2 <= coincident * coincident * h * h) return;
+    const Vec3 n = xyz(normal[j]);
+    const float size = length(n);
+    if (size < least_normal) return;
+    const float share = mass_of(other.w, 1) * Kernel(h).density(r2);
+    weight += share;
+    if (dot(offset, out) > 0) curved += share * (1 - dot(out, n) / size) / sqrtf(r2);
+  }
+};
+
+/// Births of each particle: its foam's volume over that of a diffuse particle, rounded by chance.
+struct CountBirths {
+  const Vec4* position;
+  const Vec4* velocity;
+  const Vec4* normal;
+  const int* id;
+  const std::uint8_t* level;
+  const float* approach;
+  WaterRound water;
+  FoamRules rules;
+  std::uint32_t frame;
+  int* births;
+
+  SIM_FN void operator()(int i) const {
+    births[i] = 0;
+    const float energy = rules.energy(specific_energy(xyz(velocity[i])));
+    if (!(energy > 0) || level[i] > rules.coarsest) return;
+    const float potential =
+        energy * (rules.approach(approach[i]) + rules.crest_weight * rules.crest(crest(i)));
+    const float volume = rules.rate * rules.dt * potential * mass_of(position[i].w, 1);
+    const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id[i]), frame, 0xf0a3u);
+    births[i] = static_cast<int>(volume / rules.volume + static_cast<float>(chance >> 8) / 16777216.0f);
+  }
+
+  /// Curvature of a convex surface that is pushed on, 1/m; 0 elsewhere.
+  SIM_FN float crest(int i) const {
+    const Vec3 n = xyz(normal[i]);
+    const float size = length(n);
+    if (size < least_normal) return 0;
+    const Vec3 out = (1 / size) * n;
+    const Vec3 v = xyz(velocity[i]);
+    if (dot(v, out) < least_push * length(v)) return 0;
+    const Vec4 self = position[i];
+    SumCurvature sum{.self = self, .out = out, .normal = normal};
+    water.with_pairs(self, sum);
+    return sum.weight > 0 ? sum.curved / sum.weight : 0;
+  }
+};
+
+struct MarkFree {
+  const Vec4* place;
+  int* free;
+  SIM_FN void operator()(int slot) const { free[slot] = !(place[slot].w > 0); }
+};
+
+/// Fills the free places in their order.
+struct Emit {
+  const Vec4* position;
+  const Vec4* velocity;
+  const int* id;
+  const float* approach;
+  const int* births;
+  const int* sums;
+  int water;  ///< particles
+  const int* free;
+  const int* free_of;
+  int capacity;
+  Walls walls;
+  FoamRules rules;
+  std::uint32_t frame;
+  Vec4* place;
+  Vec4* foam_velocity;
+
+  SIM_FN void operator()(int slot) const {
+    if (!free[slot]) return;
+    const int rank = free_of[slot] - 1;
+    const int asked = sums[water - 1];
+    const int room = free_of[capacity - 1];
+    if (rank >= asked) return;
+    // Where more are asked for than fit, those that do are spread evenly over all.
+    const int k = asked <= room ? rank : static_cast<int>(static_cast<std::int64_t>(rank) * asked / room);
+    const int i = parent_of(k);
+    put(slot, i, k - (sums[i] - births[i]));
+  }
+
+  /// The first whose sum is above k.
+  SIM_FN int parent_of(int k) const {
+    int low = 0;
+    int high = water - 1;
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      if (sums[middle] > k) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    return low;
+  }
+
+  /// The c-th birth of particle i: in the cylinder that the particle went through in this frame (Fig. 4),
+  /// with the speed that meeting water has off the axis.
+  SIM_FN void put(int slot, int i, int c) const {
+    const std::uint32_t seed =
+        random_bits(static_cast<std::uint32_t>(id[i]), frame, static_cast<std::uint32_t>(c));
+    const Vec4 parent = position[i];
+    const Vec3 v = xyz(velocity[i]);
+    const float speed = length(v);
+    const Vec3 axis = speed > 0 ? (1 / speed) * v : Vec3{0, 1, 0};
+    // Two directions across the axis (Duff et al. 2017).
+    const float sign = axis.z < 0 ? -1.0f : 1.0f;
+    const float a = -1 / (sign + axis.z);
+    const float b = axis.x * axis.y * a;
+    const Vec3 e1{1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x};
+    const Vec3 e2{b, sign + axis.y * axis.y * a, -axis.y};
+    const float radius = 0.25f * parent.w * sqrtf(draw(seed, 0));
+    const float angle = 2 * pi * draw(seed, 1);
+    const Vec3 across = radius * (cosf(angle) * e1 + sinf(angle) * e2);
+    Vec3 x = xyz(parent) + across - (rules.dt * draw(seed, 2)) * v;
+    walls.project(x, xyz(parent), 0);
+    place[slot] = with_w(x, rules.lifetime * (0.5f + draw(seed, 3)));
+    foam_velocity[slot] = with_w(v + approach[i] * across, 1);
+  }
+};
+
+struct Enter {
+  const int* sums;
+  const int* free_of;
+  int water, capacity;
+  FoamLedger* ledger;
+  SIM_FN void operator()(int) const {
+    const auto asked = static_cast<std::uint64_t>(sums[water - 1]);
+    const auto room = static_cast<std::uint64_t>(free_of[capacity - 1]);
+    ledger->emitted += asked;
+    if (asked > room) ledger->dropped += asked - room;
+  }
+};
+
+}  // namespace
+
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+                       const FoamRules& rules) {
+  for_each("foam surface", water.size(),
+           Surface{.position = water.position(),
+                   .velocity = water.velocity(),
+                   .water = {grid.cells(), water.position()},
+                   .walls = walls,
+                   .energy = rules.energy,
+                   .normal = water.normal(),
+                   .approach = pool.approach.data()});
+}
+
+void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules) {
+  pool.births.resize(static_cast<std::size_t>(water.size()));
+  for_each("foam potentials", water.size(),
+           CountBirths{.position = water.position(),
+                       .velocity = water.velocity(),
+                       .normal = water.normal(),
+                       .id = water.id(),
+                       .level = water.level(),
+                       .approach = pool.approach.data(),
+                       .water = {grid.cells(), water.position()},
+                       .rules = rules,
+                       .frame = pool.frame,
+                       .births = pool.births.data()});
+}
+
+void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules) {
+  pool.scanner.inclusive_sum(pool.births, pool.sums);
+  for_each("free foam", pool.capacity(), MarkFree{pool.place.data(), pool.free.data()});
+  pool.scanner.inclusive_sum(pool.free, pool.free_of);
+  for_each("emit foam", pool.capacity(),
+           Emit{.position = water.position(),
+                .velocity = water.velocity(),
+                .id = water.id(),
+                .approach = pool.approach.data(),
+                .births = pool.births.data(),
+                .sums = pool.sums.data(),
+                .water = water.size(),
+                .free = pool.free.data(),
+                .free_of = pool.free_of.data(),
+                .capacity = pool.capacity(),
+                .walls = walls,
+                .rules = rules,
+                .frame = pool.frame,
+                .place = pool.place.data(),
+                .foam_velocity = pool.velocity.data()});
+  for_each("enter foam", 1,
+           Enter{.sums = pool.sums.data(),
+                 .free_of = pool.free_of.data(),
+                 .water = water.size(),
+                 .capacity = pool.capacity(),
+                 .ledger = pool.ledger.data()});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,47 @@
+#pragma once
+/// Where water takes in air, and how much (Ihmsen et al. 2012, section 3), by volume: fine and coarse water
+/// make the same amount.
+
+#include "libsim/foam/foam_pool.hpp"
+#include "libsim/neighbors/grid.hpp"
+#include "libsim/particles/particles.hpp"
+#include "libsim/particles/walls.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Phi: 0 up to `from`, 1 from `from + span` on, linear between.
+struct Potential {
+  float from, span;
+  SIM_FN float operator()(float value) const { return at_most(at_least((value - from) / span, 0.0f), 1.0f); }
+};
+
+/// The effect's numbers as kernels take them.
+struct FoamRules {
+  float dt = 0;            ///< of the frame, s
+  float gravity = 0;       ///< along -y, m/s2
+  float rate = 0;          ///< volume of foam per second and volume of water at full potential, 1/s
+  Potential approach{};    ///< tau_ta, 1/s: speeds at which water meets water, over its distance
+  Potential crest{};       ///< tau_wc, 1/m: curvature of crests that are pushed on
+  float crest_weight = 1;  ///< k_wc / k_ta
+  Potential energy{};      ///< tau_k, J/kg: v^2 / 2
+  int coarsest = 3;        ///< level that still emits
+  float lifetime = 1;      ///< mean time on the water, s
+  float volume = 1;        ///< of a diffuse particle, m3
+  float air_drag = 0;      ///< of spray, 1/s
+  float rise = 0;          ///< speed of bubbles against the water in Earth's gravity, m/s
+};
+
+using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                            columns(Column::Normal)>;
+
+/// Fills Normal (outwards, without unit: about 1 at a surface; 0 for water that is too slow to foam) and
+/// FoamPool::approach.
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+                       const FoamRules& rules);
+/// Fills FoamPool::births from both.
+void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules);
+/// Puts what was counted in free places, as many as there are, and enters it in the ledger. Of more than fit
+/// an even choice is dropped.
+void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules);
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,97 @@
+#include "libsim/foam/motion.hpp"
+
+#include "libsim/foam/water_round.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+constexpr float earth_gravity = 9.81f;
+
+/// rho / rho_0 at a place, with the water's velocity and support weighted alike.
+struct SumWater {
+  Vec3 x;
+  const Vec4* velocity;
+  float share = 0;
+  Vec3 momentum{};
+  float support = 0;
+
+  SIM_FN void operator()(int j, Vec4 other) {
+    const Vec3 offset = x - xyz(other);
+    const float r2 = dot(offset, offset);
+    if (r2 >= other.w * other.w) return;
+    const float weight = mass_of(other.w, 1) * Kernel(other.w).density(r2);
+    share += weight;
+    momentum += weight * xyz(velocity[j]);
+    support += weight * other.w;
+  }
+};
+
+struct Move {
+  const Vec4* water_velocity;
+  WaterRound water;
+  Walls walls;
+  FoamRules rules;
+  Vec4* place;
+  Vec4* velocity;
+  FoamLedger* ledger;
+
+  SIM_FN void operator()(int slot) const {
+    Vec4 at = place[slot];
+    if (!(at.w > 0)) return;
+    const Vec3 from = xyz(at);
+    SumWater round{.x = from, .velocity = water_velocity};
+    water.that_reaches(from, round);
+    const float share = filled(round);
+    Vec3 v = moved(xyz(velocity[slot]), share, round);
+    Vec3 x = fused(from, rules.dt, v);
+    if (walls.project(x, from, 0)) v = (1 / rules.dt) * (x - from);
+    if (share >= FoamKinds::spray && share <= FoamKinds::bubble) at.w -= rules.dt;
+    const bool left = !all_finite(x) || walls.through(x);
+    if (left || !(at.w > 0)) {
+      atomic_add(left ? &ledger->left : &ledger->dissolved, std::uint64_t{1});
+      at.w = 0;
+    }
+    place[slot] = with_w(x, at.w);
+    velocity[slot] = with_w(v, share);
+  }
+
+  /// The share with what walls hide.
+  SIM_FN float filled(const SumWater& round) const {
+    if (!(round.share > 0)) return 0;
+    Vec3 unused;
+    const float missing = walls.missing(round.x, round.support / round.share, unused);
+    return round.share / at_least(1 - missing, 0.1f);
+  }
+
+  SIM_FN Vec3 moved(Vec3 v, float share, const SumWater& round) const {
+    if (share < FoamKinds::spray) {
+      // Exact for a drag that goes as the speed.
+      const float kept = expf(-rules.air_drag * rules.dt);
+      const float fall = rules.air_drag * rules.dt > 1e-4f ? (1 - kept) / rules.air_drag : rules.dt;
+      return kept * v - Vec3{0, rules.gravity * fall, 0};
+    }
+    const Vec3 carried = (1 / round.share) * round.momentum;
+    if (share <= FoamKinds::bubble) return carried;
+    // Buoyancy of 2 g with the mass that moves along, and the drag that makes the speed of rise of it.
+    const float follows = 1 - expf(-2 * earth_gravity / rules.rise * rules.dt);
+    const Vec3 wish = carried + Vec3{0, rules.rise * rules.gravity / earth_gravity, 0};
+    return v + follows * (wish - v);
+  }
+};
+
+}  // namespace
+
+void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Walls& walls,
+               const FoamRules& rules) {
+  for_each("move foam", pool.capacity(),
+           Move{.water_velocity = water.velocity(),
+                .water = {grid.cells(), water.position()},
+                .walls = walls,
+                .rules = rules,
+                .place = pool.place.data(),
+                .velocity = pool.velocity.data(),
+                .ledger = pool.ledger.data()});
+}
+
+}  // namespace sim::SIM_BACKEND

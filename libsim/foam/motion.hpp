@@ -1,0 +1,15 @@
+#pragma once
+/// How spray, foam and bubbles move (Ihmsen et al. 2012, section 4).
+
+#include "libsim/foam/emission.hpp"
+
+namespace sim::SIM_BACKEND {
+
+using FoamWaterView = Reads<Column::Position, Column::Velocity>;
+
+/// Moves the diffuse particles over a frame by the water round them, lets foam age, and enters in the ledger
+/// who dissolved or left. What lies behind the walls' openings has left.
+void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Walls& walls,
+               const FoamRules& rules);
+
+}  // namespace sim::SIM_BACKEND

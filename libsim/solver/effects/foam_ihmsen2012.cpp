@@ -1,0 +1,44 @@
+/// Spray, foam and bubbles: once a frame, one way.
+
+#include "libsim/foam/motion.hpp"
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+FoamRules rules_of(const SolverParameters& k) {
+  const auto& e = k.effects;
+  const float diameter = e[EffectOption::FoamDiameter];
+  return {.dt = k.dt * static_cast<float>(k.substeps),
+          .gravity = k.gravity,
+          .rate = e[EffectKind::Foam],
+          .approach = {e[EffectOption::FoamApproachFrom], e[EffectOption::FoamApproachSpan]},
+          .crest = {e[EffectOption::FoamCrestFrom], e[EffectOption::FoamCrestSpan]},
+          .crest_weight = e[EffectOption::FoamCrestWeight],
+          .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
+          .coarsest = static_cast<int>(e[EffectOption::FoamCoarsest]),
+          .lifetime = e[EffectOption::FoamLifetime],
+          .volume = pi / 6 * diameter * diameter * diameter,
+          .air_drag = e[EffectOption::FoamAirDrag],
+          .rise = e[EffectOption::FoamRise]};
+}
+
+void run(FluidState& state, FoamView p) {
+  FoamPool& pool = state.foam;
+  const FoamRules rules = rules_of(state.parameters);
+  if (p.size() > 0) {
+    pool.approach.resize(static_cast<std::size_t>(p.size()));
+    find_foam_surface(pool, p, state.grid, state.walls, rules);
+    count_foam_births(pool, p, state.grid, rules);
+    emit_foam(pool, p, state.walls, rules);
+  }
+  move_foam(pool, p, state.grid, state.walls, rules);
+  ++pool.frame;
+}
+
+}  // namespace
+
+std::vector<Stage> foam_stages() { return {stage_of<run>({.name = "foam", .phase = Phase::FrameEnd})}; }
+
+}  // namespace sim::SIM_BACKEND

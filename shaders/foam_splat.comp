@@ -1,0 +1,65 @@
+// One invocation a diffuse particle: a soft disc, laid before the water's surface or below it.
+#include "view.glsl"
+#include "foam.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Foam { vec4 foam[]; };  // x, y, z, radius in m; no radius: nobody
+layout(std430, binding = 1) readonly buffer Nearness { float nearness[]; };
+layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };  // and the radius of the water's particle
+layout(std430, binding = 3) buffer Cover { uint cover[]; };              // two words a pixel
+uniform uint foam_count;
+
+const float middle_depth = 1.2;   // optical depth through a disc's middle
+const float most_px = 48.0;       // radius of the largest disc
+const float dimmed_per_m = 0.7;   // by the water above it
+
+bool is_usable(vec4 particle) {
+  const uvec4 exponent = floatBitsToUint(particle) & 0x7f800000u;
+  return all(lessThan(exponent, uvec4(0x7f800000u))) && particle.w > 0.0;
+}
+
+// How far a depth lies below the water's surface at a pixel, m, along its normal, and which share of it still counts as
+// on it: the surface is drawn up to half a particle too high.
+float below_surface(float depth, ivec2 pixel, int at, out float on_top) {
+  on_top = 1.0;
+  if (nearness[at] <= 0.0) return 0.0;
+  const vec4 normal = normals[at];
+  const vec3 ray = vec3(slope_at(vec2(pixel) + 0.5), -1.0);
+  const float below = (depth - 1.0 / nearness[at]) * max(-dot(ray, normal.xyz), 0.2);
+  on_top = 1.0 - smoothstep(1.0, 2.0, below / max(normal.w, 1e-6));
+  return max(below, 0.0);
+}
+
+void lay(float optical_depth, float depth, ivec2 pixel) {
+  const int at = pixel.y * size.x + pixel.x;
+  float on_top;
+  const float below = below_surface(depth, pixel, at, on_top);
+  const uint front = uint(optical_depth * on_top * foam_units + 0.5);
+  const uint behind = uint(optical_depth * (1.0 - on_top) * exp(-dimmed_per_m * below) * foam_units + 0.5);
+  if (front > 0u) atomicAdd(cover[2 * at], front);
+  if (behind > 0u) atomicAdd(cover[2 * at + 1], behind);
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
+  if (i >= foam_count) return;
+  const vec4 particle = foam[i];
+  if (!is_usable(particle)) return;
+  const vec3 eye = (world_to_eye * vec4(particle.xyz, 1.0)).xyz;
+  const float depth = -eye.z;
+  if (depth < origin.z + particle.w) return;
+  const vec2 centre = (eye.xy / depth - rays.yw) / rays.xz;
+  // A disc of a pixel's radius meets a pixel's middle at least; smaller ones are as much thinner.
+  const float true_px = particle.w / (depth * rays.x);
+  const float radius_px = clamp(true_px, 1.0, most_px);
+  if (any(lessThan(centre, vec2(-radius_px))) || any(greaterThan(centre, vec2(size.xy) + radius_px))) return;
+  const float thickness = middle_depth * min(true_px * true_px, 1.0);
+  const ivec2 low = max(ivec2(floor(centre - radius_px)), ivec2(0));
+  const ivec2 high = min(ivec2(ceil(centre + radius_px)), size.xy);
+  for (int y = low.y; y < high.y; ++y) {
+    for (int x = low.x; x < high.x; ++x) {
+      const vec2 off = (vec2(x, y) + 0.5 - centre) / radius_px;
+      const float inside = 1.0 - dot(off, off);
+      if (inside > 0.0) lay(thickness * inside, depth, ivec2(x, y));
+    }
+  }
+}
