@@ -87,6 +87,7 @@ class FluidSimulation final : public Simulation {
 
   void step_frame() override {
     state_.jets.frame = frame_;
+    state_.obstacles.frame_begin_s = frame_ * frame_dt();
     state_.activation.beta = static_cast<float>(tolerance_.beta());
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
@@ -94,6 +95,7 @@ class FluidSimulation final : public Simulation {
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
+    count_obstacles(state_, momentum_);
     const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
@@ -257,8 +259,8 @@ class FluidSimulation final : public Simulation {
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
-           std::to_string(particle_bytes()) + " bytes\n" + effects_in_words(scene_, options_) +
-           schedule_.explanation;
+           std::to_string(particle_bytes()) + " bytes\n" + obstacles_in_words(scene_.obstacles) +
+           effects_in_words(scene_, options_) + schedule_.explanation;
   }
 
  private:
@@ -321,6 +323,7 @@ class FluidSimulation final : public Simulation {
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
+    begin_obstacles(state_, scene_, frame_ * frame_dt(), options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
   }
 

@@ -43,6 +43,7 @@ std::vector<Stage> all_stages() {
                          graded_targets_stage(),
                          split_and_merge_stage(),
                          activation_stage(),
+                         obstacles_stage(),
                          predict_stage(),
                          held_at_walls_stage(),
                          neighbours_stage(),

@@ -2,6 +2,7 @@
 /// gave. What it gave is measured against what the walls gave (Gauss' theorem on the cells), and the
 /// difference is taken from all whom it pushed, alike.
 
+#include "libsim/pressure/grid_passes.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -38,9 +39,10 @@ struct SumPush {
 };
 
 /// rho_0 q A of the cells at a wall along its normal: the sum of -rho_0 grad q over the water.
+template <class Grid>
 struct SumWalls {
   PressureFrame frame;
-  GridView grid;
+  Grid grid;
   float unit_volume;  ///< of m_*, m3
   PushBalance* out;
   SIM_FN void operator()(int i) const {
@@ -52,11 +54,39 @@ struct SumWalls {
   }
 };
 
+/// The same of the faces that bodies shut, for the body that is nearest.
+struct SumBodies {
+  PressureFrame frame;
+  CutView grid;
+  Solids solids;
+  BodyListener to;  ///< without sums nobody listens
+  float unit_volume;
+  PushBalance* out;
+  SIM_FN void operator()(int i) const {
+    if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
+    const Vec3 area = shut_by_bodies(frame, grid, i);
+    if (area.x == 0 && area.y == 0 && area.z == 0) return;
+    const Vec3 push = (grid.q[i] / unit_volume) * area;
+    MassWay sum{};
+    sum.add(1, push);
+    out->walls.add_at_once(sum);
+    if (!to.sums) return;
+    const Place p = place_of(grid.block, i);
+    const auto middle = [](int cell) { return static_cast<float>(cell) + 0.5f; };
+    const Vec3 centre = frame.in_metres({middle(p.x), middle(p.y), middle(p.z)});
+    int body;
+    solids.nearest_body(centre, body);
+    const Body::Near at = solids.bodies[body].near(centre);
+    to.add(body, centre - at.distance * at.normal, push);
+  }
+};
+
+template <class Boundary>
 struct Balance {
   Vec4* predicted;
   Vec4* next;
   const PushBalance* balance;
-  Walls walls;
+  Boundary walls;
   Guards* guards;
   float wall_gap;
   bool listens;
@@ -74,6 +104,18 @@ struct Balance {
   }
 };
 
+template <class Boundary>
+void balance(FluidState& state, ClampView p, Boundary boundary) {
+  for_each("balance push", p.size(),
+           Balance<Boundary>{.predicted = p.predicted(),
+                             .next = p.predicted_next(),
+                             .balance = state.coarse.balance.data(),
+                             .walls = boundary,
+                             .guards = state.guard(),
+                             .wall_gap = gap_of_kernels(state),
+                             .listens = state.listens()});
+}
+
 }  // namespace
 
 void balance_push(FluidState& state, ClampView p) {
@@ -88,18 +130,25 @@ void balance_push(FluidState& state, ClampView p) {
                           .n = p.size(),
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
-    const GridView grid = coarse.multigrid.finest();
-    for_each("sum walls", grid.block.size(),
-             SumWalls{coarse.frame, grid, mass_of(state.finest_support, 1), coarse.balance.data()});
+    const float unit_volume = mass_of(state.finest_support, 1);
+    if (state.obstacles.there()) {
+      const CutView grid = state.cut_grid();
+      for_each("sum walls", grid.block.size(),
+               SumWalls<CutView>{coarse.frame, grid, unit_volume, coarse.balance.data()});
+      for_each("sum obstacles", grid.block.size(),
+               SumBodies{.frame = coarse.frame,
+                         .grid = grid,
+                         .solids = state.solids(),
+                         .to = state.body_listener(1),
+                         .unit_volume = unit_volume,
+                         .out = coarse.balance.data()});
+    } else {
+      const GridView grid = coarse.multigrid.finest();
+      for_each("sum walls", grid.block.size(),
+               SumWalls<GridView>{coarse.frame, grid, unit_volume, coarse.balance.data()});
+    }
   }
-  for_each("balance push", p.size(),
-           Balance{.predicted = p.predicted(),
-                   .next = p.predicted_next(),
-                   .balance = coarse.balance.data(),
-                   .walls = state.walls,
-                   .guards = state.guard(),
-                   .wall_gap = gap_of_kernels(state),
-                   .listens = state.impulse.listens()});
+  state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
   clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }
 
