@@ -43,20 +43,23 @@ struct PushBalance {
   }
 };
 
-/// How much of a face between a cell and a solid place is a wall's and no obstacle's.
-SIM_FN float wall_share(const GridView&, int, int, int, int, int) { return 1; }
-SIM_FN float wall_share(const CutView& grid, int cell, int wall, int x, int y, int z) {
-  if (grid.block.holds(x, y, z)) return grid.open_volume[grid.block.index(x, y, z)] < 1 ? 0.0f : 1.0f;
-  return wall == 0   ? low_share(grid, cell, 0)
-         : wall == 2 ? low_share(grid, cell, 2)
-         : wall == 4 ? low_share(grid, cell, 1)
-                     : 1.0f;
+/// The middle of a cell, m.
+SIM_FN Vec3 middle_of(const PressureFrame& frame, int x, int y, int z) {
+  const auto middle = [](int cell) { return static_cast<float>(cell) + 0.5f; };
+  return frame.in_metres({middle(x), middle(y), middle(z)});
+}
+/// Is a solid cell an obstacle's and no wall's?
+SIM_FN bool body_has(const Walls&, const PressureFrame&, const GridView&, int, int, int) { return false; }
+SIM_FN bool body_has(const Solids& solids, const PressureFrame& frame, const GridView& grid, int x, int y,
+                     int z) {
+  return grid.block.holds(x, y, z) && solids.walls.holds(middle_of(frame, x, y, z));
 }
 
 /// Gives hear(wall, inward normal, area in m2) what is shut of each face of a cell that lies on a wall, in
 /// the order of Walls.
-template <class Grid, class Hear>
-SIM_FN void for_wall_faces(const PressureFrame& frame, const Grid& grid, int cell, Hear hear) {
+template <class Boundary, class Hear>
+SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, const Boundary& boundary,
+                           int cell, Hear hear) {
   const CellBlock& block = grid.block;
   const int x = cell % block.nx;
   const int y = cell / block.nx % block.ny;
@@ -64,9 +67,9 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const Grid& grid, int cel
   const float across_x = frame.edge.y * frame.edge.z;
   const float across_z = frame.edge.x * frame.edge.y;
   const auto face = [&](int wall, int nx, int ny, int nz, Vec3 normal, float area) {
-    if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
+    if (grid.kind_at(nx, ny, nz) != CellKind::Solid || body_has(boundary, frame, grid, nx, ny, nz)) return;
     const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
-    hear(wall, normal, wall_share(grid, cell, wall, nx, ny, nz) * shut * area);
+    hear(wall, normal, shut * area);
   };
   face(0, x - 1, y, z, {1, 0, 0}, across_x);
   face(1, x + 1, y, z, {-1, 0, 0}, across_x);
@@ -75,32 +78,10 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const Grid& grid, int cel
   face(4, x, y - 1, z, {0, 1, 0}, frame.floor_area());
 }
 
-/// What obstacles shut of a cell's faces, as the sum of area times the normal into the cell, m2. Over all
-/// cells with a pressure of one gradient it is the obstacle's volume times that.
-SIM_FN Vec3 shut_by_bodies(const PressureFrame& frame, const CutView& grid, int cell) {
-  const CellBlock& block = grid.block;
-  const int x = cell % block.nx;
-  const int y = cell / block.nx % block.ny;
-  const int z = cell / (block.nx * block.ny);
-  const auto shut = [&](int axis, int nx, int ny, int nz, int owner) {
-    if (!block.holds(nx, ny, nz)) return owner == cell ? 1 - low_share(grid, cell, axis) : 0.0f;
-    const int beside = block.index(nx, ny, nz);
-    if (grid.kind[beside] == CellKind::Solid) return grid.open_volume[beside] < 1 ? 1.0f : 0.0f;
-    return 1 - low_share(grid, owner, axis);
-  };
-  const Vec3 e = frame.edge;
-  const int row = block.nx;
-  const int layer = block.nx * block.ny;
-  return {e.y * e.z * (shut(0, x - 1, y, z, cell) - shut(0, x + 1, y, z, cell + 1)),
-          e.x * e.z * (shut(1, x, y - 1, z, cell) - shut(1, x, y + 1, z, cell + row)),
-          e.x * e.y * (shut(2, x, y, z - 1, cell) - shut(2, x, y, z + 1, cell + layer))};
-}
-
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
   Array<PushBalance> balance;
-  Array<float> open_volume;  ///< share of each cell that obstacles leave; only with obstacles
   Multigrid multigrid;
 
   /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
@@ -109,8 +90,6 @@ struct CoarseGrid {
   /// The walls' openings as open faces; after fit. Walls are those of the domain.
   void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;
-  /// The finest grid with what the bodies shut of its cells and faces; after fit.
-  CutView cut(const Solids& solids);
 
  private:
   int opened_ = 0;      ///< openings that the multigrid has

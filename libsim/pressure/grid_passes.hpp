@@ -15,29 +15,10 @@ SIM_FN Place place_of(const CellBlock& block, int i) {
   return {i - row * block.nx, row - z * block.ny, z};
 }
 
-/// The mean open share of a coarser cell's low faces.
-SIM_FN void coarsen_shares(const GridView&, const GridView&, Place, int) {}
-SIM_FN void coarsen_shares(const CutView& fine, const CutView& coarse, Place p, int i) {
-  float sum[3] = {0, 0, 0};
-  float faces[3] = {0, 0, 0};
-  for (int child = 0; child < 8; ++child) {
-    const int offset[3] = {child & 1, child >> 1 & 1, child >> 2};
-    const Place c{2 * p.x + offset[0], 2 * p.y + offset[1], 2 * p.z + offset[2]};
-    if (!fine.block.holds(c.x, c.y, c.z)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (offset[axis] == 1) continue;
-      sum[axis] += low_share(fine, fine.block.index(c.x, c.y, c.z), axis);
-      faces[axis] += 1;
-    }
-  }
-  coarse.open_low[i] = {sum[0] / faces[0], sum[1] / faces[1], sum[2] / faces[2]};
-}
-
 /// A coarser cell is fluid when no child is air: its surface then lies within half a cell of the true one, on
 /// either side. Counting cells with any fluid as fluid lets a grid overshoot until the cycles diverge.
-template <class Grid>
 struct Coarsen {
-  Grid fine, coarse;
+  GridView fine, coarse;
   SIM_FN void operator()(int i) const {
     const Place p = place_of(coarse.block, i);
     bool air = false;
@@ -49,7 +30,6 @@ struct Coarsen {
       fluid = fluid || kind == CellKind::Fluid;
     }
     coarse.kind[i] = air ? CellKind::Air : fluid ? CellKind::Fluid : CellKind::Solid;
-    coarsen_shares(fine, coarse, p, i);
   }
 };
 
@@ -63,19 +43,9 @@ SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   return {y * z * over.x, x * z * over.y, x * y * over.z};
 }
 
-/// Share of the face between two cells that obstacles leave open.
-SIM_FN float share_towards(const GridView&, Place, Place, int) { return 1; }
-SIM_FN float share_towards(const CutView& grid, Place from, Place to, int axis) {
-  if (!grid.block.holds(to.x, to.y, to.z)) return 1;
-  const bool up = to.x + to.y + to.z > from.x + from.y + from.z;
-  const Place high = up ? to : from;
-  return low_share(grid, grid.block.index(high.x, high.y, high.z), axis);
-}
-
 /// The diagonal of a fluid cell's equation, for all sweeps of a solve.
-template <class Grid>
 struct Weigh {
-  Grid grid;
+  GridView grid;
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] == CellKind::Fluid) {
       cell(place_of(grid.block, i), i);
@@ -90,9 +60,8 @@ struct Weigh {
       const int axis = face / 2;
       const int step = face % 2 ? 1 : -1;
       const float weight = axis == 0 ? over.x : axis == 1 ? over.y : over.z;
-      const Place beside{p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
-                         p.z + (axis == 2 ? step : 0)};
-      sum += weight * share_towards(grid, p, beside, axis) * opening(beside.x, beside.y, beside.z);
+      sum += weight * opening(p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
+                              p.z + (axis == 2 ? step : 0));
     }
     grid.diagonal[i] = sum;
   }
@@ -104,27 +73,25 @@ struct Weigh {
 };
 
 /// The sum of conductance x q around cell i, which lies at p.
-template <class Grid>
-SIM_FN float around(const Grid& grid, Place p, int i) {
+SIM_FN float around(const GridView& grid, Place p, int i) {
   const CellBlock& block = grid.block;
   const Vec3 over = conductances(grid, p);
   const int row = block.nx;
   const int layer = block.nx * block.ny;
   float sum = 0;
-  sum += over.x * (p.x > 0 ? low_share(grid, i, 0) * grid.q[i - 1] : 0);
-  sum += over.x * (p.x + 1 < block.nx ? low_share(grid, i + 1, 0) * grid.q[i + 1] : 0);
-  sum += over.y * (p.y > 0 ? low_share(grid, i, 1) * grid.q[i - row] : 0);
-  sum += over.y * (p.y + 1 < block.ny ? low_share(grid, i + row, 1) * grid.q[i + row] : 0);
-  sum += over.z * (p.z > 0 ? low_share(grid, i, 2) * grid.q[i - layer] : 0);
-  sum += over.z * (p.z + 1 < block.nz ? low_share(grid, i + layer, 2) * grid.q[i + layer] : 0);
+  sum += over.x * (p.x > 0 ? grid.q[i - 1] : 0);
+  sum += over.x * (p.x + 1 < block.nx ? grid.q[i + 1] : 0);
+  sum += over.y * (p.y > 0 ? grid.q[i - row] : 0);
+  sum += over.y * (p.y + 1 < block.ny ? grid.q[i + row] : 0);
+  sum += over.z * (p.z > 0 ? grid.q[i - layer] : 0);
+  sum += over.z * (p.z + 1 < block.nz ? grid.q[i + layer] : 0);
   return sum;
 }
 
 /// Gauss-Seidel on the cells of one colour; on the finest grid the pressure stays a push. Index: every second
 /// cell of a row, from the first one on.
-template <class Grid>
 struct Smooth {
-  Grid grid;
+  GridView grid;
   int colour;
   bool push_only;
 
@@ -144,9 +111,8 @@ struct Smooth {
 
 /// Source of the coarser grid: the sum of the finer residuals. Where a cell rests at q = 0 and wants to pull,
 /// nothing is left to solve.
-template <class Grid>
 struct Restrict {
-  Grid fine, coarse;
+  GridView fine, coarse;
   bool push_only;
   SIM_FN void operator()(int i) const { cell(place_of(coarse.block, i), i); }
   SIM_FN void cell(Place p, int i) const {
@@ -166,9 +132,8 @@ struct Restrict {
 
 /// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and sloping to zero
 /// outside open faces.
-template <class Grid>
 struct Prolong {
-  Grid fine, coarse;
+  GridView fine, coarse;
   bool push_only;
   SIM_FN void operator()(int i) const {
     if (fine.kind[i] == CellKind::Fluid) cell(place_of(fine.block, i), i);

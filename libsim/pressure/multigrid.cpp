@@ -41,42 +41,24 @@ GridView Multigrid::view(std::size_t level) {
           .open_count = static_cast<int>(open_.size())};
 }
 
-template <>
-GridView Multigrid::view_as<GridView>(std::size_t level) {
-  return view(level);
-}
-template <>
-CutView Multigrid::view_as<CutView>(std::size_t level) {
-  return {view(level), levels_[level].open_low.data(), nullptr};
-}
-
-CutView Multigrid::finest_cut() {
-  for (std::size_t l = 0; l <= first_small(); ++l)
-    levels_[l].open_low.resize(static_cast<std::size_t>(levels_[l].block.size()));
-  return view_as<CutView>(0);
-}
-
-template <class Grid>
 void Multigrid::smooth(std::size_t level, int first_colour) {
-  const Grid at = view_as<Grid>(level);
+  const GridView at = view(level);
   for (const int colour : {first_colour, 1 - first_colour}) {
-    for_each("smooth", Smooth<Grid>::size(at.block), Smooth<Grid>{at, colour, level == 0});
+    for_each("smooth", Smooth::size(at.block), Smooth{at, colour, level == 0});
   }
 }
 
 std::size_t Multigrid::first_small() const {
   std::size_t level = levels_.size() - 1;
-  while (level > 0 && levels_.size() - level < SmallGrids<GridView>::most &&
+  while (level > 0 && levels_.size() - level < SmallGrids::most &&
          levels_[level - 1].block.size() <= one_block_cells)
     --level;
   return level;
 }
 
-template <class Grid>
 void Multigrid::cycle_small(int cycles) {
   const std::size_t small = first_small();
-  SmallGrids<Grid> grids{
-      .outside = view_as<Grid>(small), .grid = {}, .count = 0, .cells = 0, .few = 0, .cycles = cycles};
+  SmallGrids grids{.outside = view(small), .grid = {}, .count = 0, .cells = 0, .few = 0, .cycles = cycles};
   for (std::size_t l = small; l < levels_.size(); ++l) {
     const CellBlock block = levels_[l].block;
     if (grids.count > 0 && levels_[l - 1].block.size() > one_warp_cells) grids.few = grids.count;
@@ -86,37 +68,32 @@ void Multigrid::cycle_small(int cycles) {
   in_one_block("small grids", grids.grid[0].block.size(), grids.bytes(), room_, grids);
 }
 
-template <class Grid>
 void Multigrid::cycle(std::size_t level) {
   if (level == first_small()) {
-    cycle_small<Grid>(1);
+    cycle_small(1);
     return;
   }
-  const Grid fine = view_as<Grid>(level);
-  const Grid coarse = view_as<Grid>(level + 1);
-  smooth<Grid>(level, 0);
-  for_each("restrict", coarse.block.size(), Restrict<Grid>{fine, coarse, level == 0});
-  cycle<Grid>(level + 1);
-  for_each("prolong", fine.block.size(), Prolong<Grid>{fine, coarse, level == 0});
-  smooth<Grid>(level, 1);
+  const GridView fine = view(level);
+  const GridView coarse = view(level + 1);
+  smooth(level, 0);
+  for_each("restrict", coarse.block.size(), Restrict{fine, coarse, level == 0});
+  cycle(level + 1);
+  for_each("prolong", fine.block.size(), Prolong{fine, coarse, level == 0});
+  smooth(level, 1);
 }
 
-template <class Grid>
-void Multigrid::solve_on(int cycles) {
+void Multigrid::solve(int cycles) {
   const std::size_t small = first_small();
   for (std::size_t l = 1; l <= small; ++l) {
-    for_each("coarsen", levels_[l].block.size(), Coarsen<Grid>{view_as<Grid>(l - 1), view_as<Grid>(l)});
+    for_each("coarsen", levels_[l].block.size(), Coarsen{view(l - 1), view(l)});
   }
   if (small == 0) {
-    cycle_small<Grid>(cycles);
+    cycle_small(cycles);
     return;
   }
-  for (std::size_t l = 0; l < small; ++l)
-    for_each("weigh cells", levels_[l].block.size(), Weigh<Grid>{view_as<Grid>(l)});
+  for (std::size_t l = 0; l < small; ++l) for_each("weigh cells", levels_[l].block.size(), Weigh{view(l)});
   levels_.front().q.zero();
-  for (int c = 0; c < cycles; ++c) cycle<Grid>(0);
+  for (int c = 0; c < cycles; ++c) cycle(0);
 }
-template void Multigrid::solve_on<GridView>(int cycles);
-template void Multigrid::solve_on<CutView>(int cycles);
 
 }  // namespace sim::SIM_BACKEND

@@ -1,6 +1,6 @@
 #pragma once
 /// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >=
-/// 0, q = 0 in the air and outside open faces, no flux through walls and as much as is open beside obstacles.
+/// 0, q = 0 in the air and outside open faces, no flux through walls.
 
 #include <vector>
 
@@ -66,19 +66,6 @@ struct GridView {
   }
 };
 
-/// The same grid with obstacles in it: they shut a part of its faces. Passes are templates of the view, so
-/// that those of a scene without obstacles know nothing of them.
-struct CutView : GridView {
-  Vec3* open_low;      ///< share of a cell's low face across x, y and z that is open
-  float* open_volume;  ///< share of a cell that is; of the finest grid
-};
-/// That share; `axis` 0, 1, 2 = x, y, z.
-SIM_FN float low_share(const GridView&, int, int) { return 1; }
-SIM_FN float low_share(const CutView& grid, int cell, int axis) {
-  const Vec3 share = grid.open_low[cell];
-  return axis == 0 ? share.x : axis == 1 ? share.y : share.z;
-}
-
 class Multigrid {
  public:
   /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed. The
@@ -89,11 +76,8 @@ class Multigrid {
   /// The finest grid. Write kind and source (C times the volume of each fluid cell, in the unit of
   /// conductances), then solve.
   GridView finest() { return view(0); }
-  /// The same for a solve with obstacles; write the open shares of its faces too.
-  CutView finest_cut();
   /// Runs V-cycles from q = 0.
-  void solve(int cycles) { solve_on<GridView>(cycles); }
-  void solve_cut(int cycles) { solve_on<CutView>(cycles); }
+  void solve(int cycles);
 
  private:
   /// Grids below the first small one live in scratch memory and have no columns.
@@ -101,23 +85,15 @@ class Multigrid {
     CellBlock block;
     Array<CellKind> kind;
     Array<float> q, source, diagonal;
-    Array<Vec3> open_low;  ///< with obstacles
   };
 
   GridView view(std::size_t level);
-  template <class Grid>
-  Grid view_as(std::size_t level);
-  template <class Grid>
-  void solve_on(int cycles);
   /// The first of the grids that one block handles together.
   std::size_t first_small() const;
 
-  template <class Grid>
   void cycle(std::size_t level);
   /// V-cycles over the small grids, from q = 0.
-  template <class Grid>
   void cycle_small(int cycles);
-  template <class Grid>
   void smooth(std::size_t level, int first_colour);
 
   std::vector<Level> levels_;

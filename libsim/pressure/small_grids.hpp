@@ -50,9 +50,8 @@ struct OfBoth {
 };
 
 /// Lists a grid's fluid cells, in any order, with q = 0 everywhere.
-template <class Grid>
 struct ListFluid {
-  Grid grid;
+  GridView grid;
   FluidCells to;
   SIM_FN void operator()(int i) const {
     grid.q[i] = 0;
@@ -64,22 +63,12 @@ struct ListFluid {
   }
 };
 
-SIM_FN void take_shares(const GridView&, const GridView&, int) {}
-SIM_FN void take_shares(const CutView& from, const CutView& to, int i) { to.open_low[i] = from.open_low[i]; }
-/// Where a grid's open shares lie in the room; `end` is behind all else.
-SIM_FN void place_shares(GridView&, unsigned char*, int) {}
-SIM_FN void place_shares(CutView& grid, unsigned char* end, int begin) {
-  grid.open_low = reinterpret_cast<Vec3*>(end) + begin;
-}
-
 /// Takes what the first of the small grids is given,
-template <class Grid>
 struct Load {
-  Grid from, to;
+  GridView from, to;
   SIM_FN void operator()(int i) const {
     to.kind[i] = from.kind[i];
     to.source[i] = from.source[i];
-    take_shares(from, to, i);
   }
 };
 /// and gives its q back.
@@ -94,30 +83,21 @@ struct Nothing {
 
 /// The grids from the first one that is small enough for one block down to the coarsest: V-cycles over them.
 /// All values live in the block's room.
-template <class View>
 struct SmallGrids {
   static constexpr int most = 16;
   struct Grid {
     CellBlock block;
     int scale, begin;  ///< cells before it in the room
   };
-  View outside;  ///< the first one where others see it
+  GridView outside;  ///< the first one where others see it
   Grid grid[most];
   int count;
   int cells;  ///< of all
   int few;    ///< the first grid for one warp; the last one at most
   int cycles;
 
-  static constexpr bool cut = std::is_same_v<View, CutView>;
   static constexpr std::size_t cell_bytes = 3 * sizeof(float) + sizeof(CellPlace) + sizeof(CellKind);
-  std::size_t bytes() const {
-    const auto n = static_cast<std::size_t>(cells);
-    return cut ? shares_begin() + n * sizeof(Vec3) : counts_bytes + n * cell_bytes;
-  }
-  /// Behind the kinds, where a number may begin.
-  SIM_FN std::size_t shares_begin() const {
-    return (counts_bytes + static_cast<std::size_t>(cells) * cell_bytes + 3) / 4 * 4;
-  }
+  std::size_t bytes() const { return counts_bytes + static_cast<std::size_t>(cells) * cell_bytes; }
   static constexpr std::size_t counts_bytes = 2 * most * sizeof(int);
 
   /// The steps of a V-cycle over the grids in a room: counts, then q, sources and diagonals, then places,
@@ -129,16 +109,15 @@ struct SmallGrids {
     SIM_FN int* counts() const { return reinterpret_cast<int*>(room); }
     SIM_FN float* values() const { return reinterpret_cast<float*>(room + counts_bytes); }
     SIM_FN CellPlace* places() const { return reinterpret_cast<CellPlace*>(values() + 3 * grids.cells); }
-    SIM_FN View view(int level) const {
+    SIM_FN GridView view(int level) const {
       const Grid& at = grids.grid[level];
-      View out = grids.outside;
+      GridView out = grids.outside;
       out.block = at.block;
       out.scale = at.scale;
       out.kind = reinterpret_cast<CellKind*>(places() + grids.cells) + at.begin;
       out.q = values() + at.begin;
       out.source = out.q + grids.cells;
       out.diagonal = out.source + grids.cells;
-      if constexpr (cut) place_shares(out, room + grids.shares_begin(), at.begin);
       return out;
     }
     SIM_FN FluidCells fluid(int level) const {
@@ -147,31 +126,31 @@ struct SmallGrids {
     }
     template <class Threads>
     SIM_FN void smooth(Threads threads, int level, int first_colour) const {
-      const View at = view(level);
+      const GridView at = view(level);
       const FluidCells cells = fluid(level);
       for (int half = 0; half < 2; ++half) {
         const int colour = half == 0 ? first_colour : 1 - first_colour;
-        const Smooth<View> pass{at, colour, at.scale == 1};
-        threads.each(cells.count[colour], OfColour<Smooth<View>>{cells, colour, pass});
+        const Smooth pass{at, colour, at.scale == 1};
+        threads.each(cells.count[colour], OfColour<Smooth>{cells, colour, pass});
       }
     }
     template <class Threads>
     SIM_FN void descend(Threads threads, int from, int to) const {
       for (int level = from; level < to; ++level) {
         smooth(threads, level, 0);
-        const View fine = view(level);
+        const GridView fine = view(level);
         const FluidCells cells = fluid(level + 1);
-        const Restrict<View> pass{fine, view(level + 1), fine.scale == 1};
-        threads.each(cells.size(), OfBoth<Restrict<View>>{cells, pass});
+        const Restrict pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Restrict>{cells, pass});
       }
     }
     template <class Threads>
     SIM_FN void ascend(Threads threads, int from, int to) const {
       for (int level = from - 1; level >= to; --level) {
-        const View fine = view(level);
+        const GridView fine = view(level);
         const FluidCells cells = fluid(level);
-        const Prolong<View> pass{fine, view(level + 1), fine.scale == 1};
-        threads.each(cells.size(), OfBoth<Prolong<View>>{cells, pass});
+        const Prolong pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Prolong>{cells, pass});
         smooth(threads, level, 1);
       }
     }
@@ -185,14 +164,14 @@ struct SmallGrids {
     template <class Block>
     SIM_FN void prepare(Block block) const {
       block.spread(2 * grids.count, Nothing{counts()});
-      block.each(view(0).block.size(), Load<View>{grids.outside, view(0)});
+      block.each(view(0).block.size(), Load{grids.outside, view(0)});
       for (int level = 1; level < grids.count; ++level)
-        block.each(view(level).block.size(), Coarsen<View>{view(level - 1), view(level)});
+        block.each(view(level).block.size(), Coarsen{view(level - 1), view(level)});
       for (int level = 0; level < grids.count; ++level)
-        block.spread(view(level).block.size(), ListFluid<View>{view(level), fluid(level)});
+        block.spread(view(level).block.size(), ListFluid{view(level), fluid(level)});
       block.wait();
       for (int level = 0; level < grids.count; ++level)
-        block.spread(fluid(level).size(), OfBoth<Weigh<View>>{fluid(level), {view(level)}});
+        block.spread(fluid(level).size(), OfBoth<Weigh>{fluid(level), {view(level)}});
       block.wait();
     }
   };

@@ -1,4 +1,3 @@
-#include "libsim/pressure/grid_passes.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -76,62 +75,60 @@ struct Classify {
   }
 };
 
-/// The same with obstacles: a cell holds as much water as they leave of it. One that they leave too little of
-/// is theirs, and so is one that they leave little of and that holds no particle.
-struct ClassifyCut {
-  static constexpr float least_faces = 0.6f;   ///< open, of six
-  static constexpr float least_volume = 0.3f;  ///< without a particle
+/// The same with obstacles. Below the water's surface an obstacle's cells count as water at rest: its weight
+/// is what the pressure beside it carries, and that is all that cells so wide can tell of it. The particles'
+/// constraint keeps the water out. Cells that look out of the water are solid.
+struct ClassifyRound {
   PressureFrame frame;
-  CutView grid;
-  Walls walls;
+  GridView grid;
+  Solids solids;
   const CellSum* sums;
+  float unit_volume;
 
   SIM_FN void operator()(int i) const {
+    const CellBlock& block = grid.block;
+    const Vec3 at = middle_of(frame, i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny));
     grid.source[i] = 0;
-    const float open = grid.open_volume[i];
-    const Place p = place_of(grid.block, i);
-    const Vec3 at{middle(p.x), middle(p.y), middle(p.z)};
-    grid.kind[i] = walls.holds(frame.in_metres(at)) ? CellKind::Air : CellKind::Solid;
-    const CellSum sum = sums[i];
-    if (open < 1 && (open_faces(p) < least_faces || (sum.volume == 0 && open < least_volume)))
-      grid.kind[i] = CellKind::Solid;
-    if (sum.volume == 0 || (open < 1 && grid.kind[i] == CellKind::Solid)) return;
-    const auto excess =
-        static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
-    if (excess <= -surface_deficit) return;
-    grid.kind[i] = CellKind::Fluid;
-    grid.source[i] = frame.floor_area() * open * excess;
-  }
-  SIM_FN static float middle(int cell) { return static_cast<float>(cell) + 0.5f; }
-  SIM_FN float open_faces(Place p) const {
-    float sum = 0;
-    for (int face = 0; face < 6; ++face) {
-      const int axis = face / 2;
-      const int step = face % 2;
-      const Place high{p.x + (axis == 0 ? step : 0), p.y + (axis == 1 ? step : 0),
-                       p.z + (axis == 2 ? step : 0)};
-      if (grid.block.holds(high.x, high.y, high.z))
-        sum += low_share(grid, grid.block.index(high.x, high.y, high.z), axis);
+    if (is_water(sums[i])) {
+      grid.kind[i] = CellKind::Fluid;
+      grid.source[i] = frame.floor_area() * filled(sums[i]) * mean_excess(sums[i]);
+      return;
     }
-    return sum;
+    grid.kind[i] = solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
+    int body;
+    const float away = solids.nearest_body(at, body);
+    const float wide = frame.edge.y;
+    if (grid.kind[i] == CellKind::Solid || away > 0.5f * wide || sums[i].volume > 0) return;
+    const Vec3 outside = at + (0.75f * wide - away) * solids.bodies[body].near(at).normal;
+    const Vec3 there = frame.in_cells(outside);
+    const int x = static_cast<int>(floorf(there.x));
+    const int y = static_cast<int>(floorf(there.y));
+    const int z = static_cast<int>(floorf(there.z));
+    const bool wet = block.holds(x, y, z) && is_water(sums[block.index(x, y, z)]);
+    if (wet || away < 0) grid.kind[i] = wet ? CellKind::Fluid : CellKind::Solid;
+  }
+  SIM_FN static float mean_excess(const CellSum& sum) {
+    return static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
+  }
+  SIM_FN static bool is_water(const CellSum& sum) {
+    return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
+  }
+  /// Share of the cell that its particles fill.
+  SIM_FN float filled(const CellSum& sum) const {
+    const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
+    return at_most(static_cast<float>(sum.volume) / fixed_point * unit_volume / cell, 1.0f);
   }
 };
 
-/// Does a body shut the whole low face of a place?
-SIM_FN bool shut_by_body(const GridView&, Place, int) { return false; }
-SIM_FN bool shut_by_body(const CutView& grid, Place p, int axis) {
-  return grid.block.holds(p.x, p.y, p.z) && low_share(grid, grid.block.index(p.x, p.y, p.z), axis) <= 0;
-}
-
 /// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be. Before an
 /// opening the outside is air, however small a part of the cell's face is open.
-template <class Selection, class Grid>
+template <class Selection>
 struct Shift {
   Selection select;
   const Vec4* predicted;
   Vec4* next;  ///< holds the places of those who are neither solved nor pressed
   PressureFrame frame;
-  Grid grid;
+  GridView grid;
   Walls walls;
 
   SIM_FN void operator()(int slot) const {
@@ -173,12 +170,14 @@ struct Shift {
             !opens<X, Y, Z>(low ? Place{x - X, y - Y, z - Z} : Place{x, y, z}, low, metres))
           continue;
       }
-      if (shut_by_body(grid, Place{x, y, z}, X ? 0 : Y ? 1 : 2)) continue;
       sum += weight * (grid.q_at(x - X, y - Y, z - Z) - grid.q_at(x, y, z));
     }
     return weights > 0 ? sum / weights : 0;
   }
 
+  struct Place {
+    int x, y, z;
+  };
   /// Is this solid place outside the block, beyond an opening that the particle lies before?
   template <int X, int Y, int Z>
   SIM_FN bool opens(Place solid, bool low, Vec3 metres) const {
@@ -206,17 +205,6 @@ float cell_edge(const FluidState& state) {
   return at_least(finest, at_most(wish, across));
 }
 
-template <class Selection, class Grid>
-void shift(FluidState& state, CoarsePressureView p, Selection select, Grid grid) {
-  for_each("shift", p.size(),
-           Shift<Selection, Grid>{.select = select,
-                                  .predicted = p.predicted(),
-                                  .next = p.predicted_next(),
-                                  .frame = state.coarse.frame,
-                                  .grid = grid,
-                                  .walls = state.walls});
-}
-
 template <class Selection>
 void launch(FluidState& state, CoarsePressureView p, Selection select) {
   auto& coarse = state.coarse;
@@ -237,17 +225,24 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                              .sums = coarse.sums.data(),
                              .unit_volume = mass_of(state.lightest_support, 1)});
   if (state.obstacles.there()) {
-    const CutView cut = coarse.cut(state.solids());
     for_each("classify cells", grid.block.size(),
-             ClassifyCut{coarse.frame, cut, state.walls, coarse.sums.data()});
-    coarse.multigrid.solve_cut(state.parameters.coarse_cycles);
-    shift(state, p, select, cut);
+             ClassifyRound{.frame = coarse.frame,
+                           .grid = grid,
+                           .solids = state.solids(),
+                           .sums = coarse.sums.data(),
+                           .unit_volume = mass_of(state.lightest_support, 1)});
   } else {
     for_each("classify cells", grid.block.size(),
              Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
-    coarse.multigrid.solve(state.parameters.coarse_cycles);
-    shift(state, p, select, grid);
   }
+  coarse.multigrid.solve(state.parameters.coarse_cycles);
+  for_each("shift", p.size(),
+           Shift<Selection>{.select = select,
+                            .predicted = p.predicted(),
+                            .next = p.predicted_next(),
+                            .frame = coarse.frame,
+                            .grid = grid,
+                            .walls = state.walls});
   balance_push(state, p);
 }
 

@@ -124,12 +124,6 @@ struct FluidState {
   /// What bounds the water of a scene with obstacles; others have `walls`. Kernels are templates of the two,
   /// so that those of a scene without obstacles know nothing of them.
   Solids solids() const { return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt}; }
-  /// The cells of this substep's coarse pressure, with obstacles.
-  CutView cut_grid() {
-    CutView out = coarse.multigrid.finest_cut();
-    out.open_volume = coarse.open_volume.data();
-    return out;
-  }
   /// Is what walls and obstacles do to places told to anybody?
   bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }
   BodyListener body_listener(float times) {
