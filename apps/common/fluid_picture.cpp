@@ -12,6 +12,7 @@ void FluidPicture::take(sim::Simulation& fluid) {
     buffer_.set_count(fluid.particle_count());
   }
   taken_frame_ = fluid.frame();
+  renderer_.place_obstacles(fluid.time_s());
 }
 
 void FluidPicture::show(std::span<const sim::View> views, unsigned framebuffer) {

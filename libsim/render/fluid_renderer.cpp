@@ -51,6 +51,8 @@ FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
 
 FluidRenderer::~FluidRenderer() = default;
 
+void FluidRenderer::place_obstacles(double time_s) { state_->place_obstacles(time_s); }
+
 void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer) {
   if (views.empty() || views.size() > most_views) {
     throw base::Error("renderer", std::to_string(views.size()) + " views", "draw one view or two");

@@ -41,15 +41,9 @@ Vector turned(const Quaternion& q, const Vector& v) {
 }
 Quaternion back(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
 
-/// Half sides of the box round the shape without its rounding, and the rounding.
-Vector core(const Obstacle& o) {
-  if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
-  return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
-}
-
 /// How far the shape reaches from its centre along each axis of the world.
 Vector reach(const Obstacle& o, const Pose& pose) {
-  const Vector half = core(o);
+  const Vector half = half_sides_m(o);
   Vector out{o.radius_m, o.radius_m, o.radius_m};
   for (std::size_t k = 0; k < 3; ++k) {
     Vector side{};
@@ -153,9 +147,14 @@ Pose pose_at(const Obstacle& o, double time_s) {
   return out;
 }
 
+Vector half_sides_m(const Obstacle& o) {
+  if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
+  return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
+}
+
 double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_m) {
   const Vector local = turned(back(pose.turn), sum(point_m, -1, pose.centre_m));
-  const Vector half = core(o);
+  const Vector half = half_sides_m(o);
   Vector outside{};
   double inside = -1e30;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -182,7 +181,7 @@ double top_speed(const Obstacle& o) {
   if (o.motion == ObstacleMotion::Fixed) return 0;
   const Vector arm = sum(o.start.centre_m, -1, o.about_m);
   const double from_axis = length(sum(arm, -dot(arm, o.axis), o.axis));
-  return std::abs(o.rate_rad_s) * (from_axis + length(core(o)) + o.radius_m);
+  return std::abs(o.rate_rad_s) * (from_axis + length(half_sides_m(o)) + o.radius_m);
 }
 
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& tank_size_m,

@@ -50,6 +50,9 @@ const char* shape_name(ObstacleShape shape);
 Pose pose_at(const Obstacle& obstacle, double time_s);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
+/// Half the sides of the box round which the shape lies within radius_m, along its own axes: of a box half
+/// its sides, of a capsule half its axis.
+std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 double volume_m3(const Obstacle& obstacle);
 /// The shortest way through the middle, m.
 double thickness_m(const Obstacle& obstacle);

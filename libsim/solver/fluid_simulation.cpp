@@ -84,10 +84,11 @@ class FluidSimulation final : public Simulation {
     return traits_of(options_.method).target == TargetSource::Saliency && !options_.forced_targets;
   }
   int frame() const override { return frame_; }
+  double time_s() const override { return frame_ * frame_dt(); }
 
   void step_frame() override {
     state_.jets.frame = frame_;
-    state_.obstacles.frame_begin_s = frame_ * frame_dt();
+    state_.obstacles.frame_begin_s = time_s();
     state_.activation.beta = static_cast<float>(tolerance_.beta());
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
@@ -143,7 +144,7 @@ class FluidSimulation final : public Simulation {
     FrameReport out;
     out.frame = frame_;
     out.substeps = substeps_taken_;
-    out.time_s = frame_ * frame_dt();
+    out.time_s = time_s();
     out.particles = particle_count();
     for (const std::uint8_t level : state_.particles.all().level.to_host()) {
       if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
@@ -323,7 +324,7 @@ class FluidSimulation final : public Simulation {
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
-    begin_obstacles(state_, scene_, frame_ * frame_dt(), options_.wall_impulse || !options_.gauges.empty());
+    begin_obstacles(state_, scene_, time_s(), options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
   }
 

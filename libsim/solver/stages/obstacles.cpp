@@ -21,8 +21,7 @@ Vec3 vector(const std::array<double, 3>& v) {
 
 Body shape_of(const Obstacle& o) {
   Body out{};
-  if (o.shape == ObstacleShape::Box) out.half = 0.5f * vector(o.size_m);
-  if (o.shape == ObstacleShape::Capsule) out.half.y = static_cast<float>(o.length_m / 2);
+  out.half = vector(half_sides_m(o));
   out.radius = static_cast<float>(o.radius_m);
   return out;
 }
