@@ -226,6 +226,8 @@ class Simulation {
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
+  /// The same in seconds.
+  virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
   /// Changes the forced targets from the next frame on; base::Error when the run was made without any.

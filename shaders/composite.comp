@@ -28,7 +28,10 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m,
   const float facing = clamp(-dot(d, n), 0.0, 1.0);
   const float fresnel = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * smoothstep(0.0, thin_m, length_m);
   const vec3 inside = refract(d, n, 1.0 / 1.333);
-  const float room = max(cross_tank(position, inside).leave, 0.0);
+  float room = max(cross_tank(position, inside).leave, 0.0);
+#ifdef OBSTACLES
+  room = min(room, meet_obstacles(position, inside).at);
+#endif
   const float way = min(length_m, room);
   const vec3 out_direction = normalize(mix(d, inside, clamp(length_m / max(room, 1e-3), 0.0, 1.0)));
   const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way);
@@ -85,11 +88,19 @@ void main() {
   float frame_at;
   float cover = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
-  const bool is_water = nearness[at] > 0.0;
+  bool is_water = nearness[at] > 0.0;
+#ifdef OBSTACLES
+  const float obstacle_at = meet_obstacles(eye, d).at;
+  if (is_water && obstacle_at < per_depth / nearness[at]) is_water = false;
+  if (obstacle_at < frame_at) cover = 0.0;
+#endif
   const float water_cover = is_water ? outline_cover(pixel) : 0.0;
   vec3 light = vec3(0.0);
 #ifdef FOAM
-  const vec2 foam = foam_cover(at);
+  vec2 foam = foam_cover(at);
+#ifdef OBSTACLES
+  if (nearness[at] > 0.0 && !is_water) foam = vec2(0.0);  // an obstacle hides the water and what lies on it
+#endif
   vec3 foam_normal = vec3(0.0, 1.0, 0.0);
 #endif
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);

@@ -3,6 +3,10 @@
 const vec3 sun = vec3(0.3536, 0.8130, 0.4625);
 const float frame_m = 0.06;
 
+#ifdef OBSTACLES
+#include "obstacles.glsl"
+#endif
+
 vec3 sky(vec3 d) {
   const float up = max(d.y, 0.0);
   const vec3 air = mix(vec3(0.72, 0.80, 0.86), vec3(0.16, 0.34, 0.62), pow(up, 0.5));
@@ -69,6 +73,10 @@ float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, 
 // From a point inside the tank.
 vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
   const Crossing c = cross_tank(o, d);
+#ifdef OBSTACLES
+  const Meeting met = meet_obstacles(o, d);
+  if (met.at < never) return obstacle_light(met.normal);
+#endif
   const vec3 p = o + max(c.leave, 0.0) * d;
   const float width = footprint_per_m * (travelled + max(c.leave, 0.0));
   if (c.leave_axis == 1 && d.y < 0.0) return mix(tiles(p, d, width), frame_colour, frame_cover(p, 1, width));
@@ -89,6 +97,10 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
 
 // From anywhere, without that frame.
 vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
+#ifdef OBSTACLES
+  const Meeting met = meet_obstacles(o, d);
+  if (met.at < never) return obstacle_light(met.normal);
+#endif
   if (c.leave <= max(c.enter, 0.0)) return outdoors(o, d);
   if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0);
   return seen_from_inside(o + c.enter * d + 1e-4 * d, d, footprint_per_m, c.enter);

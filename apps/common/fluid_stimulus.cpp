@@ -117,6 +117,7 @@ study::FrameFacts BakedParticles::prepare(std::int64_t step) {
 void BakedParticles::draw(const study::Canvas& canvas) {
   particles_.upload(frame_.particles);
   if (!renderer_) renderer_ = std::make_unique<sim::FluidRenderer>(scene_, options_);
+  renderer_->place_obstacles(frame_.facts.time_s);
   renderer_->draw(particles_, views_on(scene_.view, viewing_, canvas), canvas.framebuffer);
 }
 

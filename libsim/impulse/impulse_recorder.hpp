@@ -67,6 +67,7 @@ struct WallListener {
 struct HeardClamp {
   WallListener to;
   Vec4 particle;
+  SIM_FN void body(int, Vec3, Vec3) const {}
   SIM_FN void operator()(int wall, float way) const {
     to.add(wall, WallPart::Clamp, xyz(particle), particle.w,
            mass_units_of(particle.w, to.finest_support) * way);
@@ -88,6 +89,7 @@ class ImpulseRecorder {
   /// Is what walls do to places an impulse now? Not while places are mended that become no velocity.
   bool listens() const { return on_ && !deaf_; }
   void listen(bool yes) { deaf_ = !yes; }
+  bool deaf() const { return deaf_; }
   WallListener listener(float times = 1);
 
   void begin_frame(const Particles& particles, const Guards* guards);

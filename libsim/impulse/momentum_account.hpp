@@ -31,10 +31,17 @@ struct WallPush {
   double sum() const { return missing_density + coarse_pressure + clamp; }
 };
 
+/// What an obstacle gave the water in a frame: its push, N s, and its moment about the obstacle's centre, N m
+/// s. The water gave it the opposite.
+struct ObstaclePush {
+  Vec3d push{}, moment{};
+};
+
 /// The momentum of the water over one frame, kg m/s. after = before + all others.
 struct MomentumAccount {
   std::array<WallPush, wall_count> walls;  ///< in the order of Wall
   std::vector<WallPush> gauges;            ///< in the order of SimulationOptions::gauges
+  std::vector<ObstaclePush> obstacles;     ///< in the scene's order
   Vec3d before{}, after{};
   Vec3d forces{};     ///< gravity and the central force
   Vec3d flow{};       ///< poured less taken by nozzles, less what left through outlets

@@ -92,6 +92,7 @@ struct Candidate {
 };
 
 /// Each wishing particle names the nearest partner of its level with which it may merge.
+template <class Boundary>
 struct Propose {
   const Vec4* position;
   const std::uint8_t* level;
@@ -102,7 +103,7 @@ struct Propose {
   ParticleNeighbours neighbours;
   int* partner;
   LevelCounts* counts;
-  Walls walls;
+  Boundary walls;
   LevelRules rules;
   LevelSupports supports;
 
@@ -160,8 +161,10 @@ struct Propose {
 
   template <class Team>
   SIM_FN bool overlaps(int i, int j, Team team) const {
-    return overlaps_coarser(position, level, neighbours, i, level[i], middle(position[i], position[j]),
-                            supports.h[level[i] + 1], rules.merge_overlap, team);
+    const Vec3 centre = middle(position[i], position[j]);
+    return !free_of_bodies(walls, centre) ||
+           overlaps_coarser(position, level, neighbours, i, level[i], centre, supports.h[level[i] + 1],
+                            rules.merge_overlap, team);
   }
 };
 
@@ -214,6 +217,24 @@ struct Merge {
   }
 };
 
+template <class Boundary>
+void propose(LevelState& l, const LevelFluid& fluid, Boundary boundary) {
+  const LevelView& p = fluid.particles;
+  for_each_team("propose merges", p.size(),
+                Propose<Boundary>{.position = p.position(),
+                                  .level = p.level(),
+                                  .target = p.target(),
+                                  .waiting = p.waiting(),
+                                  .wish = l.wish.data(),
+                                  .id = p.id(),
+                                  .neighbours = fluid.neighbours,
+                                  .partner = l.partner.data(),
+                                  .counts = l.counts.data(),
+                                  .walls = boundary,
+                                  .rules = l.rules,
+                                  .supports = fluid.supports});
+}
+
 }  // namespace
 
 void merge_pairs(LevelState& l, const LevelFluid& fluid, const Descents& descents) {
@@ -243,19 +264,7 @@ void merge_pairs(LevelState& l, const LevelFluid& fluid, const Descents& descent
                             .supports = fluid.supports});
     l.wish.swap(l.status);
   }
-  for_each_team("propose merges", n,
-                Propose{.position = p.position(),
-                        .level = p.level(),
-                        .target = p.target(),
-                        .waiting = p.waiting(),
-                        .wish = l.wish.data(),
-                        .id = p.id(),
-                        .neighbours = fluid.neighbours,
-                        .partner = l.partner.data(),
-                        .counts = l.counts.data(),
-                        .walls = fluid.walls,
-                        .rules = l.rules,
-                        .supports = fluid.supports});
+  fluid.solids.count > 0 ? propose(l, fluid, fluid.solids) : propose(l, fluid, fluid.solids.walls);
   for_each_team("keep merges apart", n,
                 KeepApart{.position = p.position(),
                           .level = p.level(),

@@ -26,6 +26,7 @@ struct Stranded {
 /// of a level, which are too far apart for pairs, need not stay behind. One of twice their mass gives each of
 /// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no step is longer than a merge's.
 /// A heavier one only makes them known to each other.
+template <class Boundary>
 struct Bid {
   const Vec4* position;
   const std::uint8_t* level;
@@ -40,7 +41,7 @@ struct Bid {
   int* first;
   int* second;
   std::uint64_t* taken;  ///< worth of the best bid for a stranded particle; 0: none
-  Walls walls;
+  Boundary walls;
   LevelRules rules;
   LevelSupports supports;
   std::uint32_t frame;
@@ -107,7 +108,7 @@ struct Bid {
   SIM_FN bool free_between(int j, int a, int b, Team team) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
     const float h = supports.h[level[a] + 1];
-    return clear_of(position[j], centre, h, rules.stranded_overlap) &&
+    return free_of_bodies(walls, centre) && clear_of(position[j], centre, h, rules.stranded_overlap) &&
            !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap,
                              team);
   }
@@ -160,6 +161,29 @@ struct JoinHalves {
   }
 };
 
+template <class Boundary>
+void bid(LevelState& l, const LevelFluid& fluid, Boundary boundary) {
+  const LevelView& p = fluid.particles;
+  for_each_team("bid for stranded", p.size(),
+                Bid<Boundary>{.position = p.position(),
+                              .level = p.level(),
+                              .target = p.target(),
+                              .waiting = p.waiting(),
+                              .wish = l.wish.data(),
+                              .split_code = l.split_code.data(),
+                              .gone = l.gone.data(),
+                              .age = p.age(),
+                              .id = p.id(),
+                              .neighbours = fluid.neighbours,
+                              .first = l.first_bid().data(),
+                              .second = l.second_bid().data(),
+                              .taken = l.taken_bids().data(),
+                              .walls = boundary,
+                              .rules = l.rules,
+                              .supports = fluid.supports,
+                              .frame = l.frame});
+}
+
 }  // namespace
 
 void relay_stranded(LevelState& l, const LevelFluid& fluid, const Descents& descents) {
@@ -170,24 +194,7 @@ void relay_stranded(LevelState& l, const LevelFluid& fluid, const Descents& desc
   auto& taken = l.taken_bids();
   taken.resize(static_cast<std::size_t>(n));
   taken.zero();
-  for_each_team("bid for stranded", n,
-                Bid{.position = p.position(),
-                    .level = p.level(),
-                    .target = p.target(),
-                    .waiting = p.waiting(),
-                    .wish = l.wish.data(),
-                    .split_code = l.split_code.data(),
-                    .gone = l.gone.data(),
-                    .age = p.age(),
-                    .id = p.id(),
-                    .neighbours = fluid.neighbours,
-                    .first = first,
-                    .second = second,
-                    .taken = taken.data(),
-                    .walls = fluid.walls,
-                    .rules = l.rules,
-                    .supports = fluid.supports,
-                    .frame = l.frame});
+  fluid.solids.count > 0 ? bid(l, fluid, fluid.solids) : bid(l, fluid, fluid.solids.walls);
   for_each("join halves", n,
            JoinHalves{joining(l, fluid, descents), p.id(), first, second, taken.data(), l.frame});
 }

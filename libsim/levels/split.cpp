@@ -70,6 +70,7 @@ struct ChooseApart {
 constexpr int rounds = 3;
 
 /// Finds a rotation that keeps all children inside the walls, for k as wished or, failing that, smaller.
+template <class Boundary>
 struct FitChildren {
   const Vec4* position;
   const std::uint8_t* level;
@@ -78,7 +79,7 @@ struct FitChildren {
   const std::uint8_t* status;
   std::uint8_t* code;
   int* flags;
-  Walls walls;
+  Boundary walls;
   LevelRules rules;
   LevelSupports supports;
   LevelCounts* counts;
@@ -181,6 +182,25 @@ void limit(LevelState& l, LevelView p, int chosen, int most, int room) {
                   .room = room});
 }
 
+template <class Boundary>
+void fit_children(LevelState& l, const LevelFluid& fluid, Boundary boundary) {
+  const LevelView& p = fluid.particles;
+  for_each("fit children", p.size(),
+           FitChildren<Boundary>{.position = p.position(),
+                                 .level = p.level(),
+                                 .target = p.target(),
+                                 .id = p.id(),
+                                 .status = l.status.data(),
+                                 .code = l.split_code.data(),
+                                 .flags = l.flags.data(),
+                                 .walls = boundary,
+                                 .rules = l.rules,
+                                 .supports = fluid.supports,
+                                 .counts = l.counts.data(),
+                                 .frame = l.frame,
+                                 .wall_gap = fluid.wall_gap});
+}
+
 }  // namespace
 
 bool choose_splits(LevelState& l, const LevelFluid& fluid) {
@@ -201,20 +221,7 @@ bool choose_splits(LevelState& l, const LevelFluid& fluid) {
                               .frame = l.frame});
     l.status.swap(l.status_next);
   }
-  for_each("fit children", n,
-           FitChildren{.position = p.position(),
-                       .level = p.level(),
-                       .target = p.target(),
-                       .id = p.id(),
-                       .status = l.status.data(),
-                       .code = l.split_code.data(),
-                       .flags = l.flags.data(),
-                       .walls = fluid.walls,
-                       .rules = l.rules,
-                       .supports = fluid.supports,
-                       .counts = l.counts.data(),
-                       .frame = l.frame,
-                       .wall_gap = fluid.wall_gap});
+  fluid.solids.count > 0 ? fit_children(l, fluid, fluid.solids) : fit_children(l, fluid, fluid.solids.walls);
   l.scanner.inclusive_sum(l.flags, l.sums);
   const int chosen = last_of(l.sums);
   if (chosen == 0) return false;

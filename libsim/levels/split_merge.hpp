@@ -3,7 +3,7 @@
 
 #include "libsim/levels/split_pattern.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
-#include "libsim/particles/walls.hpp"
+#include "libsim/particles/solids.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -18,7 +18,7 @@ struct LevelFluid {
   LevelView particles;
   ParticleNeighbours neighbours;
   const std::uint8_t* last_active;  ///< who was solved in the last frame; nullptr when everyone was
-  Walls walls;
+  Solids solids;                    ///< walls, and obstacles where there are any
   LevelSupports supports;
   float rest_density;  ///< kg/m3
   float wall_gap;      ///< nearest distance to a wall, as a share of d
@@ -26,8 +26,8 @@ struct LevelFluid {
 
 /// Is the particle surrounded by water, or by water and walls? Counts its neighbours as if all were of its
 /// level: one that is seen from farther away because it is coarser fills more room and counts for less mass.
-template <class Team>
-SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const ParticleNeighbours& neighbours,
+template <class Boundary, class Team>
+SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const ParticleNeighbours& neighbours,
                          int i, float least, Team team) {
   const Vec4 self = position[i];
   const int size = neighbours.size(i);
@@ -41,6 +41,10 @@ SIM_FN bool inside_fluid(const Walls& walls, const Vec4* position, const Particl
   Vec3 gradient;
   return team.sum(count) >= least * (1 - walls.missing(xyz(self), self.w, gradient));
 }
+
+/// Is this place free of obstacles? Between two particles no wall can be.
+SIM_FN bool free_of_bodies(const Walls&, Vec3) { return true; }
+SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest_body(x) > 0; }
 
 /// Fills split_code (0 = stays). False when nobody splits.
 bool choose_splits(LevelState& levels, const LevelFluid& fluid);

@@ -21,9 +21,10 @@ struct Opening {
   }
 };
 
-/// Who does not listen to what walls do to a particle.
+/// Who does not listen to what walls and bodies do to a particle.
 struct NobodyHears {
   SIM_FN void operator()(int, float) const {}
+  SIM_FN void body(int, Vec3, Vec3) const {}
 };
 
 /// Walls of a tank as signed distances. Before an opening its plane is not there. Water comes to the far side

@@ -65,6 +65,8 @@ FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
 
 FluidRenderer::~FluidRenderer() = default;
 
+void FluidRenderer::place_obstacles(double time_s) { state_->place_obstacles(time_s); }
+
 void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
                          const ParticleBuffer* foam) {
   if (views.empty() || views.size() > most_views) {

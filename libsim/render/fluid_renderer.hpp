@@ -99,6 +99,9 @@ class FluidRenderer {
   FluidRenderer(const FluidRenderer&) = delete;
   FluidRenderer& operator=(const FluidRenderer&) = delete;
 
+  /// The scene's obstacles are drawn where they are at this time since frame 0; at first, where they begin.
+  void place_obstacles(double time_s);
+
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
   /// sRGB and nothing outside them. Returns without waiting for the device.
   /// `foam`: diffuse particles, of a scene that lists the effect; others have no pass that would draw them.

@@ -50,13 +50,36 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
       timer(chosen.time_passes),
-      foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0) {
+      foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
+      composite(compute_program("composite.comp", (std::string(foam ? "#define FOAM\n" : "") +
+                                                   (scene.obstacles.empty() ? "" : "#define OBSTACLES\n"))
+                                                      .c_str())),
+      obstacles(scene.obstacles) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));
   counters.fill(0);
   no_particles.reserve(16);
   glCreateVertexArrays(1, &vertex_array);
+  place_obstacles(0);
+}
+
+void FluidRenderer::State::place_obstacles(double time_s) {
+  if (obstacles.empty()) return;
+  std::vector<std::array<float, 4>> rows;
+  const auto row = [&](const auto& v, double last) {
+    rows.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+                    static_cast<float>(last)});
+  };
+  for (const Obstacle& o : obstacles) {
+    const Pose pose = pose_at(o, time_s);
+    row(pose.centre_m, o.radius_m);
+    row(half_sides_m(o), 0);
+    row(pose.turn, pose.turn[3]);
+  }
+  const auto bytes = static_cast<GLsizeiptr>(rows.size() * sizeof rows[0]);
+  poses.reserve(bytes);
+  glNamedBufferSubData(poses.name(), 0, bytes, rows.data());
 }
 
 FluidRenderer::State::~State() { glDeleteVertexArrays(1, &vertex_array); }
@@ -239,9 +262,12 @@ void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
 
 void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
   composite.use();
+  if (!obstacles.empty())
+    glUniform1i(composite.uniform("obstacle_count"), static_cast<GLint>(obstacles.size()));
   picture.begin(framebuffer, views);
   each_view([&](const ViewTargets& t) {
     bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name()});
+    if (!obstacles.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
     dispatch_pixels(t.width, t.height);
   });
   picture.end(framebuffer, views);

@@ -42,10 +42,12 @@ struct FluidRenderer::State {
   GlProgram normals = compute_program("normals.comp");
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
-  GlProgram composite = compute_program("composite.comp", foam ? "#define FOAM\n" : "");
+  GlProgram composite;
   GlProgram splat_foam_program = foam ? compute_program("foam_splat.comp") : GlProgram();
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
+  std::vector<Obstacle> obstacles;  // of the scene
+  GlBuffer poses;                   // of the obstacles; only with some
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
@@ -57,6 +59,7 @@ struct FluidRenderer::State {
 
   /// A view of the last draw, ready to be read.
   const ViewTargets& drawn(std::size_t view) const;
+  void place_obstacles(double time_s);
   void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer,
                   const ParticleBuffer* foam_from);
 

@@ -33,6 +33,8 @@ std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::in
     out[i] = {scene.fill_min_m[0] + (ix + 0.5) * dx, scene.fill_min_m[1] + (iy + 0.5) * dy,
               scene.fill_min_m[2] + (iz + 0.5) * dz};
   }
+  for (const Obstacle& obstacle : scene.obstacles)
+    std::erase_if(out, [&](const Vec3d& x) { return signed_distance(obstacle, obstacle.start, x) < 0; });
   return out;
 }
 

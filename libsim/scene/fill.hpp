@@ -16,8 +16,8 @@ struct Resolution {
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// Exactly particle_count(method, n_star) points: layers from the floor up, the last layer partial; nx =
-/// round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
+/// Exactly particle_count(method, n_star) points, less those inside obstacles: layers from the floor up, the
+/// last layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.

@@ -83,6 +83,11 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
       table.fail("position_m", "puts a part of the mouth inside a wall",
                  "keep the centre at least half a diameter away from the walls");
   }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (signed_distance(obstacle, obstacle.start, nozzle.position_m) < nozzle.diameter_m / 2)
+      table.fail("position_m", "puts a part of the mouth inside an obstacle",
+                 "keep the centre at least half a diameter away from obstacles");
+  }
   if (nozzle.position_m[1] <= 0 || nozzle.position_m[1] > scene.tank_size_m[1])
     table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
 }
@@ -184,8 +189,11 @@ Scene parse_scene(std::string_view text, const std::string& name) {
 
   if (format < 2 && root.has("effect"))
     root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");
+  if (format < 2 && root.has("obstacle"))
+    root.fail("format", "has no obstacles: [[obstacle]] came with format 2", "write format = 2");
   scene.effects = read_effects(root);
   read_warm(root, scene);
+  scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m);
   read_nozzles(root, scene);
   scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
   scene.view = camera(root.table("view"), scene.origin_m);

@@ -13,6 +13,7 @@
 #include "libsim/scene/effects.hpp"
 #include "libsim/scene/heat.hpp"
 #include "libsim/scene/nozzle.hpp"
+#include "libsim/scene/obstacle.hpp"
 #include "libsim/scene/outlet.hpp"
 
 namespace sim {
@@ -72,7 +73,8 @@ struct Scene {
   std::vector<GazeKey> gaze;
   std::vector<VisibleBox> visible;
   std::vector<Nozzle> nozzles;
-  std::vector<Outlet> outlets;  ///< at most most_outlets
+  std::vector<Outlet> outlets;      ///< at most most_outlets
+  std::vector<Obstacle> obstacles;  ///< at most most_obstacles; water of the start inside them is left out
   /// Nozzles pour what lies lowest in the four corner columns of this edge; 0 without nozzles.
   double recirculation_corner_m = 0;
   Camera view;         ///< the participant's
@@ -80,8 +82,9 @@ struct Scene {
   std::string sha256;  ///< of the file's text
 };
 
-/// Formats 1 and 2, which has [[effect]]. Errors are base::Error at file:line:column: unknown key, wrong
-/// type, out of range, water, nozzle or outlet outside the tank, effects that do not go together.
+/// Formats 1 and 2, which has [[effect]] and [[obstacle]]. Errors are base::Error at file:line:column:
+/// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that do not go
+/// together.
 Scene parse_scene(std::string_view text, const std::string& name);
 Scene read_scene(const std::filesystem::path& path);
 

@@ -114,6 +114,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   double out = 0;
   for (const Nozzle& nozzle : scene.nozzles) out = std::max(out, nozzle.speed_m_s);
+  for (const Obstacle& obstacle : scene.obstacles) out = std::max(out, top_speed(obstacle));
   for (const ParticleState& p : start) {
     const double speed = std::hypot(static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s),
                                     static_cast<double>(p.vz_m_s));
@@ -169,6 +170,8 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.effects = scene.effects;
   out.nozzles = !scene.nozzles.empty();
   out.outlets = !scene.outlets.empty();
+  out.moving_obstacles = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                                     [](const Obstacle& o) { return o.motion != ObstacleMotion::Fixed; });
   out.levels = method.adaptive();
   out.forced_targets = options.forced_targets.has_value();
   out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;

@@ -85,9 +85,11 @@ class FluidSimulation final : public Simulation {
     return traits_of(options_.method).target == TargetSource::Saliency && !options_.forced_targets;
   }
   int frame() const override { return frame_; }
+  double time_s() const override { return frame_ * frame_dt(); }
 
   void step_frame() override {
     state_.jets.frame = frame_;
+    state_.obstacles.frame_begin_s = time_s();
     state_.activation.beta = static_cast<float>(tolerance_.beta());
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
@@ -95,6 +97,7 @@ class FluidSimulation final : public Simulation {
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
+    count_obstacles(state_, momentum_);
     const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
@@ -142,7 +145,7 @@ class FluidSimulation final : public Simulation {
     FrameReport out;
     out.frame = frame_;
     out.substeps = substeps_taken_;
-    out.time_s = frame_ * frame_dt();
+    out.time_s = time_s();
     out.particles = particle_count();
     for (const std::uint8_t level : state_.particles.all().level.to_host()) {
       if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
@@ -270,8 +273,8 @@ class FluidSimulation final : public Simulation {
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
-           std::to_string(particle_bytes()) + " bytes\n" + effects_in_words(scene_, options_) +
-           schedule_.explanation;
+           std::to_string(particle_bytes()) + " bytes\n" + obstacles_in_words(scene_.obstacles) +
+           effects_in_words(scene_, options_) + schedule_.explanation;
   }
 
  private:
@@ -334,6 +337,7 @@ class FluidSimulation final : public Simulation {
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
+    begin_obstacles(state_, scene_, time_s(), options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
     if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_, frame_dt());
   }

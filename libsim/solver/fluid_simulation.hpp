@@ -29,7 +29,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// g + Omega^2 R, m/s2: the largest acceleration that the forces give the start.
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
-/// Number of substeps from now on; `fastest` m/s are what the start and the nozzles bring.
+/// Number of substeps from now on; `fastest` m/s are what the start, the nozzles and the obstacles bring.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
 /// Three times what falling gives, m/s. Water that strikes a wall shoots up at twice that (PeersDam: 8.7 m/s
@@ -37,7 +37,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
 /// measure; then two supports of the finest a substep.
 float most_speed(const Scene& scene, const Resolution& resolution, const SolverParameters& parameters,
                  const std::vector<ParticleState>& start);
-/// Speed of the fastest of the start and the nozzles, m/s.
+/// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// What the method calls for while it runs.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
@@ -46,6 +46,12 @@ TargetSphere sphere_of(const TargetRegion& region);
 /// The tank's floor and sides with their outlets. While the water settles outlets are shut, and where there
 /// is a gate the walls are those of the water block. Open above.
 Walls walls_of(const Scene& scene, bool settling);
+
+/// The scene's obstacles at rest where they are at this time; `told`: somebody asks what they give the water.
+/// base::Error for one that is thinner than the coarsest particles' spacing: water would pass through it.
+void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told);
+/// Adds what the obstacles gave in the frame.
+void count_obstacles(const FluidState& state, MomentumAccount& account);
 
 /// Density and neighbour counts at the present positions, measured on a copy: the run goes on as if nobody
 /// had asked.

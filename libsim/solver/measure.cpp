@@ -59,6 +59,7 @@ FluidState copy_of(const FluidState& live) {
   FluidState out;
   out.parameters = live.parameters;
   out.walls = live.walls;
+  out.obstacles.bodies.from_host(live.obstacles.bodies.to_host());
   out.domain = live.domain;
   out.supports = live.supports;
   out.finest_support = live.finest_support;

@@ -119,6 +119,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
 void run_frame(const Schedule& schedule, FluidState& state) {
   state.clock.start_frame();
   state.impulse.begin_frame(state.particles, state.guard());
+  state.obstacles.begin_frame();
   state.substep = 0;
   run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {

@@ -54,6 +54,7 @@ void add(std::ostream& text, const Scene& s) {
          << o.max_m[0] << ' ' << o.max_m[1];
   for (const Effect& e : s.effects)
     text << " effect " << traits_of(e.kind).word << ' ' << e.coefficient << options_in_words(e);
+  text << obstacles_in_words(s.obstacles);
   if (s.central_force) {
     const CentralForce& f = *s.central_force;
     text << " force " << f.omega_per_s;

@@ -20,12 +20,12 @@ SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_
 
 /// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
 /// inwards; 0 for particles that are not solved.
-template <bool OneLevel, class Selection>
+template <bool OneLevel, class Selection, class Boundary>
 struct SurfaceNormal {
   Selection select;
   const Vec4* position;
   Neighbours neighbours;
-  Walls walls;
+  Boundary walls;
   Vec4* normal;
 
   /// What particle j adds; see SIM_LANES.
@@ -142,14 +142,19 @@ struct Cohesion {
 
 using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
 
+template <bool OneLevel, class Selection, class Boundary>
+void launch(FluidState& state, NormalView p, Selection select, Boundary boundary) {
+  for_each_team("surface normals", p.size(),
+                SurfaceNormal<OneLevel, Selection, Boundary>{.select = select,
+                                                             .position = p.position(),
+                                                             .neighbours = state.neighbours.view(),
+                                                             .walls = boundary,
+                                                             .normal = p.normal()});
+}
 template <bool OneLevel, class Selection>
 void launch(FluidState& state, NormalView p, Selection select) {
-  for_each_team("surface normals", p.size(),
-                SurfaceNormal<OneLevel, Selection>{.select = select,
-                                                   .position = p.position(),
-                                                   .neighbours = state.neighbours.view(),
-                                                   .walls = state.walls,
-                                                   .normal = p.normal()});
+  state.obstacles.there() ? launch<OneLevel>(state, p, select, state.solids())
+                          : launch<OneLevel>(state, p, select, state.walls);
 }
 
 using CohesionView = ColumnView<columns(Column::Position, Column::Density, Column::Neighbours, Column::Normal,

@@ -18,6 +18,7 @@ struct ActivateAll {
 };
 
 /// Algorithm 3, lines 8 and 9.
+template <class Boundary>
 struct Choose {
   const Vec4* position;
   const int* id;
@@ -32,7 +33,7 @@ struct Choose {
   float* probability;
   GridFrame grid, near;
   const Vec4* mean_velocity;
-  Walls walls;
+  Boundary walls;
   ActivationRules rules;
   float beta, dt;
   std::uint8_t sparse_mark;  ///< of Active, for solved particles of few neighbours
@@ -91,6 +92,35 @@ void measure(FluidState& state, Columns p) {
   }
 }
 
+template <class Boundary>
+void choose(FluidState& state, Columns p, Boundary boundary) {
+  auto& a = state.activation;
+  for_each(
+      "choose active", p.size(),
+      Choose<Boundary>{
+          .position = p.position(),
+          .id = p.id(),
+          .level = p.level(),
+          .importance = a.importance.data(),
+          .range = a.range.range(),
+          .age = p.age(),
+          .velocity = p.velocity(),
+          .active = p.active(),
+          .rest = p.rest(),
+          .start_cell = p.start_cell(),
+          .probability = a.probability.data(),
+          .grid = a.grid.frame(),
+          .near = a.near.frame(),
+          .mean_velocity = a.grid.velocity().data(),
+          .walls = boundary,
+          .rules = a.rules,
+          .beta = a.beta,
+          .dt = state.parameters.dt,
+          .sparse_mark = state.parameters.effects[EffectKind::Cohesion] > 0 ? solved_apart : std::uint8_t{1},
+          .frame = a.frame,
+          .seed = a.seed});
+}
+
 void run(FluidState& state, Columns p) {
   auto& a = state.activation;
   const int n = p.size();
@@ -104,29 +134,7 @@ void run(FluidState& state, Columns p) {
   if (state.all_active) return;
   measure(state, p);
   a.probability.resize(static_cast<std::size_t>(n));
-  for_each("choose active", n,
-           Choose{.position = p.position(),
-                  .id = p.id(),
-                  .level = p.level(),
-                  .importance = a.importance.data(),
-                  .range = a.range.range(),
-                  .age = p.age(),
-                  .velocity = p.velocity(),
-                  .active = p.active(),
-                  .rest = p.rest(),
-                  .start_cell = p.start_cell(),
-                  .probability = a.probability.data(),
-                  .grid = a.grid.frame(),
-                  .near = a.near.frame(),
-                  .mean_velocity = a.grid.velocity().data(),
-                  .walls = state.walls,
-                  .rules = a.rules,
-                  .beta = a.beta,
-                  .dt = state.parameters.dt,
-                  .sparse_mark =
-                      state.parameters.effects[EffectKind::Cohesion] > 0 ? solved_apart : std::uint8_t{1},
-                  .frame = a.frame,
-                  .seed = a.seed});
+  state.obstacles.there() ? choose(state, p, state.solids()) : choose(state, p, state.walls);
   if (!a.rules.inherit_change) return;
   add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.before);
   if (a.rules.pressed) add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.others_before, 0);

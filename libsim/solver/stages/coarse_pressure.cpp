@@ -75,6 +75,51 @@ struct Classify {
   }
 };
 
+/// The same with obstacles. Below the water's surface an obstacle's cells count as water at rest: its weight
+/// is what the pressure beside it carries, and that is all that cells so wide can tell of it. The particles'
+/// constraint keeps the water out. Cells that look out of the water are solid.
+struct ClassifyRound {
+  PressureFrame frame;
+  GridView grid;
+  Solids solids;
+  const CellSum* sums;
+  float unit_volume;
+
+  SIM_FN void operator()(int i) const {
+    const CellBlock& block = grid.block;
+    const Vec3 at = middle_of(frame, i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny));
+    grid.source[i] = 0;
+    if (is_water(sums[i])) {
+      grid.kind[i] = CellKind::Fluid;
+      grid.source[i] = frame.floor_area() * filled(sums[i]) * mean_excess(sums[i]);
+      return;
+    }
+    grid.kind[i] = solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
+    int body;
+    const float away = solids.nearest_body(at, body);
+    const float wide = frame.edge.y;
+    if (grid.kind[i] == CellKind::Solid || away > 0.5f * wide || sums[i].volume > 0) return;
+    const Vec3 outside = at + (0.75f * wide - away) * solids.bodies[body].near(at).normal;
+    const Vec3 there = frame.in_cells(outside);
+    const int x = static_cast<int>(floorf(there.x));
+    const int y = static_cast<int>(floorf(there.y));
+    const int z = static_cast<int>(floorf(there.z));
+    const bool wet = block.holds(x, y, z) && is_water(sums[block.index(x, y, z)]);
+    if (wet || away < 0) grid.kind[i] = wet ? CellKind::Fluid : CellKind::Solid;
+  }
+  SIM_FN static float mean_excess(const CellSum& sum) {
+    return static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
+  }
+  SIM_FN static bool is_water(const CellSum& sum) {
+    return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
+  }
+  /// Share of the cell that its particles fill.
+  SIM_FN float filled(const CellSum& sum) const {
+    const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
+    return at_most(static_cast<float>(sum.volume) / fixed_point * unit_volume / cell, 1.0f);
+  }
+};
+
 /// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be. Before an
 /// opening the outside is air, however small a part of the cell's face is open.
 template <class Selection>
@@ -179,8 +224,17 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                              .block = grid.block,
                              .sums = coarse.sums.data(),
                              .unit_volume = mass_of(state.lightest_support, 1)});
-  for_each("classify cells", grid.block.size(),
-           Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
+  if (state.obstacles.there()) {
+    for_each("classify cells", grid.block.size(),
+             ClassifyRound{.frame = coarse.frame,
+                           .grid = grid,
+                           .solids = state.solids(),
+                           .sums = coarse.sums.data(),
+                           .unit_volume = mass_of(state.lightest_support, 1)});
+  } else {
+    for_each("classify cells", grid.block.size(),
+             Classify{coarse.frame, grid, state.walls, coarse.sums.data()});
+  }
   coarse.multigrid.solve(state.parameters.coarse_cycles);
   for_each("shift", p.size(),
            Shift<Selection>{.select = select,

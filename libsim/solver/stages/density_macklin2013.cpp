@@ -10,12 +10,12 @@ namespace {
 /// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
 /// A particle that is not solved has lambda = 0; unless the others yield, it has no share in the sum over j,
 /// as if its mass were infinite.
-template <bool OneLevel, bool OthersYield, class Selection>
+template <bool OneLevel, bool OthersYield, class Selection, class Boundary>
 struct Density {
   Selection select;
   const Vec4* predicted;
   Neighbours neighbours;
-  Walls walls;
+  Boundary walls;
   const float* ease;  ///< of its constraint; nullptr where all have the whole
   float* lambda;
   float* density;
@@ -91,19 +91,26 @@ struct Density {
   }
 };
 
-template <bool OneLevel, bool OthersYield, class Selection>
-void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
-  for_each_team(few_in<Selection> ? "density beside fresh" : "density", p.size(),
-                Density<OneLevel, OthersYield, Selection>{.select = select,
+template <bool OneLevel, bool OthersYield, class Selection, class Boundary>
+void launch(FluidState& state, DensityView p, const float* ease, Selection select, Boundary boundary) {
+  for_each_team(
+      few_in<Selection> ? "density beside fresh" : "density", p.size(),
+      Density<OneLevel, OthersYield, Selection, Boundary>{.select = select,
                                                           .predicted = p.predicted(),
                                                           .neighbours = state.neighbours.view(),
-                                                          .walls = state.walls,
+                                                          .walls = boundary,
                                                           .ease = ease,
                                                           .lambda = p.lambda(),
                                                           .density = p.density(),
                                                           .guards = state.guard(),
                                                           .rest_density = state.parameters.rest_density,
                                                           .relaxation = state.parameters.relaxation});
+}
+
+template <bool OneLevel, bool OthersYield, class Selection>
+void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
+  state.obstacles.there() ? launch<OneLevel, OthersYield>(state, p, ease, select, state.solids())
+                          : launch<OneLevel, OthersYield>(state, p, ease, select, state.walls);
 }
 
 template <bool OthersYield, class Selection>

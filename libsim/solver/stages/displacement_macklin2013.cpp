@@ -6,14 +6,14 @@ namespace {
 
 /// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
 /// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls.
-template <bool OneLevel, bool Tensile, class Selection>
+template <bool OneLevel, bool Tensile, class Selection, class Boundary>
 struct Displace {
   Selection select;
   const Vec4* predicted;
   const float* lambda;
   const int* id;
   Neighbours neighbours;
-  Walls walls;
+  Boundary walls;
   Vec4* next;
   Guards* guards;
   int half;  ///< of a substep, see TroubleKey
@@ -108,16 +108,17 @@ struct Displace {
   }
 };
 
-template <bool OneLevel, bool Tensile, class Selection>
-void launch(FluidState& state, DisplacementView p, Selection select) {
+template <bool OneLevel, bool Tensile, class Selection, class Boundary>
+void launch(FluidState& state, DisplacementView p, Selection select, Boundary boundary) {
   const auto& k = state.parameters;
-  for_each_team(few_in<Selection> ? "displacement beside fresh" : "displacement", p.size(),
-                Displace<OneLevel, Tensile, Selection>{.select = select,
+  for_each_team(
+      few_in<Selection> ? "displacement beside fresh" : "displacement", p.size(),
+      Displace<OneLevel, Tensile, Selection, Boundary>{.select = select,
                                                        .predicted = p.predicted(),
                                                        .lambda = p.lambda(),
                                                        .id = p.id(),
                                                        .neighbours = state.neighbours.view(),
-                                                       .walls = state.walls,
+                                                       .walls = boundary,
                                                        .next = p.predicted_next(),
                                                        .guards = state.guard(),
                                                        .half = 2 * state.substep,
@@ -125,6 +126,13 @@ void launch(FluidState& state, DisplacementView p, Selection select) {
                                                        .tensile = k.tensile,
                                                        .wall_gap = gap_of_kernels(state),
                                                        .momentum = state.iteration > 0 ? k.momentum : 0.0f});
+}
+
+template <bool OneLevel, bool Tensile, class Selection>
+void launch(FluidState& state, DisplacementView p, Selection select) {
+  const auto& k = state.parameters;
+  state.obstacles.there() ? launch<OneLevel, Tensile>(state, p, select, state.solids())
+                          : launch<OneLevel, Tensile>(state, p, select, state.walls);
   p.swap<Column::Predicted, Column::PredictedNext>();
   clamp_and_listen(state, p, p.predicted_next(), times_taken(k, state.iteration), false);
 }

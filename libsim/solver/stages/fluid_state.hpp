@@ -15,6 +15,7 @@
 #include "libsim/saliency/saliency.hpp"
 #include "libsim/scene/effects.hpp"
 #include "libsim/solver/stages/conjugate_gradient.hpp"
+#include "libsim/solver/stages/obstacle_state.hpp"
 #include "libsim/solver/stages/part_clock.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -79,6 +80,7 @@ struct Brake {
 struct FluidState {
   SolverParameters parameters;
   Walls walls{};
+  ObstacleState obstacles;
   Domain domain{};
   float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
@@ -124,6 +126,15 @@ struct FluidState {
   }
   ActiveParticles active() {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
+  }
+  /// What bounds the water of a scene with obstacles; others have `walls`. Kernels are templates of the two,
+  /// so that those of a scene without obstacles know nothing of them.
+  Solids solids() const { return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt}; }
+  /// Is what walls and obstacles do to places told to anybody?
+  bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }
+  BodyListener body_listener(float times) {
+    return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
+            finest_support, times};
   }
   Guards* guard() { return guards.data(); }
   /// For a pass in the first (0) or second (1) half of the present substep.

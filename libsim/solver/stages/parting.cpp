@@ -6,13 +6,14 @@ namespace {
 
 /// Moves by what was mended at the substep's beginning, there and where the substep leads, so that no
 /// velocity comes of it.
+template <class Boundary>
 struct Follow {
   const Vec4* mended;
   const Vec4* led_to;
   Vec4* position;
   Vec4* predicted;
   Vec4* predicted_next;
-  Walls walls;
+  Boundary walls;
   float wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
@@ -50,16 +51,21 @@ void go_back(FluidState& state, Places p) {
   p.copy<Column::PredictedNext, Column::Position>();
 }
 
+template <class Boundary>
+void follow(FluidState& state, Places p, Boundary boundary) {
+  for_each("follow mending", p.size(),
+           Follow<Boundary>{.mended = p.predicted(),
+                            .led_to = p.velocity_next(),
+                            .position = p.position(),
+                            .predicted = p.predicted(),
+                            .predicted_next = p.predicted_next(),
+                            .walls = boundary,
+                            .wall_gap = gap_of_kernels(state)});
+}
+
 void go_on(FluidState& state, Places p) {
   state.impulse.listen(true);
-  for_each("follow mending", p.size(),
-           Follow{.mended = p.predicted(),
-                  .led_to = p.velocity_next(),
-                  .position = p.position(),
-                  .predicted = p.predicted(),
-                  .predicted_next = p.predicted_next(),
-                  .walls = state.walls,
-                  .wall_gap = gap_of_kernels(state)});
+  state.obstacles.there() ? follow(state, p, state.solids()) : follow(state, p, state.walls);
   clamp_and_listen(state, p, p.velocity_next(), 1, true);
 }
 

@@ -21,14 +21,14 @@ struct GravityAndPull {
 };
 
 /// A particle that is not solved flies at the velocity it was given: forces and pressure are both in it.
-template <class Selection, class Forces>
+template <class Selection, class Forces, class Boundary>
 struct Predict {
   Selection select;
   Forces forces;
   Vec4* position;
   Vec4* velocity;
   Vec4* predicted;
-  Walls walls;
+  Boundary walls;
   Vec3 refuge;
   Brake brake;
   float dt, wall_gap;
@@ -55,7 +55,7 @@ struct Predict {
   /// A broken velocity is lost; a broken position goes to the refuge, and so does one so far outside that the
   /// guard on speed would not let the walls bring it back. The rest of the fluid never reads either.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
-    const bool far_outside = all_finite(x) && walls.nearest(x) < -reach;
+    const bool far_outside = all_finite(x) && tank(walls).nearest(x) < -reach;
     const bool place_lost = far_outside || !all_finite(x);
     if (!place_lost && all_finite(v)) return;
     atomic_add(&brake.witness.guards->not_finite, std::uint64_t{1});
@@ -69,23 +69,29 @@ struct Predict {
 using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                            columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
-template <class Selection, class Forces>
-void launch(FluidState& state, Columns p, Selection select, Forces forces) {
+template <class Selection, class Forces, class Boundary>
+void launch(FluidState& state, Columns p, Selection select, Forces forces, Boundary boundary) {
   const auto& k = state.parameters;
   const Vec3 size = state.domain.high - state.domain.low;
   const float longest = at_least(size.x, at_least(size.y, size.z));
   for_each("predict", p.size(),
-           Predict<Selection, Forces>{.select = select,
-                                      .forces = forces,
-                                      .position = p.position(),
-                                      .velocity = p.velocity(),
-                                      .predicted = p.predicted(),
-                                      .walls = state.walls,
-                                      .refuge = state.refuge,
-                                      .brake = state.brake(p.id(), 0),
-                                      .dt = k.dt,
-                                      .wall_gap = k.wall_gap,
-                                      .reach = 10 * longest});
+           Predict<Selection, Forces, Boundary>{.select = select,
+                                                .forces = forces,
+                                                .position = p.position(),
+                                                .velocity = p.velocity(),
+                                                .predicted = p.predicted(),
+                                                .walls = boundary,
+                                                .refuge = state.refuge,
+                                                .brake = state.brake(p.id(), 0),
+                                                .dt = k.dt,
+                                                .wall_gap = k.wall_gap,
+                                                .reach = 10 * longest});
+}
+
+template <class Selection, class Forces>
+void launch(FluidState& state, Columns p, Selection select, Forces forces) {
+  state.obstacles.there() ? launch(state, p, select, forces, state.solids())
+                          : launch(state, p, select, forces, state.walls);
 }
 
 template <class Selection>

@@ -9,7 +9,7 @@ void run(FluidState& state, LevelView p) {
   const LevelFluid fluid{.particles = p,
                          .neighbours = state.particle_neighbours(),
                          .last_active = state.last_active(),
-                         .walls = state.walls,
+                         .solids = state.solids(),
                          .supports = state.supports,
                          .rest_density = state.parameters.rest_density,
                          .wall_gap = state.parameters.wall_gap};

@@ -12,17 +12,18 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the wanted outputs call for.
 struct Demand {
   SolverParameters parameters;
-  std::vector<Effect> effects;  ///< that the scene lists
-  bool nozzles = false;         ///< the scene has one
-  bool outlets = false;         ///< the scene has one
-  bool settling = false;        ///< the gate is closed and the water comes to rest
-  bool levels = false;          ///< particles split and merge
-  bool forced_targets = false;  ///< a test gives their targets
-  bool gaze_targets = false;    ///< their targets follow the gaze alone
-  bool saliency = false;        ///< their targets follow saliency
-  bool saliency_parts = false;  ///< an output asks for what saliency is made of
-  bool activation = false;      ///< temporal acceleration chooses who is solved
-  bool wall_impulse = false;    ///< an output asks what the walls give the water
+  std::vector<Effect> effects;    ///< that the scene lists
+  bool nozzles = false;           ///< the scene has one
+  bool outlets = false;           ///< the scene has one
+  bool moving_obstacles = false;  ///< the scene has one
+  bool settling = false;          ///< the gate is closed and the water comes to rest
+  bool levels = false;            ///< particles split and merge
+  bool forced_targets = false;    ///< a test gives their targets
+  bool gaze_targets = false;      ///< their targets follow the gaze alone
+  bool saliency = false;          ///< their targets follow saliency
+  bool saliency_parts = false;    ///< an output asks for what saliency is made of
+  bool activation = false;        ///< temporal acceleration chooses who is solved
+  bool wall_impulse = false;      ///< an output asks what the walls give the water
 };
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };

@@ -23,6 +23,8 @@ Stage forced_targets_stage();
 Stage graded_targets_stage();
 /// Algorithms 1 and 2; changes the number of particles and makes the neighbour list stale.
 Stage split_and_merge_stage();
+/// Brings moving obstacles to their places at the substep's end.
+Stage obstacles_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.

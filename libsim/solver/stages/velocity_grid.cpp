@@ -42,6 +42,7 @@ struct MeanChange {
 
 /// Algorithm 3, line 15, once all active particles are done: what was not solved takes its velocity from the
 /// grid. Its way is mended as if the change had come in equal parts in the frame's substeps.
+template <class Boundary>
 struct Inherit {
   const std::uint8_t* active;
   const std::uint8_t* level;
@@ -51,7 +52,7 @@ struct Inherit {
   GridFrame grid;
   const Vec4* change;
   const Vec4* mean_velocity;
-  Walls walls;
+  Boundary walls;
   float frame_dt, way_dt, wall_gap, mean_share;
 
   SIM_FN void operator()(int i) const {
@@ -110,7 +111,8 @@ void find_changes(FluidState& state, Columns p) {
                       .cells = a.near.cells()});
 }
 
-void inherit(FluidState& state, Columns p) {
+template <class Boundary>
+void inherit(FluidState& state, Columns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
   if (a.rules.inherit_change) find_changes(state, p);
@@ -121,26 +123,27 @@ void inherit(FluidState& state, Columns p) {
   const float idle = 1 - a.beta;
   const float frame_dt = k.dt * substeps;
   for_each("inherit", p.size(),
-           Inherit{.active = p.active(),
-                   .level = p.level(),
-                   .position = p.position(),
-                   .velocity = p.velocity(),
-                   .guards = state.guard(),
-                   .grid = from.frame(),
-                   .change = a.change.data(),
-                   .mean_velocity = from.velocity().data(),
-                   .walls = state.walls,
-                   .frame_dt = frame_dt,
-                   .way_dt = frame_dt * (substeps + 1) / (2 * substeps),
-                   .wall_gap = k.wall_gap,
-                   .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
+           Inherit<Boundary>{.active = p.active(),
+                             .level = p.level(),
+                             .position = p.position(),
+                             .velocity = p.velocity(),
+                             .guards = state.guard(),
+                             .grid = from.frame(),
+                             .change = a.change.data(),
+                             .mean_velocity = from.velocity().data(),
+                             .walls = boundary,
+                             .frame_dt = frame_dt,
+                             .way_dt = frame_dt * (substeps + 1) / (2 * substeps),
+                             .wall_gap = k.wall_gap,
+                             .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
 }
 
 /// Algorithm 3, lines 4-5 and 13-17, in two passes: line 15 reads the grid that line 13 is still writing.
 void run(FluidState& state, Columns p) {
   auto& a = state.activation;
   a.grid.update_velocity(p, state.all_active ? nullptr : p.active());
-  if (!state.all_active) inherit(state, p);
+  if (!state.all_active)
+    state.obstacles.there() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
   a.grid.update_energy(p);
   const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
   for_each("mark sparse", p.size(),

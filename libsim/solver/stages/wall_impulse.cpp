@@ -6,66 +6,134 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+/// Whom a particle tells of what walls, and in scenes with obstacles bodies, do to it.
+struct Listeners {
+  WallListener walls;
+  bool walls_listen;
+  BodyListener bodies;
+};
+struct HeardBoth {
+  Listeners to;
+  Vec4 particle;
+  SIM_FN void operator()(int wall, float way) const {
+    if (to.walls_listen) HeardClamp{to.walls, particle}(wall, way);
+  }
+  SIM_FN void body(int which, Vec3 at, Vec3 way) const {
+    to.bodies.add(which, at, mass_units_of(particle.w, to.bodies.finest_support) * way);
+  }
+};
+SIM_FN HeardClamp ear_of(const WallListener& to, Vec4 particle) { return {to, particle}; }
+SIM_FN HeardBoth ear_of(const Listeners& to, Vec4 particle) { return {to, particle}; }
+
+Listeners listeners(FluidState& state, float times) {
+  return {state.impulse.listener(times), state.impulse.on(), state.body_listener(times)};
+}
+
 /// What Predict did, told again.
+template <class Boundary, class Hearer>
 struct HeldBack {
   const Vec4* position;
   const Vec4* velocity;
-  Walls walls;
-  WallListener to;
+  Boundary walls;
+  Hearer to;
   float dt, wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     Vec3 x = xyz(at);
-    walls.hold_back(x, fused(x, dt, xyz(velocity[i])), wall_gap * at.w / 2, HeardClamp{to, at});
+    walls.hold_back(x, fused(x, dt, xyz(velocity[i])), wall_gap * at.w / 2, ear_of(to, at));
   }
 };
 
 using MovingView = Reads<Column::Position, Column::Velocity>;
 
-void hear_held_back(FluidState& state, MovingView p) {
+template <class Boundary, class Hearer>
+void held_back(FluidState& state, MovingView p, Boundary boundary, Hearer to) {
   for_each("hear held back", p.size(),
-           HeldBack{.position = p.position(),
-                    .velocity = p.velocity(),
-                    .walls = state.walls,
-                    .to = state.impulse.listener(),
-                    .dt = state.parameters.dt,
-                    .wall_gap = state.parameters.wall_gap});
+           HeldBack<Boundary, Hearer>{.position = p.position(),
+                                      .velocity = p.velocity(),
+                                      .walls = boundary,
+                                      .to = to,
+                                      .dt = state.parameters.dt,
+                                      .wall_gap = state.parameters.wall_gap});
+}
+void hear_held_back(FluidState& state, MovingView p) {
+  state.obstacles.there() ? held_back(state, p, state.solids(), listeners(state, 1))
+                          : held_back(state, p, state.walls, state.impulse.listener());
 }
 
 /// Delta p_i = w_i lambda_i grad_i C_wall of the displacement to come, wall by wall.
+SIM_FN float beside_bodies(const Walls&, Vec3, float) { return 1; }
+SIM_FN float beside_bodies(const Solids& solids, Vec3 x, float h) { return solids.beside_bodies(x, h); }
+
+template <class Boundary>
 struct MissingDensity {
   const Vec4* predicted;
   const float* lambda;
-  Walls walls;
+  Boundary boundary;
   WallListener to;
   float mass_unit;  ///< m_*, kg
   SIM_FN void operator()(int i) const {
     if (lambda[i] == 0) return;
     const Vec4 at = predicted[i];
+    const Walls& walls = tank(boundary);
+    const float present = beside_bodies(boundary, xyz(at), at.w);
     for (int k = 0; k < walls.count; ++k) {
-      const float slope = walls.missing_slope(k, xyz(at), at.w);
+      const float slope = present * walls.missing_slope(k, xyz(at), at.w);
       if (slope != 0) to.add(k, WallPart::MissingDensity, xyz(at), at.w, lambda[i] * slope / mass_unit);
+    }
+  }
+};
+
+/// The same of bodies.
+struct MissingInBodies {
+  const Vec4* predicted;
+  const float* lambda;
+  Solids solids;
+  BodyListener to;
+  float mass_unit;
+  SIM_FN void operator()(int i) const {
+    if (lambda[i] == 0) return;
+    const Vec4 at = predicted[i];
+    for (int b = 0; b < solids.count; ++b) {
+      const Body::Near near = solids.bodies[b].near(xyz(at));
+      if (near.distance >= at.w) continue;
+      const Vec3 gradient = solids.missing_gradient(b, xyz(at), at.w);
+      to.add(b, xyz(at) - near.distance * near.normal, (lambda[i] / mass_unit) * gradient);
     }
   }
 };
 
 using ConstraintView = Reads<Column::Predicted, Column::Lambda>;
 
-void hear_missing_density(FluidState& state, ConstraintView p) {
+template <class Boundary>
+void missing_density(FluidState& state, ConstraintView p, Boundary boundary) {
   const auto& k = state.parameters;
   for_each("hear missing density", p.size(),
-           MissingDensity{.predicted = p.predicted(),
-                          .lambda = p.lambda(),
-                          .walls = state.walls,
-                          .to = state.impulse.listener(times_taken(k, state.iteration)),
-                          .mass_unit = mass_of(state.finest_support, k.rest_density)});
+           MissingDensity<Boundary>{.predicted = p.predicted(),
+                                    .lambda = p.lambda(),
+                                    .boundary = boundary,
+                                    .to = state.impulse.listener(times_taken(k, state.iteration)),
+                                    .mass_unit = mass_of(state.finest_support, k.rest_density)});
+}
+void hear_missing_density(FluidState& state, ConstraintView p) {
+  if (!state.obstacles.there()) return missing_density(state, p, state.walls);
+  if (state.impulse.on()) missing_density(state, p, state.solids());
+  const auto& k = state.parameters;
+  for_each("hear missing in obstacles", p.size(),
+           MissingInBodies{.predicted = p.predicted(),
+                           .lambda = p.lambda(),
+                           .solids = state.solids(),
+                           .to = state.body_listener(times_taken(k, state.iteration)),
+                           .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
 /// The pressure of the cells at a wall, as push_balance.cpp counts it. Gauges may be smaller than a cell:
 /// within a face the pressure follows its neighbours, on patches that sum up to the face.
+template <class Boundary>
 struct WallCells {
   PressureFrame frame;
   GridView grid;
+  Boundary boundary;
   WallListener to;
   float unit_volume;  ///< of m_*, m3
 
@@ -80,7 +148,7 @@ struct WallCells {
     const float q = grid.q[i];
     const Vec3 slope{slope_of(q, x, y, z, 1, 0, 0), slope_of(q, x, y, z, 0, 1, 0),
                      slope_of(q, x, y, z, 0, 0, 1)};
-    for_wall_faces(frame, grid, i, [&](int wall, Vec3 normal, float area) {
+    for_wall_faces(frame, grid, boundary, i, [&](int wall, Vec3 normal, float area) {
       const float share = area / (unit_volume * patches * patches);
       for (int a = 0; a < patches; ++a) {
         for (int b = 0; b < patches; ++b) {
@@ -108,33 +176,51 @@ struct WallCells {
   static constexpr int patches = 4;
 };
 
-void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+template <class Boundary>
+void wall_cells(FluidState& state, Boundary boundary) {
   const GridView grid = state.coarse.multigrid.finest();
   for_each("hear wall cells", grid.block.size(),
-           WallCells{.frame = state.coarse.frame,
-                     .grid = grid,
-                     .to = state.impulse.listener(),
-                     .unit_volume = mass_of(state.finest_support, 1)});
+           WallCells<Boundary>{.frame = state.coarse.frame,
+                               .grid = grid,
+                               .boundary = boundary,
+                               .to = state.impulse.listener(),
+                               .unit_volume = mass_of(state.finest_support, 1)});
+}
+void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  state.obstacles.there() ? wall_cells(state, state.solids()) : wall_cells(state, state.walls);
 }
 
+template <class Boundary, class Hearer>
 struct Clamp {
   Vec4* predicted;
   const Vec4* from;
   Vec4* next;  ///< nullptr where it goes on holding other places
-  Walls walls;
-  WallListener to;
+  Boundary walls;
+  Hearer to;
   Guards* guards;
   float wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, HeardClamp{to, at})) {
+    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, ear_of(to, at))) {
       atomic_add(&guards->wall_projected, std::uint64_t{1});
       predicted[i] = with_w(x, at.w);
     }
     if (next) next[i] = predicted[i];
   }
 };
+
+template <class Boundary, class Hearer>
+void clamp(FluidState& state, ClampView p, const Vec4* from, bool in_both, Boundary boundary, Hearer to) {
+  for_each("clamp and hear", p.size(),
+           Clamp<Boundary, Hearer>{.predicted = p.predicted(),
+                                   .from = from,
+                                   .next = in_both ? p.predicted_next() : nullptr,
+                                   .walls = boundary,
+                                   .to = to,
+                                   .guards = state.guard(),
+                                   .wall_gap = state.parameters.wall_gap});
+}
 
 Stage account(const char* name, Phase phase) {
   return {
@@ -145,19 +231,13 @@ Stage account(const char* name, Phase phase) {
 
 float gap_of_kernels(const FluidState& state) {
   constexpr float none = -1e30f;
-  return state.impulse.listens() ? none : state.parameters.wall_gap;
+  return state.listens() ? none : state.parameters.wall_gap;
 }
 
 void clamp_and_listen(FluidState& state, ClampView p, const Vec4* from, float times, bool in_both) {
-  if (!state.impulse.listens()) return;
-  for_each("clamp and hear", p.size(),
-           Clamp{.predicted = p.predicted(),
-                 .from = from,
-                 .next = in_both ? p.predicted_next() : nullptr,
-                 .walls = state.walls,
-                 .to = state.impulse.listener(times),
-                 .guards = state.guard(),
-                 .wall_gap = state.parameters.wall_gap});
+  if (!state.listens()) return;
+  state.obstacles.there() ? clamp(state, p, from, in_both, state.solids(), listeners(state, times))
+                          : clamp(state, p, from, in_both, state.walls, state.impulse.listener(times));
 }
 
 float times_taken(const SolverParameters& k, int iteration) {

@@ -1,0 +1,126 @@
+#pragma once
+/// Walls and obstacles together: what bounds the water of scenes with obstacles.
+
+#include "libsim/particles/bodies.hpp"
+#include "libsim/particles/momentum.hpp"
+
+namespace sim::SIM_BACKEND {
+
+inline constexpr int most_bodies = 16;
+
+/// What a body gave the water: mass in m_* times way in m, and its moment about the body's centre in m_* m2.
+struct BodySum {
+  MassWay push, moment;
+};
+
+/// What kernels tell of bodies.
+struct BodyListener {
+  BodySum* sums;
+  const Body* bodies;
+  float finest_support;
+  float times;  ///< as in WallListener
+
+  /// `push` in m_* m at a place.
+  SIM_FN void add(int body, Vec3 at, Vec3 push) const {
+    BodySum sum{};
+    sum.push.add(times, push);
+    sum.moment.add(times, cross(at - bodies[body].centre, push));
+    sums[body].push.add_at_once(sum.push);
+    sums[body].moment.add_at_once(sum.moment);
+  }
+};
+
+/// The functions of Walls, for walls and bodies.
+struct Solids {
+  Walls walls;
+  const Body* bodies;
+  int count;
+  float dt;  ///< in which the bodies came to their places, s
+
+  /// 1 - prod (1 - share) over walls and bodies.
+  SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
+    float present = 1 - walls.missing(x, h, gradient);
+    for (int b = 0; b < count; ++b) {
+      Vec3 own;
+      const float share = bodies[b].missing(x, h, own);
+      gradient = (1 - share) * gradient + present * own;
+      present *= 1 - share;
+    }
+    return 1 - present;
+  }
+  /// The part of `gradient` above that one body has.
+  SIM_FN Vec3 missing_gradient(int body, Vec3 x, float h) const {
+    Vec3 own;
+    Vec3 other;
+    if (bodies[body].missing(x, h, own) <= 0) return {0, 0, 0};
+    float present = 1 - walls.missing(x, h, other);
+    for (int b = 0; b < count; ++b) {
+      if (b != body) present *= 1 - bodies[b].missing(x, h, other);
+    }
+    return present * own;
+  }
+  /// Share of the kernel that bodies leave.
+  SIM_FN float beside_bodies(Vec3 x, float h) const {
+    float present = 1;
+    Vec3 own;
+    for (int b = 0; b < count; ++b) present *= 1 - bodies[b].missing(x, h, own);
+    return present;
+  }
+
+  /// Signed distance to the nearest body's surface, and which it is; only with bodies.
+  SIM_FN float nearest_body(Vec3 x, int& body) const {
+    float least = 3e38f;
+    body = 0;
+    for (int b = 0; b < count; ++b) {
+      const float away = bodies[b].distance(x);
+      if (away >= least) continue;
+      least = away;
+      body = b;
+    }
+    return least;
+  }
+  SIM_FN float nearest_body(Vec3 x) const {
+    int body;
+    return nearest_body(x, body);
+  }
+  SIM_FN float nearest(Vec3 x) const { return at_most(nearest_body(x), walls.nearest(x)); }
+  SIM_FN bool holds(Vec3 x, float gap = 0) const { return walls.holds(x, gap) && nearest_body(x) >= gap; }
+
+  /// As Walls::hold_back. A body counts its distance from a particle as if that had ridden with it.
+  template <class Heard = NobodyHears>
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
+    bool held = false;
+    for (int b = 0; b < count; ++b) {
+      const Body& body = bodies[b];
+      const Body::Near after = body.near(to);
+      const float before = body.distance(fused(x, dt, body.velocity_at(x))) - gap;
+      const float beyond = Walls::kept_distance * at_least(before, 0.0f) - (after.distance - gap);
+      if (beyond <= 0) continue;
+      heard.body(b, to, beyond * after.normal);
+      to += beyond * after.normal;
+      held = true;
+    }
+    return walls.hold_back(x, to, gap, heard) || held;
+  }
+
+  /// As Walls::project; walls have the last word.
+  template <class Heard = NobodyHears>
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
+    bool moved = false;
+    for (int b = 0; b < count; ++b) {
+      const Body::Near at = bodies[b].near(x);
+      const float depth = gap - at.distance;
+      if (depth <= 0) continue;
+      heard.body(b, x, depth * at.normal);
+      x += depth * at.normal;
+      moved = true;
+    }
+    return walls.project(x, from, gap, heard) || moved;
+  }
+};
+
+/// The walls of what bounds the water.
+SIM_FN const Walls& tank(const Walls& walls) { return walls; }
+SIM_FN const Walls& tank(const Solids& solids) { return solids.walls; }
+
+}  // namespace sim::SIM_BACKEND

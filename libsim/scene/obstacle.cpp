@@ -1,0 +1,221 @@
+#include "libsim/scene/obstacle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "stats/base/text.hpp"
+#include "stats/base/toml.hpp"
+
+namespace sim {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+using Quaternion = std::array<double, 4>;
+constexpr double farthest_m = 1e4;
+constexpr double thinnest_m = 1e-3;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Vector sum(const Vector& a, double share, const Vector& b) {
+  return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
+}
+double length(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
+
+Quaternion rotation(const Vector& axis, double angle) {
+  const double s = std::sin(angle / 2);
+  return {s * axis[0], s * axis[1], s * axis[2], std::cos(angle / 2)};
+}
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+  const Vector u{a[0], a[1], a[2]}, v{b[0], b[1], b[2]};
+  const Vector w = sum(sum(cross(u, v), a[3], v), b[3], u);
+  return {w[0], w[1], w[2], a[3] * b[3] - dot(u, v)};
+}
+Vector turned(const Quaternion& q, const Vector& v) {
+  const Vector u{q[0], q[1], q[2]};
+  const Vector t = cross(u, v);
+  return sum(sum(v, 2 * q[3], t), 2, cross(u, t));
+}
+Quaternion back(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
+
+/// How far the shape reaches from its centre along each axis of the world.
+Vector reach(const Obstacle& o, const Pose& pose) {
+  const Vector half = half_sides_m(o);
+  Vector out{o.radius_m, o.radius_m, o.radius_m};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Vector side{};
+    side[k] = half[k];
+    const Vector in_world = turned(pose.turn, side);
+    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(in_world[a]);
+  }
+  return out;
+}
+
+bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
+  const Vector far = reach(o, pose);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (pose.centre_m[a] - far[a] < -1e-9) return false;
+    if (a != 1 && pose.centre_m[a] + far[a] > tank_size_m[a] + 1e-9) return false;  // open above
+  }
+  return true;
+}
+
+Vector direction(const base::TomlTable& table, const char* key) {
+  const auto v = table.numbers(key, 3, {-1e3, 1e3});
+  const double size = std::hypot(v[0], v[1], v[2]);
+  if (!(size >= 1e-3))
+    table.fail(key, "has no direction", "use a vector of some length, such as [0.0, 1.0, 0.0]");
+  return {v[0] / size, v[1] / size, v[2] / size};
+}
+
+Vector place(const base::TomlTable& table, const char* key, const Vector& origin_m) {
+  const auto [least, most] = std::minmax_element(origin_m.begin(), origin_m.end());
+  const auto v = table.numbers(key, 3, {*least - farthest_m, *most + farthest_m});
+  return {v[0] - origin_m[0], v[1] - origin_m[1], v[2] - origin_m[2]};
+}
+
+void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle& out) {
+  const std::string word = table.choice_or("motion", "fixed", {"fixed", "turns", "swings"});
+  if (word == "turns") {
+    out.motion = ObstacleMotion::Turns;
+    out.about_m = place(table, "about_m", origin_m);
+    out.axis = direction(table, "axis");
+    out.rate_rad_s = table.number("rate_rad_s", {-1e3, 1e3});
+  } else if (word == "swings") {
+    out.motion = ObstacleMotion::Swings;
+    const auto way = table.numbers("way_m", 3, {-farthest_m, farthest_m});
+    out.way_m = {way[0], way[1], way[2]};
+    out.period_s = table.number("period_s", {1e-3, 1e6});
+  }
+}
+
+Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, const Vector& origin_m) {
+  Obstacle out;
+  const base::Range size{thinnest_m, farthest_m};
+  const std::string shape = table.choice("shape", {"sphere", "box", "capsule"});
+  if (shape == "box") {
+    out.shape = ObstacleShape::Box;
+    const auto sides = table.numbers("size_m", 3, size);
+    out.size_m = {sides[0], sides[1], sides[2]};
+  } else {
+    out.radius_m = table.number("radius_m", size);
+  }
+  if (shape == "capsule") {
+    out.shape = ObstacleShape::Capsule;
+    out.length_m = table.number("length_m", size);
+  }
+  out.start.centre_m = place(table, "centre_m", origin_m);
+  if (table.has("rotation_deg")) {
+    const double angle = table.number("rotation_deg", {-360, 360}) * std::numbers::pi / 180;
+    out.start.turn = rotation(direction(table, "rotation_axis"), angle);
+  }
+  read_motion(table, origin_m, out);
+  if (!in_tank(out, out.start, tank_size_m))
+    table.fail("centre_m", "puts a part of the obstacle outside the tank",
+               "keep all of it within tank.size_m from tank.origin_m; only above it may stand out");
+  constexpr int looks = 256;
+  const double whole = out.motion == ObstacleMotion::Swings
+                           ? out.period_s
+                           : 2 * std::numbers::pi / std::max(std::abs(out.rate_rad_s), 1e-9);
+  for (int k = 0; k < looks && out.motion != ObstacleMotion::Fixed; ++k) {
+    if (!in_tank(out, pose_at(out, whole * k / looks), tank_size_m))
+      table.fail("motion", "takes a part of the obstacle out of the tank",
+                 "move it less far, or put it farther from the walls");
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* shape_name(ObstacleShape shape) {
+  return shape == ObstacleShape::Sphere ? "sphere" : shape == ObstacleShape::Box ? "box" : "capsule";
+}
+
+Pose pose_at(const Obstacle& o, double time_s) {
+  Pose out = o.start;
+  if (o.motion == ObstacleMotion::Turns) {
+    const Quaternion by = rotation(o.axis, std::fmod(o.rate_rad_s * time_s, 2 * std::numbers::pi));
+    out.centre_m = sum(o.about_m, 1, turned(by, sum(o.start.centre_m, -1, o.about_m)));
+    out.turn = product(by, o.start.turn);
+  } else if (o.motion == ObstacleMotion::Swings) {
+    const double phase = 2 * std::numbers::pi * std::fmod(time_s / o.period_s, 1.0);
+    out.centre_m = sum(o.start.centre_m, std::sin(phase), o.way_m);
+  }
+  return out;
+}
+
+Vector half_sides_m(const Obstacle& o) {
+  if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
+  return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
+}
+
+double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_m) {
+  const Vector local = turned(back(pose.turn), sum(point_m, -1, pose.centre_m));
+  const Vector half = half_sides_m(o);
+  Vector outside{};
+  double inside = -1e30;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double beyond = std::abs(local[k]) - half[k];
+    outside[k] = std::max(beyond, 0.0);
+    inside = std::max(inside, beyond);
+  }
+  return (inside > 0 ? length(outside) : inside) - o.radius_m;
+}
+
+double volume_m3(const Obstacle& o) {
+  if (o.shape == ObstacleShape::Box) return o.size_m[0] * o.size_m[1] * o.size_m[2];
+  const double disc = std::numbers::pi * o.radius_m * o.radius_m;
+  return disc * (4 * o.radius_m / 3 + (o.shape == ObstacleShape::Capsule ? o.length_m : 0));
+}
+
+double thickness_m(const Obstacle& o) {
+  if (o.shape == ObstacleShape::Box) return *std::min_element(o.size_m.begin(), o.size_m.end());
+  return 2 * o.radius_m;
+}
+
+double top_speed(const Obstacle& o) {
+  if (o.motion == ObstacleMotion::Swings) return 2 * std::numbers::pi * length(o.way_m) / o.period_s;
+  if (o.motion == ObstacleMotion::Fixed) return 0;
+  const Vector arm = sum(o.start.centre_m, -1, o.about_m);
+  const double from_axis = length(sum(arm, -dot(arm, o.axis), o.axis));
+  return std::abs(o.rate_rad_s) * (from_axis + length(half_sides_m(o)) + o.radius_m);
+}
+
+std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& tank_size_m,
+                                     const Vector& origin_m) {
+  std::vector<Obstacle> out;
+  for (const auto& table : scene.tables("obstacle")) {
+    if (out.size() == most_obstacles)
+      table.fail("", "is one obstacle too many", "use at most " + std::to_string(most_obstacles));
+    out.push_back(read_obstacle(table, tank_size_m, origin_m));
+  }
+  return out;
+}
+
+std::string obstacles_in_words(const std::vector<Obstacle>& obstacles) {
+  std::string out;
+  const auto vector = [](const auto& v) {
+    std::string text = "(";
+    for (const double value : v) text += (text.size() > 1 ? ", " : "") + base::shortest(value);
+    return text + ")";
+  };
+  for (const Obstacle& o : obstacles) {
+    out += std::string("  obstacle: ") + shape_name(o.shape);
+    if (o.shape == ObstacleShape::Box) out += " of " + vector(o.size_m) + " m";
+    if (o.shape != ObstacleShape::Box) out += " of radius " + base::shortest(o.radius_m) + " m";
+    if (o.shape == ObstacleShape::Capsule) out += ", axis " + base::shortest(o.length_m) + " m";
+    out += " at " + vector(o.start.centre_m) + " m, turned by " + vector(o.start.turn);
+    if (o.motion == ObstacleMotion::Turns)
+      out += ", turns about " + vector(o.about_m) + " m along " + vector(o.axis) + " at " +
+             base::shortest(o.rate_rad_s) + " rad/s";
+    if (o.motion == ObstacleMotion::Swings)
+      out += ", swings by " + vector(o.way_m) + " m in " + base::shortest(o.period_s) + " s";
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace sim

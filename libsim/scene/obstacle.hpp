@@ -1,0 +1,71 @@
+#pragma once
+/// Rigid obstacles in the tank, as signed-distance shapes.
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace base {
+class TomlTable;
+}
+
+namespace sim {
+
+enum class ObstacleShape { Sphere, Box, Capsule };
+
+/// How an obstacle moves once the water has settled.
+enum class ObstacleMotion {
+  Fixed,
+  Turns,  ///< about an axis at a constant rate
+  Swings  ///< to and fro along a vector
+};
+
+/// Place and attitude of a rigid body.
+struct Pose {
+  std::array<double, 3> centre_m{};
+  std::array<double, 4> turn{0, 0, 0,
+                             1};  ///< unit quaternion x, y, z, w: from the body's axes to the world's
+};
+
+/// A rigid body. SI units.
+struct Obstacle {
+  ObstacleShape shape = ObstacleShape::Sphere;
+  double radius_m = 0;             ///< of a sphere or a capsule
+  double length_m = 0;             ///< of a capsule's axis, between the centres of its round ends; along y
+  std::array<double, 3> size_m{};  ///< of a box, along its own axes
+  Pose start;                      ///< at rest and at frame 0
+  ObstacleMotion motion = ObstacleMotion::Fixed;
+  std::array<double, 3> about_m{};      ///< a point of the axis that it turns about
+  std::array<double, 3> axis{0, 1, 0};  ///< direction of that axis, a unit vector
+  double rate_rad_s = 0;                ///< right-handed about it
+  std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
+  double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
+};
+
+inline constexpr std::size_t most_obstacles = 16;
+const char* shape_name(ObstacleShape shape);
+
+/// Where the obstacle is at this time since frame 0, s.
+Pose pose_at(const Obstacle& obstacle, double time_s);
+/// Distance of a point from the surface, negative inside, m.
+double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
+/// Half the sides of the box round which the shape lies within radius_m, along its own axes: of a box half
+/// its sides, of a capsule half its axis.
+std::array<double, 3> half_sides_m(const Obstacle& obstacle);
+double volume_m3(const Obstacle& obstacle);
+/// The shortest way through the middle, m.
+double thickness_m(const Obstacle& obstacle);
+/// Speed that no point of it ever exceeds, m/s.
+double top_speed(const Obstacle& obstacle);
+
+/// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
+/// key, a size that is not positive, an axis without direction, a place or a way that leaves the tank, more
+/// than most_obstacles. origin_m: Scene::origin_m, which places then count from.
+std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
+                                     const std::array<double, 3>& origin_m);
+
+/// The obstacles in words, for people and for keys of saved states; empty without any.
+std::string obstacles_in_words(const std::vector<Obstacle>& obstacles);
+
+}  // namespace sim

@@ -1,0 +1,28 @@
+#pragma once
+/// The scene's obstacles as the solver has them.
+
+#include <vector>
+
+#include "libsim/particles/solids.hpp"
+#include "libsim/scene/obstacle.hpp"
+
+namespace sim::SIM_BACKEND {
+
+struct ObstacleState {
+  std::vector<Obstacle> obstacles;
+  double frame_begin_s = 0;  ///< since frame 0
+  Array<Body> bodies;        ///< where they are at the end of this substep
+  Array<BodySum> sums;       ///< of this frame; none while nobody asks what they give
+
+  bool there() const { return bodies.size() > 0; }
+  bool told() const { return sums.size() > 0; }
+  int count() const { return static_cast<int>(bodies.size()); }
+  void begin_frame() {
+    if (told()) sums.zero();
+  }
+};
+
+/// The obstacles where a scene has them at this time, as they came there in `dt`; at rest for dt = 0.
+std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_s, double dt);
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,71 @@
+#include <algorithm>
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+static_assert(most_bodies == static_cast<int>(most_obstacles));
+
+/// All of them as an argument: the device is told without a copy of its own.
+struct PlaceBodies {
+  Body from[most_bodies];
+  Body* to;
+  SIM_FN void operator()(int i) const { to[i] = from[i]; }
+};
+
+Vec3 vector(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+Body shape_of(const Obstacle& o) {
+  Body out{};
+  out.half = vector(half_sides_m(o));
+  out.radius = static_cast<float>(o.radius_m);
+  return out;
+}
+
+void place(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  auto& o = state.obstacles;
+  const auto dt = static_cast<double>(state.parameters.dt);
+  PlaceBodies pass{};
+  const auto bodies = bodies_at(o.obstacles, o.frame_begin_s + dt * (state.substep + 1), dt);
+  std::copy(bodies.begin(), bodies.end(), pass.from);
+  pass.to = o.bodies.data();
+  for_each("place obstacles", o.count(), pass);
+}
+
+}  // namespace
+
+std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_s, double dt) {
+  std::vector<Body> out;
+  for (const Obstacle& o : obstacles) {
+    Body body = shape_of(o);
+    const Pose now = pose_at(o, time_s);
+    body.centre = vector(now.centre_m);
+    body.turn = {static_cast<float>(now.turn[0]), static_cast<float>(now.turn[1]),
+                 static_cast<float>(now.turn[2]), static_cast<float>(now.turn[3])};
+    if (dt > 0) {
+      const Pose before = pose_at(o, time_s - dt);
+      for (std::size_t k = 0; k < 3; ++k) {
+        float& v = k == 0 ? body.velocity.x : k == 1 ? body.velocity.y : body.velocity.z;
+        v = static_cast<float>((now.centre_m[k] - before.centre_m[k]) / dt);
+      }
+      if (o.motion == ObstacleMotion::Turns) body.spin = static_cast<float>(o.rate_rad_s) * vector(o.axis);
+    }
+    out.push_back(body);
+  }
+  return out;
+}
+
+Stage obstacles_stage() {
+  return stage_of<place>({.name = "obstacles",
+                          .source = "rigid bodies on the ways that the scene gives them",
+                          .phase = Phase::Substep,
+                          .called_for = [](const Demand& demand) -> std::string {
+                            return demand.moving_obstacles ? "an obstacle moves" : "";
+                          }});
+}
+
+}  // namespace sim::SIM_BACKEND
