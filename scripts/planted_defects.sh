@@ -47,8 +47,8 @@ defect viscosity-by-step "viscosity acts once a substep, however long" $stages/x
   '22 * k.viscosity * k.dt' '22 * k.viscosity / 180'
 defect viscosity-by-size "viscosity acts alike on particles of any size" $stages/xsph_monaghan1989.cpp sim_test 'Xsph.*' \
   'spread * reciprocal(kernel.h2)' 'spread * 11'
-defect speed-guard "the guard on speed stands at 0.5 h a substep" libsim/solver/fluid_simulation.cpp stability_test 'S09Jet.*' \
-  'if (fall > 0) return fall + 3 * capillary_speed(scene_.effects, resolution_.finest_spacing_m);' 'if (fall > 0) return resolution_.finest_spacing_m / static_cast<double>(state_.parameters.dt);'
+defect speed-guard "the guard on speed stands at 0.5 h a substep" libsim/solver/choices.cpp stability_test 'S09Jet.*' \
+  'fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)' 'resolution.finest_spacing_m / static_cast<double>(parameters.dt)'
 defect cells-by-number "cells weigh particles by number, not by mass" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
   'float volume = mass_of(p.w, 1) / unit_volume;' 'float volume = unit_volume > 0 ? 1 : 0;'
 defect cells-leak "cells of a wall take part in the pressure" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
