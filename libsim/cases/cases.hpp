@@ -17,6 +17,7 @@ HardCase peers_dam();
 HardCase jet();
 HardCase thin_sheet();
 HardCase corners();
+HardCase wedge();
 HardCase coincident();
 HardCase gaze();
 HardCase energy_of_a_dam();

@@ -11,8 +11,8 @@ std::vector<MethodKind> every_method() {
 
 const std::vector<HardCase>& hard_cases() {
   static const std::vector<HardCase> all{
-      rest_tank(),  tall_column(), mass_interface(), tension(), big_steps(),       peers_dam(), jet(),
-      thin_sheet(), corners(),     coincident(),     gaze(),    energy_of_a_dam(), soak()};
+      rest_tank(),  tall_column(), mass_interface(), tension(),    big_steps(), peers_dam(),       jet(),
+      thin_sheet(), corners(),     wedge(),          coincident(), gaze(),      energy_of_a_dam(), soak()};
   return all;
 }
 

@@ -1,8 +1,10 @@
-/// S11: water that sloshes from corner to corner of a tank, driven by kicks.
+/// S11: water that sloshes from corner to corner of a tank, driven by kicks; S11b: with a slab in it that
+/// makes a wedge with the floor.
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "libsim/cases/cases.hpp"
 #include "libsim/cases/watch.hpp"
@@ -11,7 +13,38 @@ namespace sim::cases {
 
 namespace {
 
-/// Largest rho / rho_0 within a support of two walls or three, as the last projection met it.
+double distance_to(const Obstacle& slab, double x, double y, double z) {
+  return signed_distance(slab, slab.start, {x, y, z});
+}
+
+/// A slab that rises from the floor at 30 degrees, through both side walls; water under it lies in the wedge.
+Obstacle slab_over(double side) {
+  constexpr double rise = std::numbers::pi / 6, length = 8 * d, thick = 4 * d;
+  Obstacle out;
+  out.shape = ObstacleShape::Box;
+  out.size_m = {length, thick, 2 * side};
+  // The edge of its lower face lies on the floor.
+  const double along = length / 2, up = thick / 2;
+  out.start.centre_m = {side / 4 + along * std::cos(rise) - up * std::sin(rise),
+                        along * std::sin(rise) + up * std::cos(rise), side / 2};
+  out.start.turn = {0, 0, std::sin(rise / 2), std::cos(rise / 2)};
+  return out;
+}
+
+/// Particles deeper in an obstacle than the tolerance.
+int inside(const State& state, const std::vector<Obstacle>& obstacles, double tolerance_m) {
+  int out = 0;
+  for (const auto& p : state) {
+    for (const Obstacle& slab : obstacles) {
+      out += distance_to(slab, static_cast<double>(p.x_m), static_cast<double>(p.y_m),
+                         static_cast<double>(p.z_m)) < -tolerance_m;
+    }
+  }
+  return out;
+}
+
+/// Largest rho / rho_0 within a support of two walls or three, as the last projection met it. An obstacle is
+/// a wall.
 double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   std::vector<RenderParticle> places;
   std::vector<float> error;
@@ -26,6 +59,7 @@ double densest_in_corners(const Simulation& fluid, const Scene& scene) {
     for (const double away : {x, scene.tank_size_m[0] - x, z, scene.tank_size_m[2] - z, y}) {
       walls += away < support;
     }
+    for (const Obstacle& slab : scene.obstacles) walls += distance_to(slab, x, y, z) < support;
     if (walls >= 2) out = std::max(out, 1 + static_cast<double>(error[i]));
   }
   return out;
@@ -73,17 +107,18 @@ class Hanging {
   std::map<int, Seen> seen_;
 };
 
-Outcome run(const Setting& setting) {
+Outcome slosh(const Setting& setting, bool with_wedge) {
   const bool small = setting.size == Size::Small;
   const double side = small ? 12 * d : 24 * d, depth = small ? 6 * d : 10 * d;
-  const Scene scene = tank({side, 3 * depth, side}, {side, depth, side});
+  Scene scene = tank({side, 3 * depth, side}, {side, depth, side});
+  if (with_wedge) scene.obstacles.push_back(slab_over(side));
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(side * side * depth / (d * d * d) / 8);
   Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});
   const double kick = 2 * setting.scale;  // m/s
   const int frames = frames_of(setting, small ? 5 : 60), period = frames_of(setting, 1.5);
   double densest = 0;
-  int hanging = 0;
+  int hanging = 0, deepest = 0;
   Hanging air(frame_dt_of(setting));
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % period == 0) {
@@ -99,12 +134,19 @@ Outcome run(const Setting& setting) {
     if (!watch.step()) break;
     densest = std::max(densest, densest_in_corners(watch.fluid(), scene));
     hanging = std::max(hanging, air.count(watch.state()));
+    deepest = std::max(deepest, inside(watch.state(), scene.obstacles, 0.1 * d));
   }
-  return watch.outcome({watch.outside_finding(), at_most("largest rho / rho_0 in corners", densest, 1.3),
-                        at_most("hanging in the air", hanging, 0),
-                        reported("largest rho / rho_0", watch.densest()),
-                        reported("fastest", watch.fastest_m_s(), "m/s")});
+  std::vector<Finding> findings{watch.outside_finding(),
+                                at_most("largest rho / rho_0 in corners", densest, 1.3),
+                                at_most("hanging in the air", hanging, 0)};
+  if (with_wedge) findings.push_back(at_most("particles inside the slab", deepest, 0));
+  findings.push_back(reported("largest rho / rho_0", watch.densest()));
+  findings.push_back(reported("fastest", watch.fastest_m_s(), "m/s"));
+  return watch.outcome(findings);
 }
+
+Outcome run(const Setting& setting) { return slosh(setting, false); }
+Outcome run_with_wedge(const Setting& setting) { return slosh(setting, true); }
 
 }  // namespace
 
@@ -118,6 +160,16 @@ HardCase corners() {
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
           .run = run};
+}
+
+HardCase wedge() {
+  HardCase out = corners();
+  out.id = "S11b";
+  out.suite = "S11Wedge";
+  out.title = "water that sloshes into a wedge of 30 degrees for 60 s";
+  out.asked = "nobody outside or in the slab by > 0.1 d, rho < 1.3 in corners, nobody stuck in the air";
+  out.run = run_with_wedge;
+  return out;
 }
 
 }  // namespace sim::cases

@@ -47,20 +47,20 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 }  // namespace
 
 std::string effects_in_words(const Scene& scene, const SimulationOptions& options) {
-  if (scene.effects.empty()) return "";
+  if (scene.effects.empty() && scene.obstacles.empty()) return "";
   const double d = resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m;
   std::ostringstream out;
-  out << "  effects: ";
+  if (!scene.effects.empty()) out << "  effects: ";
   for (const Effect& effect : scene.effects) {
     const auto& traits = traits_of(effect.kind);
     out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect)
         << ", ";
   }
   const EffectStep longest = longest_step(scene.effects, d);
-  if (longest.of == no_effect) {
-    out << "which ask for no shorter substeps\n";
-  } else {
+  if (longest.of != no_effect) {
     out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
+  } else if (!scene.effects.empty()) {
+    out << "which ask for no shorter substeps\n";
   }
   const Scales scales = scales_of(scene, options.n_star);
   out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s, " << scales.viscosity_m2_s

@@ -19,7 +19,7 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
 /// base::Error when the options' are too few for an effect, or the effect's too many.
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
-/// The scene's effects, their step and the numbers of its scale; empty without effects.
+/// The scene's effects, their step and the numbers of its scale; empty without effects and obstacles.
 std::string effects_in_words(const Scene& scene, const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
