@@ -95,7 +95,7 @@ struct GuardCounts {
   std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
   std::uint64_t not_finite = 0;          ///< particles quarantined: NaN, infinite or far outside the tank
   std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
-  std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back inside a wall
+  std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back by a wall or an obstacle
   std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles
   std::uint64_t saliency_not_finite = 0;  ///< particle-frames whose saliency was NaN or infinite: s = 0
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)

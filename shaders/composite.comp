@@ -97,10 +97,7 @@ void main() {
   const float water_cover = is_water ? outline_cover(pixel) : 0.0;
   vec3 light = vec3(0.0);
 #ifdef FOAM
-  vec2 foam = foam_cover(at);
-#ifdef OBSTACLES
-  if (nearness[at] > 0.0 && !is_water) foam = vec2(0.0);  // an obstacle hides the water and what lies on it
-#endif
+  const vec2 foam = foam_cover(at);
   vec3 foam_normal = vec3(0.0, 1.0, 0.0);
 #endif
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);

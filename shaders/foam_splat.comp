@@ -1,6 +1,9 @@
 // One invocation a diffuse particle: a soft disc, laid before the water's surface or below it.
 #include "view.glsl"
 #include "foam.glsl"
+#ifdef OBSTACLES
+#include "room.glsl"
+#endif
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Foam { vec4 foam[]; };  // x, y, z, radius in m; no radius: nobody
 layout(std430, binding = 1) readonly buffer Nearness { float nearness[]; };
@@ -47,6 +50,10 @@ void main() {
   const vec3 eye = (world_to_eye * vec4(particle.xyz, 1.0)).xyz;
   const float depth = -eye.z;
   if (depth < origin.z + particle.w) return;
+#ifdef OBSTACLES
+  const vec3 from = eye_to_world[3].xyz, way = particle.xyz - from;
+  if (meet_obstacles(from, normalize(way)).at < length(way)) return;
+#endif
   const vec2 centre = (eye.xy / depth - rays.yw) / rays.xz;
   // A disc of a pixel's radius meets a pixel's middle at least; smaller ones are as much thinner.
   const float true_px = particle.w / (depth * rays.x);

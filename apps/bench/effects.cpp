@@ -119,12 +119,13 @@ void run_effects(const EffectsOptions& options) {
 }
 
 constexpr const char* columns_help =
-    "A row for the bare scene, for each of its effects alone (with what it needs), for all, and for all "
-    "with\n"
-    "coefficients of 0. Their fluids step in turn, with the same number of substeps: the least that all the\n"
+    "A row for the bare scene, for each of its effects alone (with what it needs), for all, and for all\n"
+    "with coefficients of 0. Their fluids step in turn, with the same number of substeps: the least that all "
+    "the\n"
     "effects together allow. What is added is over the bare scene. No picture is drawn. column_bytes count\n"
-    "the particles' columns and what saliency, temporal acceleration, nozzles and outlets keep;\n"
-    "device_bytes all of the device's memory (- on the CPU). same_state: after the timed frames all\n"
+    "the particles' columns and what saliency, temporal acceleration, nozzles, outlets and foam keep; the\n"
+    "vectors of viscosity's conjugate gradients and lists of neighbours are in neither but in\n"
+    "device_bytes, all of the device's memory (- on the CPU). same_state: after the timed frames all\n"
     "particles are where they are without effects, bit for bit. Water with an effect is other water, so its\n"
     "time holds what that changed too.";
 

@@ -25,7 +25,7 @@ struct EffectCost {
   double particles = 0;
   double ms_frame = 0;
   double launches = 0;  ///< a frame
-  /// Of all columns and what saliency, temporal acceleration, nozzles and outlets keep.
+  /// Of all columns and what saliency, temporal acceleration, nozzles, outlets and foam keep.
   double column_bytes = 0;
   /// Of the device's memory above what it held before this fluid was made; NaN on the CPU.
   double device_bytes = std::numeric_limits<double>::quiet_NaN();

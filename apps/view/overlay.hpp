@@ -38,7 +38,8 @@ class OverlayPainter {
  public:
   /// `finest_spacing_m` is 2 r_*. The scene says which temperatures there are.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
-      : finest_spacing_m_(finest_spacing_m), heat_(sim::lists_heat(scene)) {
+      : finest_spacing_m_(finest_spacing_m),
+        heat_(sim::coefficients_of(scene.effects)[sim::EffectKind::Heat] > 0) {
     if (!heat_) return;
     reference_k_ = sim::reference_temperature(scene);
     temperatures_ = sim::temperatures_of(scene);

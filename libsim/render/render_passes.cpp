@@ -45,15 +45,22 @@ GlProgram compute_program(const char* file, const char* defines) {
   return GlProgram({{GL_COMPUTE_SHADER, file}}, defines);
 }
 
+namespace {
+/// What the scene calls for in the passes that show it.
+std::string defines_of(const Scene& scene) {
+  return std::string(coefficients_of(scene.effects)[EffectKind::Foam] > 0 ? "#define FOAM\n" : "") +
+         (scene.obstacles.empty() ? "" : "#define OBSTACLES\n");
+}
+}  // namespace
+
 FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
     : options(chosen),
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
       timer(chosen.time_passes),
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
-      composite(compute_program("composite.comp", (std::string(foam ? "#define FOAM\n" : "") +
-                                                   (scene.obstacles.empty() ? "" : "#define OBSTACLES\n"))
-                                                      .c_str())),
+      composite(compute_program("composite.comp", defines_of(scene).c_str())),
+      splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
@@ -250,11 +257,22 @@ void FluidRenderer::State::smooth_thickness() {
   timer.mark("thickness");
 }
 
+void FluidRenderer::State::tell_obstacles(const GlProgram& program) const {
+  if (!obstacles.empty())
+    glUniform1i(program.uniform("obstacle_count"), static_cast<GLint>(obstacles.size()));
+}
+
+void FluidRenderer::State::bind_obstacles() const {
+  if (!obstacles.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
+}
+
 void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
   splat_foam_program.use();
+  tell_obstacles(splat_foam_program);
   glUniform1ui(splat_foam_program.uniform("foam_count"), static_cast<GLuint>(from.count()));
   each_view([&](const ViewTargets& t) {
     bind_storage({from.gl_name(), t.filter_a.name(), t.normals.name(), t.foam.name()});
+    bind_obstacles();
     dispatch_particles(from.count());
   });
   timer.mark("foam");
@@ -262,12 +280,11 @@ void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
 
 void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
   composite.use();
-  if (!obstacles.empty())
-    glUniform1i(composite.uniform("obstacle_count"), static_cast<GLint>(obstacles.size()));
+  tell_obstacles(composite);
   picture.begin(framebuffer, views);
   each_view([&](const ViewTargets& t) {
     bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name()});
-    if (!obstacles.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
+    bind_obstacles();
     dispatch_pixels(t.width, t.height);
   });
   picture.end(framebuffer, views);

@@ -43,7 +43,7 @@ struct FluidRenderer::State {
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
   GlProgram composite;
-  GlProgram splat_foam_program = foam ? compute_program("foam_splat.comp") : GlProgram();
+  GlProgram splat_foam_program;
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
   std::vector<Obstacle> obstacles;  // of the scene
@@ -78,6 +78,8 @@ struct FluidRenderer::State {
   void smooth_depth();
   void smooth_thickness();
   void splat_foam(const ParticleBuffer& from);
+  void tell_obstacles(const GlProgram& program) const;  ///< to a program in use
+  void bind_obstacles() const;
   void shade(std::span<const View> views, unsigned framebuffer);
 
   GLuint particles_ = 0;  // of this draw

@@ -29,6 +29,18 @@ constexpr std::array<OptionTraits, option_count> option_traits{{
 #undef SIM_TRAITS
 }};
 
+bool is_whole(std::size_t option) {
+  switch (static_cast<EffectOption>(option)) {
+    case EffectOption::ViscositySteps:
+    case EffectOption::AirDragCoarsest:
+    case EffectOption::FoamCoarsest:
+    case EffectOption::FoamMost:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::vector<std::string> all_words() {
   std::vector<std::string> out;
   for (const EffectTraits& traits : all_traits) out.emplace_back(traits.word);
@@ -105,8 +117,10 @@ std::vector<Effect> read_effects(const base::TomlTable& scene) {
     Effect effect{kind, table.number(traits_of(kind).key, {0, largest})};
     for (std::size_t k = 0; k < option_count; ++k) {
       const OptionTraits& option = option_traits[k];
-      if (option.of == kind)
-        effect.options[k] = table.number_or(option.key, option.usual, {option.least, option.most});
+      if (option.of != kind) continue;
+      effect.options[k] = table.number_or(option.key, option.usual, {option.least, option.most});
+      if (is_whole(k) && effect.options[k] != std::floor(effect.options[k]))
+        table.fail(option.key, "is no whole number", "write for example " + base::shortest(option.usual));
     }
     out.push_back(effect);
   }

@@ -185,12 +185,15 @@ double top_speed(const Obstacle& o) {
 }
 
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& tank_size_m,
-                                     const Vector& origin_m) {
+                                     const Vector& origin_m, double most_speed_m_s) {
   std::vector<Obstacle> out;
   for (const auto& table : scene.tables("obstacle")) {
     if (out.size() == most_obstacles)
       table.fail("", "is one obstacle too many", "use at most " + std::to_string(most_obstacles));
     out.push_back(read_obstacle(table, tank_size_m, origin_m));
+    if (top_speed(out.back()) > most_speed_m_s)
+      table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
+                 "raise time.v_ref_m_s or slow the obstacle down");
   }
   return out;
 }

@@ -61,9 +61,10 @@ double top_speed(const Obstacle& obstacle);
 
 /// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
 /// key, a size that is not positive, an axis without direction, a place or a way that leaves the tank, more
-/// than most_obstacles. origin_m: Scene::origin_m, which places then count from.
+/// than most_obstacles, one that is faster than most_speed_m_s. origin_m: Scene::origin_m, which places then
+/// count from.
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
-                                     const std::array<double, 3>& origin_m);
+                                     const std::array<double, 3>& origin_m, double most_speed_m_s);
 
 /// The obstacles in words, for people and for keys of saved states; empty without any.
 std::string obstacles_in_words(const std::vector<Obstacle>& obstacles);

@@ -34,6 +34,8 @@ void keep_fluid(Archive& archive, FluidState& state) {
           state.saliency.frames_since);
   keep_activation(archive, state.activation);
   if (state.foam.capacity() > 0) archive(state.foam);
+  // Where the last substep left them: a frame begins there.
+  if (state.obstacles.there()) archive(state.obstacles.bodies);
   // Only methods with levels look at neighbours before anything moves.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);
