@@ -7,9 +7,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Uniform in [0, 1) for one of a few numbers that a diffuse particle draws.
-SIM_FN float draw(std::uint32_t seed, std::uint32_t which) {
-  return static_cast<float>(random_bits(seed, which) >> 8) * (1.0f / 16777216.0f);
-}
+SIM_FN float draw(std::uint32_t seed, std::uint32_t which) { return uniform_of(random_bits(seed, which)); }
 
 SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
 
@@ -114,7 +112,7 @@ struct CountBirths {
         energy * (rules.approach(approach[i]) + rules.crest_weight * rules.crest(crest(i)));
     const float volume = rules.rate * rules.dt * potential * mass_of(position[i].w, 1);
     const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id[i]), frame, 0xf0a3u);
-    births[i] = static_cast<int>(volume / rules.volume + static_cast<float>(chance >> 8) / 16777216.0f);
+    births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
   /// Curvature of a convex surface that is pushed on, 1/m; 0 elsewhere.

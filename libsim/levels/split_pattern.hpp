@@ -26,7 +26,7 @@ struct Turn {
 SIM_FN Turn random_turn(int id, std::uint32_t frame, int attempt) {
   const auto uniform = [&](std::uint32_t which) {
     const std::uint32_t salt = 3 * static_cast<std::uint32_t>(attempt) + which;
-    return static_cast<float>(random_bits(static_cast<std::uint32_t>(id), frame, salt) >> 8) / 16777216.0f;
+    return uniform_of(random_bits(static_cast<std::uint32_t>(id), frame, salt));
   };
   const float u = uniform(0);
   const float a = 2 * pi * uniform(1);

@@ -22,12 +22,15 @@ SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b, std::uint32_t
   return mixed(random_bits(a, b) + c * 0x85ebca6bu);
 }
 
+/// Uniform in [0, 1) from random bits.
+SIM_FN float uniform_of(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f); }
+
 /// Uniform in [0, 1) from a particle, a frame and a seed.
 SIM_FN float activation_draw(std::uint32_t id, std::uint32_t frame, std::uint32_t seed) {
   const std::uint32_t words[3] = {seed, frame, id};
   std::uint32_t x = 0;
   for (int k = 0; k < 3; ++k) x = mixed((x ^ words[k]) + 0x9e3779b9u);
-  return static_cast<float>(x >> 8) * (1.0f / 16777216.0f);
+  return uniform_of(x);
 }
 
 }  // namespace sim::SIM_BACKEND

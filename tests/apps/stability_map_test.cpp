@@ -114,6 +114,7 @@ TEST_F(StabilityE2e, RefusesWhatIsNotThereAndSaysWhatIs) {
   expect_refused("--case S99", "S2,");
   expect_refused("--method Water", "FovFluid");
   expect_refused("--resolution 1.5", "--quick");
+  expect_refused("--effects data/scenes/single_dam.toml", "is a scene without effects");
   expect_refused("--case S9 --csv " + path("."), path("."));
   const auto coarse = table("stability --most 1.5 --resolution 2");
   EXPECT_THAT(coarse.out, HasSubstr("--resolution 2"));
