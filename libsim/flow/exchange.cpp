@@ -64,7 +64,8 @@ struct TakeFree {
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// The new ones, as settled members of their level.
+/// The new ones, as settled members of their level. No saliency was measured of them yet: 0, as of those of
+/// whom nothing is known.
 struct Make {
   const int* ids;
   Vec4* position;
@@ -72,6 +73,9 @@ struct Make {
   std::uint8_t* level;
   std::uint8_t* target;
   std::uint8_t* history;
+  float* saliency;
+  float* unrest;
+  std::uint8_t* rest;
   Descents descents;
   int first;
   float support;
@@ -83,6 +87,9 @@ struct Make {
     level[i] = new_level;
     if (target) target[i] = new_level;
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
+    if (saliency) saliency[i] = 0;
+    if (unrest) unrest[i] = 0;
+    if (rest) rest[i] = 0;
     descents.make(i);
   }
 };
@@ -153,6 +160,9 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                 .level = p.level(),
                 .target = p.target(),
                 .history = p.history(),
+                .saliency = p.saliency(),
+                .unrest = p.unrest(),
+                .rest = p.rest(),
                 .descents = particles.descents(),
                 .first = staying,
                 .support = supports.h[level],

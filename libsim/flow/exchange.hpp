@@ -6,9 +6,10 @@
 
 namespace sim::SIM_BACKEND {
 
-using ExchangeView = ColumnView<columns(Column::Position, Column::Id, Column::Level),
-                                columns(Column::Position, Column::Id, Column::Level),
-                                columns(Column::Temperature), columns(Column::Target, Column::History)>;
+using ExchangeView =
+    ColumnView<columns(Column::Position, Column::Id, Column::Level),
+               columns(Column::Position, Column::Id, Column::Level), columns(Column::Temperature),
+               columns(Column::Target, Column::History, Column::Saliency, Column::Unrest, Column::Rest)>;
 
 class Exchange {
  public:

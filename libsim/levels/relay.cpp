@@ -94,6 +94,7 @@ struct Bid {
       if (i == other || level[i] >= level[j] || !stranded(i)) continue;
       if (other >= 0 && level[i] != level[other]) continue;
       if (other >= 0 && halves(j, other) && !apart(i, other, position[j].w)) continue;
+      if (halves(j, i) && !free_of_bodies(walls, 0.5f * (xyz(position[j]) + xyz(position[i])))) continue;
       const float support = 0.5f * (position[j].w + position[i].w);
       const Vec3 offset = xyz(position[j]) - xyz(position[i]);
       const Stranded next{level[i], dot(offset, offset), k};

@@ -195,7 +195,7 @@ void Grid::sort(Particles& particles, bool by_level) {
 }
 
 void Grid::build(Particles& particles, float margin, const Domain& domain, float support) {
-  if (particles.size() == 0) return;
+  if (particles.size() == 0) return begin_.zero();
   shape_.levels = 1;
   shape_.level[0].support = support;
   shape(domain, margin, particles.capacity());
@@ -203,7 +203,7 @@ void Grid::build(Particles& particles, float margin, const Domain& domain, float
 }
 
 void Grid::build(Particles& particles, float margin, const Domain& domain, const LevelSupports& supports) {
-  if (particles.size() == 0) return;
+  if (particles.size() == 0) return begin_.zero();
   shape_.levels = LevelSupports::most;
   for (int l = 0; l < LevelSupports::most; ++l) shape_.level[l].support = supports.h[l];
   shape(domain, margin, particles.capacity());

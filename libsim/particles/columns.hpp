@@ -102,6 +102,7 @@ struct ColumnSet {
 
   constexpr bool has(Column column) const { return bits >> static_cast<unsigned>(column) & 1u; }
   constexpr bool holds(ColumnSet other) const { return (other.bits & ~bits) == 0; }
+  constexpr bool meets(ColumnSet other) const { return (other.bits & bits) != 0; }
   constexpr bool empty() const { return bits == 0; }
   /// The first in the table's order; the set is not empty.
   constexpr Column first() const { return static_cast<Column>(std::countr_zero(bits)); }

@@ -1,5 +1,7 @@
 #include "libsim/solver/schedule.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "stats/base/error.hpp"
@@ -58,6 +60,37 @@ void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
   }
 }
 
+/// May `later` run before this pass? Neither writes what the other touches.
+bool may_pass(const Stage& later, const Stage& pass) {
+  return !pass.writes.meets(later.reads | later.writes) && !later.writes.meets(pass.reads);
+}
+
+/// Two passes that may share a loop.
+struct Sharing {
+  std::size_t first, second;
+  Stage stage;
+};
+std::optional<Sharing> next_to_share(const std::vector<Stage>& passes, const std::vector<SharedLoop>& loops) {
+  for (std::size_t i = 0; i < passes.size(); ++i)
+    for (std::size_t j = i + 1; j < passes.size(); ++j)
+      for (const SharedLoop& loop : loops) {
+        if (passes[i].loop != loop.first || passes[j].loop != loop.second) continue;
+        if (std::all_of(&passes[i], &passes[j], [&](const Stage& pass) { return may_pass(passes[j], pass); }))
+          return Sharing{i, j, loop.stage};
+      }
+  return {};
+}
+
+/// Where two passes can walk over the neighbours together, the later one joins the earlier one.
+void share_loops(std::vector<Stage>& passes, const std::vector<SharedLoop>& loops, std::string& explanation) {
+  while (const auto sharing = next_to_share(passes, loops)) {
+    explanation += "  one loop     " + padded(sharing->stage.name, 20) + "instead of " +
+                   passes[sharing->first].name + " and " + passes[sharing->second].name + "\n";
+    passes[sharing->first] = sharing->stage;
+    passes.erase(passes.begin() + static_cast<std::ptrdiff_t>(sharing->second));
+  }
+}
+
 void run_all(const std::vector<Stage>& passes, FluidState& state) {
   for (const auto& pass : passes) {
     state.clock.enter(pass.part);
@@ -89,7 +122,8 @@ std::string why_not(const Stage& stage, const Demand& demand) {
 
 }  // namespace
 
-Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages) {
+Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages,
+                          const std::vector<SharedLoop>& loops) {
   Schedule out;
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
@@ -106,6 +140,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
     out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) +
                        padded(reason, 40) + stage.source + "\n";
   }
+  for (auto* passes : {&out.substep, &out.iteration, &out.substep_end})
+    share_loops(*passes, loops, out.explanation);
   for (const auto* passes :
        {&out.frame_start, &out.substep, &out.iteration, &out.substep_end, &out.frame_end})
     check_reads(*passes, written);

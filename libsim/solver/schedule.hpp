@@ -15,9 +15,11 @@ struct Schedule {
   std::string explanation;  ///< each pass with why it is there, each known stage with why it is not
 };
 
-/// Prunes, never reorders. A pass that reads a column nothing has written is an error (base::Error names
-/// both).
-Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages());
+/// Prunes, and reorders only where two passes of one phase share a loop: the later one then runs with the
+/// earlier one, if nothing between them touches what it writes or writes what it reads. A pass that reads a
+/// column nothing has written is an error (base::Error names both).
+Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages(),
+                          const std::vector<SharedLoop>& loops = shared_loops());
 
 /// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes),
 /// then the frame's end.

@@ -2,7 +2,7 @@
 /// water too, where the pressure that answers it makes particles stick (docs/solver_notes.md). Here both
 /// terms come from energies that are constant inside.
 
-#include "libsim/solver/stages/stages.hpp"
+#include "libsim/solver/effects/loops/surface_normals.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -17,58 +17,6 @@ constexpr float skin_depth = 0.2f;
 
 /// How much a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
 SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_depth, 0.0f), 1.0f); }
-
-/// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
-/// inwards; 0 for particles that are not solved.
-template <bool OneLevel, class Selection, class Boundary>
-struct SurfaceNormal {
-  Selection select;
-  const Vec4* position;
-  Neighbours neighbours;
-  Boundary walls;
-  Vec4* normal;
-
-  /// What particle j adds; see SIM_LANES.
-  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& nx, float& ny, float& nz) const {
-    const Vec4 other = position[j];
-    const Kernel kernel = pair.with(other.w);
-    const float dx = self.x - other.x;
-    const float dy = self.y - other.y;
-    const float dz = self.z - other.z;
-    const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
-    const float along = 6 * pair.mass_ratio(other.w) * kernel.poly6 * t * t;
-    nx -= along * dx;
-    ny -= along * dy;
-    nz -= along * dz;
-  }
-
-  template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) {
-        normal[~i] = {0, 0, 0, 0};
-        return;
-      }
-    }
-    const Vec4 self = position[i];
-    const PairKernel<OneLevel> pair(self.w);
-    float nx = 0;
-    float ny = 0;
-    float nz = 0;
-    const int count = neighbours.size(slot);
-    const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(nx, ny, nz)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, nx, ny, nz);
-    nx = team.sum(nx);
-    ny = team.sum(ny);
-    nz = team.sum(nz);
-    if (team.rank() > 0) return;
-    Vec3 wall;
-    walls.missing(xyz(self), self.w, wall);
-    normal[i] = with_w(self.w * (mass_of(self.w, 1) * Vec3{nx, ny, nz} + wall), 0);
-  }
-};
 
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
@@ -140,23 +88,6 @@ struct Cohesion {
   }
 };
 
-using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
-
-template <bool OneLevel, class Selection, class Boundary>
-void launch(FluidState& state, NormalView p, Selection select, Boundary boundary) {
-  for_each_team("surface normals", p.size(),
-                SurfaceNormal<OneLevel, Selection, Boundary>{.select = select,
-                                                             .position = p.position(),
-                                                             .neighbours = state.neighbours.view(),
-                                                             .walls = boundary,
-                                                             .normal = p.normal()});
-}
-template <bool OneLevel, class Selection>
-void launch(FluidState& state, NormalView p, Selection select) {
-  state.obstacles.there() ? launch<OneLevel>(state, p, select, state.solids())
-                          : launch<OneLevel>(state, p, select, state.walls);
-}
-
 using CohesionView = ColumnView<columns(Column::Position, Column::Density, Column::Neighbours, Column::Normal,
                                         Column::Velocity),
                                 columns(Column::Velocity)>;
@@ -175,21 +106,25 @@ void launch(FluidState& state, CohesionView p, Selection select) {
                                     .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density});
 }
 
-template <class View, class Selection>
-void launch_for(FluidState& state, View p, Selection select) {
+template <class Selection>
+void launch(FluidState& state, CohesionView p, Selection select) {
   state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
 }
 
-template <class View>
-void run(FluidState& state, View p) {
-  state.all_active ? launch_for(state, p, AllParticles{}) : launch_for(state, p, state.active());
+void find_normals(FluidState& state, NormalView p) {
+  with_surface_normals(state, p, [&](auto normals) { run_pair_loop("surface normals", state, p, normals); });
+}
+
+void pull(FluidState& state, CohesionView p) {
+  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
 
 }  // namespace
 
 std::vector<Stage> cohesion_stages() {
-  return {stage_of<run<NormalView>>({.name = "surface normals", .phase = Phase::SubstepEnd}),
-          stage_of<run<CohesionView>>({.name = "cohesion", .phase = Phase::SubstepEnd})};
+  return {stage_of<find_normals>(
+              {.name = "surface normals", .phase = Phase::SubstepEnd, .loop = SharedTerm::SurfaceNormals}),
+          stage_of<pull>({.name = "cohesion", .phase = Phase::SubstepEnd})};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -33,6 +33,10 @@ std::vector<Stage> effect_stages() {
 
 }  // namespace
 
+#ifdef VIP_NO_EFFECTS
+std::vector<SharedLoop> shared_loops() { return {}; }
+#endif
+
 std::vector<Stage> all_stages() {
   std::vector<Stage> out{
       frame_neighbours_stage(), gaze_targets_stage(), saliency_stage(), saliency_parts_stage(),

@@ -28,6 +28,9 @@ struct Demand {
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
+/// What a stage sums over neighbours, where another may share the loop (SharedLoop).
+enum class SharedTerm { None, SurfaceNormals, Conduction };
+
 struct Stage {
   const char* name;
   const char* source = "";  ///< paper and equation
@@ -38,6 +41,7 @@ struct Stage {
   /// What its change of the water's momentum is counted as; each stage that writes velocities has one.
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< that alone calls for it
+  SharedTerm loop = SharedTerm::None;
   // From the function's view, by stage_of:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;

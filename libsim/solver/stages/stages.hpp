@@ -123,6 +123,13 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
 void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                   Array<std::uint8_t>& target);
 
+/// Two stages in one: its loop finds the sums of both.
+struct SharedLoop {
+  SharedTerm first, second;
+  Stage stage;
+};
+std::vector<SharedLoop> shared_loops();
+
 /// All stages in the fixed order in which a schedule may call them.
 std::vector<Stage> all_stages();
 

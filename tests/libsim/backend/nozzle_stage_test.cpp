@@ -1,5 +1,7 @@
 /// The pass that moves particles into the jets, against brute force.
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -123,6 +125,24 @@ SIM_TEST(NozzleStage, ChoiceAndPlacesDoNotDependOnTheOrderInMemory) {
     ASSERT_EQ(a[order[i]].y, b[i].y);
     ASSERT_EQ(a[order[i]].z, b[i].z);
   }
+}
+
+SIM_TEST(Exchange, NothingIsKnownOfWhatItPours) {
+  FluidState state = state_of(pool(8));
+  auto& p = state.particles.all();
+  p.saliency.from_host(std::vector<float>(8, 0.7f));
+  p.unrest.from_host(std::vector<float>(8, 0.4f));
+  p.rest.from_host(std::vector<std::uint8_t>(8, rest_nowhere));
+  Array<int> lowest;
+  lowest.from_host({5, 2, 0});
+  std::int64_t reservoir = 0;
+  EXPECT_EQ(Exchange().run(state.particles, state.supports, lowest.data(), 3, 3, 1, 0, reservoir, nullptr),
+            1);
+  using testing::ElementsAre;
+  EXPECT_THAT(p.saliency.to_host(), ElementsAre(0.7f, 0.7f, 0.7f, 0.7f, 0.7f, 0, 0, 0));
+  EXPECT_THAT(p.unrest.to_host(), ElementsAre(0.4f, 0.4f, 0.4f, 0.4f, 0.4f, 0, 0, 0));
+  const std::uint8_t was = rest_nowhere;
+  EXPECT_THAT(p.rest.to_host(), ElementsAre(was, was, was, was, was, 0, 0, 0));
 }
 
 SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {

@@ -268,6 +268,26 @@ SIM_TEST(S14Grid, HasFewCellsInAnyTank) {
   }
 }
 
+/// What all water has left holds none; foam looks there (libsim/foam/water_round.hpp).
+SIM_TEST(S14Grid, IsEmptyAfterTheLastParticleLeft) {
+  for (const bool one_level : {true, false}) {
+    Particles particles = particles_at(random_points(100, 1, finest, 5));
+    Grid grid;
+    const auto build = [&] {
+      if (one_level) {
+        grid.build(particles, NeighbourList::margin, domains[0], finest);
+      } else {
+        grid.build(particles, NeighbourList::margin, domains[0], level_supports(static_cast<double>(finest)));
+      }
+    };
+    build();
+    EXPECT_GT(grid.count_cells(), 1);
+    particles.resize(0);
+    build();
+    EXPECT_EQ(grid.count_cells(), 0);
+  }
+}
+
 /// Ids may not be shared, but no place is lost where they are.
 SIM_TEST(S14Grid, KeepsEveryoneWhereIdsAreShared) {
   std::vector<Vec4> points = random_points(200, 0.1f, finest, 5);

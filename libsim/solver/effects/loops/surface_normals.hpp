@@ -1,0 +1,45 @@
+#pragma once
+/// Where the water ends, and which way: a term of a loop over neighbours.
+
+#include "libsim/solver/stages/pair_loop.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
+/// inwards; 0 for particles that are not solved.
+template <class Boundary>
+struct SurfaceNormals {
+  static constexpr int sums = 3;
+  static constexpr bool of_all = false;
+  Boundary walls;
+  Vec4* normal;
+
+  struct Self {};
+  SIM_FN Self self(int) const { return {}; }
+  SIM_FN void add(const NeighbourPair& pair, Self, float& nx, float& ny, float& nz) const {
+    const float along = 6 * pair.slope;
+    nx -= along * pair.x;
+    ny -= along * pair.y;
+    nz -= along * pair.z;
+  }
+  SIM_FN void finish(int i, Vec4 at, Self, float nx, float ny, float nz) const {
+    Vec3 wall;
+    walls.missing(xyz(at), at.w, wall);
+    normal[i] = with_w(at.w * (mass_of(at.w, 1) * Vec3{nx, ny, nz} + wall), 0);
+  }
+  SIM_FN void skip(int i) const { normal[i] = {0, 0, 0, 0}; }
+};
+
+using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
+
+/// Calls then(term): with obstacles it is of another type.
+template <class Then>
+void with_surface_normals(FluidState& state, NormalView p, Then then) {
+  if (state.obstacles.there()) {
+    then(SurfaceNormals<Solids>{.walls = state.solids(), .normal = p.normal()});
+  } else {
+    then(SurfaceNormals<Walls>{.walls = state.walls, .normal = p.normal()});
+  }
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,124 @@
+#pragma once
+/// One walk over each particle's neighbours for the sums of one stage, or of two that share it. Which of them
+/// share is chosen when the schedule is compiled (schedule.cpp); here it is a type.
+
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// A pair i, j as a term sees it.
+struct NeighbourPair {
+  int j;
+  float x, y, z;  ///< from j to i, m
+  float slope;  ///< (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope times the way
+};
+
+/// A term that adds nothing. The others are like it: `sums`, how many of the three they use; `of_all`,
+/// whether those that are not solved have them too; Self, what is read once of particle i; add(), what a
+/// neighbour adds; finish(), by one lane, when all have; skip(), for those that have no sums.
+struct NoTerm {
+  static constexpr int sums = 0;
+  static constexpr bool of_all = false;
+  struct Self {};
+  SIM_FN Self self(int) const { return {}; }
+  SIM_FN void add(const NeighbourPair&, Self, float&, float&, float&) const {}
+  SIM_FN void finish(int, Vec4, Self, float, float, float) const {}
+  SIM_FN void skip(int) const {}
+};
+
+template <bool OneLevel, class Selection, class First, class Second>
+struct PairLoop {
+  Selection select;
+  const Vec4* position;
+  Neighbours neighbours;
+  First first;
+  Second second;
+
+  struct Self {
+    Vec4 at;
+    PairKernel<OneLevel> pair;
+    typename First::Self first;
+    typename Second::Self second;
+  };
+
+  /// What particle j adds; see SIM_LANES.
+  SIM_FN void add(int j, const Self& me, float& ax, float& ay, float& az, float& bx, float& by,
+                  float& bz) const {
+    const Vec4 other = position[j];
+    const Kernel kernel = me.pair.with(other.w);
+    const float dx = me.at.x - other.x;
+    const float dy = me.at.y - other.y;
+    const float dz = me.at.z - other.z;
+    const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
+    const NeighbourPair pair{j, dx, dy, dz, me.pair.mass_ratio(other.w) * kernel.poly6 * t * t};
+    first.add(pair, me.first, ax, ay, az);
+    second.add(pair, me.second, bx, by, bz);
+  }
+
+  /// Over the lanes, where the term has so many.
+  template <class Term, int number, class Team>
+  SIM_FN static float sum(Team team, float mine) {
+    if constexpr (Term::sums >= number) return team.sum(mine);
+    return mine;
+  }
+
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
+    int i = select(slot);
+    bool solved = true;
+    if constexpr (!Selection::everyone) {
+      solved = i >= 0;
+      if (!solved) {
+        i = ~i;
+        if (!First::of_all) first.skip(i);
+        if (!Second::of_all) second.skip(i);
+        if constexpr (!First::of_all && !Second::of_all) return;
+      }
+    }
+    const Vec4 at = position[i];
+    const Self me{at, PairKernel<OneLevel>(at.w), first.self(i), second.self(i)};
+    float ax = 0;
+    float ay = 0;
+    float az = 0;
+    float bx = 0;
+    float by = 0;
+    float bz = 0;
+    const int count = neighbours.size(slot);
+    const NeighbourRun run = neighbours.run(slot);
+    SIM_LANES(ax, ay, az, bx, by, bz)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, ax, ay, az, bx, by, bz);
+    ax = sum<First, 1>(team, ax);
+    ay = sum<First, 2>(team, ay);
+    az = sum<First, 3>(team, az);
+    bx = sum<Second, 1>(team, bx);
+    by = sum<Second, 2>(team, by);
+    bz = sum<Second, 3>(team, bz);
+    if (team.rank() > 0) return;
+    if (First::of_all || solved) first.finish(i, at, me.first, ax, ay, az);
+    if (Second::of_all || solved) second.finish(i, at, me.second, bx, by, bz);
+  }
+};
+
+using PairView = Reads<Column::Position, Column::Neighbours>;
+
+template <bool OneLevel, class Selection, class First, class Second>
+void launch_pair_loop(const char* label, FluidState& state, PairView p, Selection select, First first,
+                      Second second) {
+  for_each_team(label, p.size(),
+                PairLoop<OneLevel, Selection, First, Second>{.select = select,
+                                                             .position = p.position(),
+                                                             .neighbours = state.neighbours.view(),
+                                                             .first = first,
+                                                             .second = second});
+}
+/// `label` names the pass in errors and profiles.
+template <class First, class Second = NoTerm>
+void run_pair_loop(const char* label, FluidState& state, PairView p, First first, Second second = {}) {
+  const auto go = [&](auto select) {
+    state.one_level ? launch_pair_loop<true>(label, state, p, select, first, second)
+                    : launch_pair_loop<false>(label, state, p, select, first, second);
+  };
+  state.all_active ? go(AllParticles{}) : go(state.active());
+}
+
+}  // namespace sim::SIM_BACKEND

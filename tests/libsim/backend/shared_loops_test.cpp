@@ -1,0 +1,131 @@
+/// Loops over neighbours that two effects share, against the two passes alone.
+
+#include <gmock/gmock.h>
+
+#include "libsim/solver/schedule.hpp"
+#include "tests/libsim/backend/effects_crowds.hpp"
+
+namespace sim::SIM_BACKEND {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Demand demand_of(std::vector<Effect> effects) {
+  Demand out;
+  out.effects = std::move(effects);
+  return out;
+}
+std::vector<std::string> names_of(const std::vector<Stage>& passes) {
+  std::vector<std::string> out;
+  for (const Stage& pass : passes) out.emplace_back(pass.name);
+  return out;
+}
+
+/// One in three is not solved; lists belong to slots then.
+void let_some_rest(FluidState& state) {
+  const int n = state.particles.size();
+  std::vector<int> slots, others;
+  std::vector<std::uint8_t> active;
+  for (int i = 0; i < n; ++i) {
+    active.push_back(i % 3 != 0);
+    if (i % 3 != 0) {
+      slots.push_back(i);
+    } else {
+      others.push_back(~i);
+    }
+  }
+  slots.insert(slots.end(), others.begin(), others.end());
+  const auto of_particle = state.neighbours.lists();
+  std::vector<std::vector<int>> of_slot;
+  for (const int i : slots) of_slot.push_back(of_particle[static_cast<std::size_t>(i < 0 ? ~i : i)]);
+  state.neighbours.assign(of_slot);
+  state.activation.slots.from_host(slots);
+  state.particles.all().active.from_host(active);
+  state.all_active = false;
+}
+
+FluidState warm_ball(bool one_level, bool resting) {
+  auto state = state_of(one_level ? cube(6, 0.1f) : mixed_ball(), one_level);
+  std::vector<float> warmth;
+  for (int i = 0; i < state.particles.size(); ++i) warmth.push_back(static_cast<float>(i * 37 % 11));
+  state.particles.all().temperature.from_host(warmth);
+  state.parameters.effects = coefficients_of({{EffectKind::Cohesion, 20}, {EffectKind::Heat, 0.02}});
+  if (resting) let_some_rest(state);
+  return state;
+}
+
+SIM_TEST(SharedLoop, FindsTheSumsOfBothPasses) {
+  NEEDS_EFFECTS;
+  for (const bool one_level : {true, false})
+    for (const bool resting : {true, false}) {
+      auto apart = warm_ball(one_level, resting);
+      for (const Stage& stage : all_stages())
+        if (stage.loop != SharedTerm::None) stage.run(apart);
+      auto together = warm_ball(one_level, resting);
+      for (const SharedLoop& loop : shared_loops()) loop.stage.run(together);
+      const auto normal = apart.particles.all().normal.to_host();
+      const auto warmth = apart.particles.all().temperature.to_host();
+      const auto shared_normal = together.particles.all().normal.to_host();
+      const auto shared_warmth = together.particles.all().temperature.to_host();
+      float longest = 0, warmed = 0;
+      for (std::size_t i = 0; i < normal.size(); ++i) {
+        EXPECT_NEAR(length(xyz(normal[i]) - xyz(shared_normal[i])), 0, 1e-5f);
+        EXPECT_NEAR(warmth[i], shared_warmth[i], 1e-5f);
+        if (resting && i % 3 == 0) {
+          EXPECT_EQ(length(xyz(normal[i])), 0);
+        }
+        longest = at_least(length(xyz(normal[i])), longest);
+        warmed = at_least(std::abs(warmth[i] - static_cast<float>(i * 37 % 11)), warmed);
+      }
+      EXPECT_GT(longest, 0.3f);
+      EXPECT_GT(warmed, 0.1f);
+    }
+}
+
+SIM_TEST(SharedLoop, IsTakenWhereBothEffectsAreListed) {
+  NEEDS_EFFECTS;
+  const auto both = compile_schedule(demand_of({{EffectKind::Cohesion, 20}, {EffectKind::Heat, 0.02}}));
+  EXPECT_THAT(names_of(both.substep_end),
+              ElementsAre("velocity", "normals and heat", "cohesion", "warm at walls", "buoyancy"));
+  EXPECT_THAT(both.explanation, HasSubstr("one loop     normals and heat"));
+  const auto heat = compile_schedule(demand_of({{EffectKind::Cohesion, 0}, {EffectKind::Heat, 0.02}}));
+  EXPECT_THAT(names_of(heat.substep_end),
+              ElementsAre("velocity", "conduct heat", "warm at walls", "buoyancy"));
+  EXPECT_THAT(heat.explanation, testing::Not(HasSubstr("one loop")));
+}
+
+SIM_TEST(SharedLoop, IsLeftWhereAPassBetweenWouldSeeTheDifference) {
+  const Stage first{.name = "first",
+                    .phase = Phase::SubstepEnd,
+                    .called_for = always_moves,
+                    .loop = SharedTerm::SurfaceNormals,
+                    .reads = columns(Column::Position),
+                    .writes = columns(Column::Normal)};
+  const Stage last{.name = "last",
+                   .phase = Phase::SubstepEnd,
+                   .called_for = always_moves,
+                   .loop = SharedTerm::Conduction,
+                   .reads = columns(Column::Position),
+                   .writes = columns(Column::Temperature)};
+  const Stage both{.name = "both", .phase = Phase::SubstepEnd, .writes = first.writes | last.writes};
+  const auto passes = [&](ColumnSet reads, ColumnSet writes) {
+    const Stage between{.name = "between",
+                        .phase = Phase::SubstepEnd,
+                        .called_for = always_moves,
+                        .reads = reads,
+                        .writes = writes};
+    return names_of(compile_schedule({}, {first, between, last},
+                                     {{SharedTerm::SurfaceNormals, SharedTerm::Conduction, both}})
+                        .substep_end);
+  };
+  const ColumnSet none;
+  EXPECT_THAT(passes(columns(Column::Velocity), columns(Column::Velocity)), ElementsAre("both", "between"));
+  EXPECT_THAT(passes(columns(Column::Position, Column::Normal), none), ElementsAre("both", "between"));
+  EXPECT_THAT(passes(none, columns(Column::Position)), ElementsAre("first", "between", "last"));
+  EXPECT_THAT(passes(none, columns(Column::Temperature)), ElementsAre("first", "between", "last"));
+  EXPECT_THAT(passes(columns(Column::Temperature), none), ElementsAre("first", "between", "last"));
+}
+
+}  // namespace
+}  // namespace sim::SIM_BACKEND
