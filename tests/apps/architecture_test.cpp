@@ -129,7 +129,7 @@ const Rooms rooms{
     {"libsim", 4},
     {"libsim/solver/stages", 4},
     {"libsim/solver", 5},
-    {"libsim/solver/effects", 5},
+    {"libsim/solver/effects", 6},
     {"libsim/solver/effects/loops", 5},
     {"libsim/render", 5},
     {"libsim/bake", 5},
