@@ -7,6 +7,7 @@
 
 #include "apps/bench/account_json.hpp"
 #include "apps/bench/cells.hpp"
+#include "apps/bench/effect_books.hpp"
 #include "apps/bench/frame.hpp"
 #include "apps/bench/launch_table.hpp"
 #include "apps/bench/render_timer.hpp"
@@ -180,6 +181,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
         {"neighbours_dropped", report.guards.neighbours_dropped},
         {"wall_projected", report.guards.wall_projected},
         {"nozzle_waited", report.guards.nozzle_waited}}},
+      {"effects", effect_books(scene, report)},
       {"divergence", divergence_json(fluid->divergence())},
       {"accounts", accounts.all},
       {"launches", passes.launches},

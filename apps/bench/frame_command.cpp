@@ -9,6 +9,7 @@
 
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
+#include "apps/bench/effect_books.hpp"
 #include "apps/bench/frame.hpp"
 #include "apps/bench/launch_table.hpp"
 #include "apps/bench/peers.hpp"
@@ -99,6 +100,7 @@ void print_frame(const nlohmann::json& result) {
               temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
               temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
               100 * temporal["solved_share_mean"].get<double>());
+  std::printf("%s", in_words(result["effects"]).c_str());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
   if (const auto& first = result["divergence"]; !first.is_null())
     std::printf("  divergence   %s\n", first["in_words"].get<std::string>().c_str());

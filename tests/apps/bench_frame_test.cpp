@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -128,6 +129,33 @@ TEST_F(BenchFrameE2e, RefusesStepsAndNumbersThatBreakTheWater) {
     EXPECT_NE(text.find("--dt"), std::string::npos) << text;
   }
   EXPECT_EQ(bench("--no-render --dt 1e-5"), 0) << text;
+}
+
+TEST_F(BenchFrameE2e, TellsTheBooksOfTheEffectsThatASceneLists) {
+  ASSERT_EQ(bench("--no-render"), 0) << text;
+  EXPECT_EQ(figures()["effects"], nlohmann::json::object());
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto of = [&](const std::string& scene) {
+    const auto ended = apps::test::run_shell(VIP_BIN_DIR "/vip-bench frame data/scenes/" + scene +
+                                             " --n-star 64 --backend cpu --frames 40 --warm-up 0 --no-render"
+                                             " --json " +
+                                             json().string());
+    text = ended.out;
+    return ended.exit_code;
+  };
+  ASSERT_EQ(of("sea_spray.toml"), 0) << text;
+  const auto foam = figures()["effects"]["foam"];
+  const auto count = [&](const char* key) { return foam[key].get<std::int64_t>(); };
+  EXPECT_GT(count("emitted"), 100);
+  EXPECT_GT(count("spray") + count("foam") + count("bubbles"), 0);
+  EXPECT_EQ(count("emitted"), count("spray") + count("foam") + count("bubbles") + count("dissolved") +
+                                  count("dropped") + count("left"));
+  EXPECT_NE(text.find("  foam         " + std::to_string(count("emitted")) + " made, "), std::string::npos);
+  ASSERT_EQ(of("hot_jet.toml"), 0) << text;
+  const auto heat = figures()["effects"]["heat"];
+  EXPECT_GT(heat["held"].get<double>(), 0);
+  EXPECT_EQ(heat["poured"], 0);
+  EXPECT_NE(text.find(" K m_* held; 0 poured"), std::string::npos) << text;
 }
 
 }  // namespace
