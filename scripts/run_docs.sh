@@ -31,6 +31,7 @@ docs/performance.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
 docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|scripts/window_protocols.sh
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
+docs/truth.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
 docs/stability.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
 "
 outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview|cells|checkpoints-to)'
