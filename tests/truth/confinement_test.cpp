@@ -162,9 +162,8 @@ void a_core_is_kept_longer(Backend backend) {
 void still_water(Backend backend) {
   NEEDS_EFFECTS;
   for (const int level : {0, 3}) {
-    const Pool pool{.level = level,
-                    .method = level ? MethodKind::LoRes : MethodKind::HiRes,
-                    .backend = backend};
+    const Pool pool{
+        .level = level, .method = level ? MethodKind::LoRes : MethodKind::HiRes, .backend = backend};
     const State start = still(pool);
     for (const double c : {0.0, 0.1, 0.5}) {
       const auto fluid = run_of(pool, start, c, 2, 50);

@@ -109,9 +109,8 @@ void plates_of_one_level(Backend backend) {
 }
 void a_plate_of_mixed_levels(Backend backend) {
   NEEDS_EFFECTS;
-  EXPECT_NEAR(
-      drag_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}), 1,
-      within);
+  EXPECT_NEAR(drag_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}),
+              1, within);
 }
 void a_plate_that_rests_in_turns(Backend backend) {
   NEEDS_EFFECTS;
