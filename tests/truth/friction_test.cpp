@@ -70,12 +70,22 @@ double rate_of(double c, double thickness) {
   return low * low * viscosity / (thickness * thickness);
 }
 
+/// Volume over the face on the floor, of a plate that stays a rectangle.
+double thickness_of(const State& state) {
+  double face = 12;
+  for (const std::size_t axis : {0u, 2u}) {
+    const double middle = mean(state, [&](const auto& p) { return place(p)[axis]; });
+    face *= std::sqrt(mean(state, [&](const auto& p) { return std::pow(place(p)[axis] - middle, 2); }));
+  }
+  return total_mass(state) / mass(ParticleState{}) * d * d * d / face;
+}
+
 /// c from how far the plate gets in all, as its way and its last speed tell: s = v / rate.
 double drag_back(const Plate& plate) {
   const auto fluid = start_of(plate);
   for (int k = 0; k < 20; ++k) fluid->step_frame();  // levels come about
   State state = fluid->read_state();
-  double thickness = 2 * mean(state, [](const auto& p) { return place(p)[1]; });
+  const double thickness = thickness_of(state);
   state = moving(state, [](const Vec3d&) { return Vec3d{speed, 0, 0}; });
   const double before = mean(state, [](const auto& p) { return place(p)[0]; });
   fluid->put(state);
@@ -84,7 +94,7 @@ double drag_back(const Plate& plate) {
   const double way = mean(state, [](const auto& p) { return place(p)[0]; }) - before;
   const double last = mean(state, [](const auto& p) { return velocity(p)[0]; });
   const double rate = (speed - last) / way;
-  const double after = 2 * mean(state, [](const auto& p) { return place(p)[1]; });
+  const double after = thickness_of(state);
   double low = 0, high = 10 * given;
   for (int i = 0; i < 50; ++i) {
     const double c = (low + high) / 2;

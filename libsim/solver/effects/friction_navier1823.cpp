@@ -9,11 +9,11 @@ namespace {
 /// A wall brakes what slides along it at the speed u by the stress rho_0 c u (Navier's law of slip; nu / c is
 /// its slip length), so that a sheet of depth H slides u H / c far. The stress acts on the layer that lies
 /// within a particle's own spacing d of the wall: there u falls at the rate c / d. Any lattice and any water
-/// without order have one particle a face d^2 there, whatever their level. Exact for a constant rate, so that
-/// no step is too long: a large c holds the layer.
+/// without order have one particle a face d^2 there, whatever their level. A substep takes at most all of u,
+/// so that none is too long: a large c holds the layer.
 SIM_FN Vec3 slowed(Vec3 v, Vec3 wall_velocity, Vec3 normal, float steps) {
   const Vec3 slip = v - wall_velocity;
-  return v - (1 - expf(-steps)) * (slip - dot(slip, normal) * normal);
+  return v - at_most(steps, 1.0f) * (slip - dot(slip, normal) * normal);
 }
 
 SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
