@@ -12,12 +12,10 @@ using sim::EffectOption;
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
-constexpr double given = 0.1;  // c, m/s
-constexpr int spacings = 24;   // of the start's level, across the tank
-constexpr int core = 4;        // in the same
-constexpr int frames = 6;
+constexpr int spacings = 24;  // of the start's level, across the tank
+constexpr int core = 5;       // in the same
 
-/// A pool eight spacings deep.
+/// A pool eight spacings deep. Speeds go as the root of its size, so that pools of all sizes move alike.
 struct Pool {
   int level = 0;                               ///< of the start
   MethodKind method = MethodKind::HiRes;       ///< that holds this level
@@ -30,8 +28,11 @@ struct Pool {
   double width() const { return spacings * spacing(); }
   double radius() const { return core * spacing(); }
   Vortex vortex() const { return {width()}; }
-  /// Circulation of a vortex whose largest speed is about 1 m/s.
-  double circulation() const { return 10 * radius(); }
+  double scale() const { return std::sqrt(spacing() / finest()); }
+  double given() const { return 0.25 * scale(); }
+  int frames() const { return static_cast<int>(std::lround(2 * scale())); }
+  /// Of a vortex whose largest speed is 1 m/s at level 0.
+  double circulation() const { return 10 * scale() * radius(); }
   Vec3d flow(const Vec3d& x) const {
     Vec3d v = vortex().at(x, radius() * radius());
     for (double& one : v) one *= circulation();
@@ -101,18 +102,23 @@ double confinement_back(const Pool& pool) {
   const State start = moving(still(pool), [&](const Vec3d& x) { return pool.flow(x); });
   double gained[2];
   std::string levels;
-  double time = 0;
+  double time = 0, solved = 1;
   for (const bool on : {false, true}) {
-    const auto fluid = run_of(pool, start, on ? given : 0);
-    for (int k = 0; k < frames; ++k) fluid->step_frame();
+    const auto fluid = run_of(pool, start, on ? pool.given() : 0);
+    // Who rests is chosen by what the last frames were like.
+    for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
+    fluid->put(start);
+    for (int k = 0; k < pool.frames(); ++k) fluid->step_frame();
     gained[on] = spin(pool, fluid->read_state());
-    time = frames * sim::Scene{}.frame_dt_s;
+    time = pool.frames() * sim::Scene{}.frame_dt_s;
     levels.clear();
-    for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
+    const auto report = fluid->report();
+    for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
+    solved = static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
   }
-  const double back = (gained[1] - gained[0]) / (time * given);
-  std::printf("level %d, beta %.2f, by level%s: confinement %.3f of what was given\n", pool.level, pool.beta,
-              levels.c_str(), back);
+  const double back = (gained[1] - gained[0]) / (time * pool.given());
+  std::printf("level %d, beta %.2f, %.2f solved, by level%s: confinement %.3f of what was given\n",
+              pool.level, pool.beta, solved, levels.c_str(), back);
   return back;
 }
 

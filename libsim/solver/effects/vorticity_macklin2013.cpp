@@ -9,7 +9,7 @@ namespace {
 /// Less of a neighbourhood than this does not count as a whole one: spray has no curl.
 constexpr float least_whole = 0.3f;
 /// Where the slope of |omega| over h is less than this share of |omega| it has no direction.
-constexpr float least_slope = 0.1f;
+constexpr float least_slope = 0.03f;
 /// w of the curl of particles that are not solved.
 constexpr float unknown = -1;
 
