@@ -12,6 +12,9 @@ using sim::EffectOption;
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
+/// Of the motion that is measured: later the method's own viscosity has its share of what was gained.
+constexpr int frames = 2;
+
 /// A pool a third as deep as it is wide. Speeds go as the root of its size, so that pools of all sizes move
 /// alike.
 struct Pool {
@@ -30,7 +33,6 @@ struct Pool {
   Vortex vortex() const { return {width()}; }
   double scale() const { return std::sqrt(spacing() / finest()); }
   double given() const { return 0.25 * scale(); }
-  int frames() const { return static_cast<int>(std::lround(2 * scale())); }
   /// Of a vortex whose largest speed is 1 m/s at level 0.
   double circulation() const { return 10 * scale() * radius(); }
   Vec3d flow(const Vec3d& x) const {
@@ -120,9 +122,9 @@ double confinement_back(const Pool& pool) {
     // Who rests is chosen by what the last frames were like.
     for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
     fluid->put(start);
-    for (int k = 0; k < pool.frames(); ++k) fluid->step_frame();
+    for (int k = 0; k < frames; ++k) fluid->step_frame();
     gained[on] = spin(pool, fluid->read_state());
-    time = pool.frames() * sim::Scene{}.frame_dt_s;
+    time = frames * sim::Scene{}.frame_dt_s;
     levels.clear();
     const auto report = fluid->report();
     for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
@@ -198,8 +200,8 @@ void energy_is_bounded(Backend backend) {
 }
 
 /// rms speed after two seconds, m/s.
-double unrest_of(const Pool& pool, const State& start, double confinement, Fed fed) {
-  const auto fluid = run_of(pool, start, confinement, fed, 0.01);
+double unrest_of(const Pool& pool, const State& start, double confinement) {
+  const auto fluid = run_of(pool, start, confinement, usual, 0.01);
   for (int k = 0; k < 120; ++k) fluid->step_frame();
   return std::sqrt(2 * energy(fluid->read_state()));
 }
@@ -209,10 +211,8 @@ void still_water_stays_still(Backend backend) {
     const auto method = level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
     const Pool pool{.spacings = 15, .core = 4, .level = level, .method = method, .backend = backend};
     const State start = pool.still();
-    const double without = unrest_of(pool, start, 0, usual), with = unrest_of(pool, start, 0.5, usual);
-    const double all = unrest_of(pool, start, 0.5, everything);
-    std::printf("still water of level %d: %.4f m/s without, %.4f with, %.4f where all is fed\n", level,
-                without, with, all);
+    const double without = unrest_of(pool, start, 0), with = unrest_of(pool, start, 0.5);
+    std::printf("still water of level %d: %.4f m/s without, %.4f with\n", level, without, with);
     EXPECT_LT(with, 1.1 * without);
   }
 }

@@ -100,12 +100,15 @@ double drag_back(const Plate& plate) {
     const double c = (low + high) / 2;
     (rate_of(c, (thickness + after) / 2) < rate ? low : high) = c;
   }
+  const auto report = fluid->report();
   std::string levels;
-  for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
+  for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
+  const double solved = static_cast<double>(report.temporal.active) / static_cast<double>(state.size());
   std::printf(
-      "level %d, beta %.2f, by level%s: slid %.3f m, left %.3f m/s, height %.3f to %.3f m: drag %.3f of what "
+      "level %d, beta %.2f, %.2f solved, by level%s: slid %.3f m, left %.3f m/s, height %.3f to %.3f m: drag "
+      "%.3f of what "
       "was given\n",
-      plate.level, plate.beta, levels.c_str(), way, last, thickness, after, low / given);
+      plate.level, plate.beta, solved, levels.c_str(), way, last, thickness, after, low / given);
   return low / given;
 }
 

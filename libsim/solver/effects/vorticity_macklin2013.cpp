@@ -14,8 +14,8 @@ constexpr float least_slope = 0.03f;
 constexpr float unknown = -1;
 
 /// omega_i = sum_j V_j grad W_ij x (v_j - v_i) / s_i with poly6, and |omega_i| in w. s_i = 1/3 sum_j V_j
-/// (x_j - x_i) grad W_ij is 1 inside and a half at a plane surface or wall: what turns as a whole has its own
-/// omega there too, at every level and mix of levels.
+/// (x_j - x_i) grad W_ij is 1 inside and about a half at a plane surface or wall: what turns as a whole has
+/// its omega inside, and within a seventh there, at every level and mix of levels.
 template <bool OneLevel, class Selection>
 struct Curl {
   Selection select;
