@@ -74,6 +74,8 @@ double natural_time(const Effect& effect, double d) {
       return std::sqrt(rest_density_kg_m3 * d * d * d / effect.coefficient);
     case EffectUnit::PerSecond:
       return 1 / effect.coefficient;
+    case EffectUnit::MetrePerSecond:
+      return d / effect.coefficient;
     case EffectUnit::MetreSquaredPerSecond:
       return d * d / effect.coefficient;
     case EffectUnit::Unlimited:

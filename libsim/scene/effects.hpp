@@ -21,6 +21,7 @@ inline constexpr double rest_density_kg_m3 = 1000;
 enum class EffectUnit {
   NewtonPerMetre,         ///< T = sqrt(rho_0 d^3 / c)
   PerSecond,              ///< T = 1 / c
+  MetrePerSecond,         ///< T = d / c
   MetreSquaredPerSecond,  ///< T = d^2 / c
   Unlimited               ///< of any unit, where no step is too long: T has no end
 };
@@ -37,6 +38,10 @@ enum class EffectUnit {
          "Akinci et al. 2013, adhesion, of a plane")                               \
   EFFECT(AirDrag, air_drag, rate_per_s, PerSecond, 0.5, no_effect,                 \
          "Macklin et al. 2014, air drag, of the exposed share")                    \
+  EFFECT(Vorticity, vorticity, confinement_m_s, MetrePerSecond, 0.2, no_effect,    \
+         "Macklin and Mueller 2013, vorticity confinement, of pairs of any size")  \
+  EFFECT(Friction, friction, drag_m_s, Unlimited, 1, no_effect,                    \
+         "Navier 1823, a stress that grows with the slip along walls")             \
   EFFECT(Heat, heat, diffusivity_m2_s, MetreSquaredPerSecond, 0.2, no_effect,      \
          "Cleary and Monaghan 1999, conduction; Boussinesq's buoyancy")            \
   EFFECT(Foam, foam, emission_per_s, Unlimited, 1, no_effect,                      \
@@ -57,6 +62,8 @@ inline constexpr EffectKind no_effect = EffectKind::count;
   OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)            \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                  \
   OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)          \
+  OPTION(VorticityFrom, Vorticity, from_per_s, 2, 0, 1e4)            \
+  OPTION(VorticityMost, Vorticity, most_per_s, 50, 1e-3, 1e6)        \
   OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1)         \
   OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)           \
   OPTION(HeatWall, Heat, wall_k, 0, 0, 1e4)                          \

@@ -210,6 +210,14 @@ TEST(Effects, ViscosityAsksForNoShorterSubstepsAndAddsToTheWaters) {
   }
 }
 
+TEST(Effects, FrictionAsksForNoShorterSubstepsAndVorticityForAFifthOfTheWayThroughASpacing) {
+  NEEDS_EFFECTS;
+  EXPECT_EQ(sim::longest_step({{EffectKind::Friction, 1e6}}, 0.01).of, sim::no_effect);
+  const auto longest = sim::longest_step({{EffectKind::Friction, 1}, {EffectKind::Vorticity, 4}}, 0.1);
+  EXPECT_EQ(longest.of, EffectKind::Vorticity);
+  EXPECT_NEAR(longest.seconds, 0.2 * 0.1 / 4, 1e-12);
+}
+
 TEST(Effects, AreCheckedInScenesThatNoFileDescribes) {
   NEEDS_EFFECTS;
   const auto fails = [](std::vector<sim::Effect> effects, const std::string& with) {
@@ -227,10 +235,8 @@ TEST(Effects, AreCheckedInScenesThatNoFileDescribes) {
 TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
   NEEDS_EFFECTS;
   auto scene = small_dam();
-  scene.effects = {{EffectKind::Viscosity, 0.05},
-                   {EffectKind::Cohesion, 20},
-                   {EffectKind::Adhesion, 10},
-                   {EffectKind::AirDrag, 2}};
+  scene.effects = {{EffectKind::Viscosity, 0.05}, {EffectKind::Cohesion, 20},   {EffectKind::Adhesion, 10},
+                   {EffectKind::AirDrag, 2},      {EffectKind::Vorticity, 0.2}, {EffectKind::Friction, 0.5}};
   auto options = options_of(sim::MethodKind::Ours);
   options.wall_impulse = true;
   const auto fluid = sim::make_simulation(scene, options);
@@ -311,6 +317,8 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   const auto splash = scales("splash");
   EXPECT_NEAR(splash.reynolds, 900, 0.5);
   EXPECT_TRUE(std::isinf(splash.weber));
+  EXPECT_NEAR(scales("wake").reynolds, 2500, 0.5);
+  EXPECT_NEAR(scales("rough_floor").reynolds, 1200, 0.5);
   EXPECT_NEAR(scales("hot_jet").reynolds, 240, 0.5);
   const auto spray = scales("sea_spray");
   EXPECT_NEAR(spray.reynolds, 2000, 0.5);

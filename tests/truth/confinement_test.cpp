@@ -1,0 +1,233 @@
+/// The effect vorticity measured back from what it adds to a Lamb-Oseen vortex: c omega(r) round its axis.
+
+#include "libsim/scene/effects.hpp"
+#include "tests/truth/lamb_oseen.hpp"
+
+namespace {
+
+using namespace truth_test;
+using sim::EffectKind;
+using sim::EffectOption;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+/// Of the motion that is measured: later the method's own viscosity has its share of what was gained.
+constexpr int frames = 2;
+
+/// A pool a third as deep as it is wide. Speeds go as the root of its size, so that pools of all sizes move
+/// alike.
+struct Pool {
+  int spacings = 21;                           ///< of the start's level, across the tank
+  int core = 5;                                ///< in the same
+  int level = 0;                               ///< of the start
+  MethodKind method = MethodKind::HiRes;       ///< that holds this level
+  std::optional<sim::TargetRegion> targets{};  ///< in widths, from the floor's middle
+  double beta = 1;
+  Backend backend = Backend::Cpu;
+
+  double finest() const { return 0.05; }
+  double spacing() const { return finest() * std::cbrt(1 << level); }
+  double width() const { return spacings * spacing(); }
+  double radius() const { return core * spacing(); }
+  Vortex vortex() const { return {width()}; }
+  double scale() const { return std::sqrt(spacing() / finest()); }
+  double given() const { return 0.25 * scale(); }
+  /// Of a vortex whose largest speed is 1 m/s at level 0.
+  double circulation() const { return 10 * scale() * radius(); }
+  Vec3d flow(const Vec3d& x) const {
+    Vec3d v = vortex().at(x, radius() * radius());
+    for (double& one : v) one *= circulation();
+    return v;
+  }
+  /// Its water at rest, with its levels; and in this flow.
+  State still() const;
+  State turning() const {
+    return moving(still(), [this](const Vec3d& x) { return flow(x); });
+  }
+  double omega(double r) const {
+    const double c2 = radius() * radius();
+    return circulation() / (pi * c2) * std::exp(-r * r / c2);
+  }
+};
+
+/// Options of the effect.
+struct Fed {
+  double from, most;
+};
+constexpr Fed everything{0, 1e6};
+constexpr Fed usual{sim::usual_options[static_cast<std::size_t>(EffectOption::VorticityFrom)],
+                    sim::usual_options[static_cast<std::size_t>(EffectOption::VorticityMost)]};
+
+std::unique_ptr<sim::Simulation> run_of(const Pool& pool, const State& start, double confinement, Fed fed,
+                                        double viscosity = 0) {
+  auto scene = fluid_test::tank({pool.width(), pool.width(), pool.width()}, {});
+  scene.viscosity_m2_s = viscosity;
+  scene.effects = {{EffectKind::Vorticity, confinement}};
+  scene.effects[0].options[static_cast<std::size_t>(EffectOption::VorticityFrom)] = fed.from;
+  scene.effects[0].options[static_cast<std::size_t>(EffectOption::VorticityMost)] = fed.most;
+  sim::SimulationOptions options;
+  options.backend = pool.backend;
+  options.method = pool.method;
+  options.substeps = 2;
+  options.start = start;
+  const double finest_cells = total_mass(start) / mass(ParticleState{});
+  options.n_star = static_cast<std::int64_t>(finest_cells / 8) + 1;
+  scene.fill_max_m = {2 * pool.finest() * static_cast<double>(options.n_star), 2 * pool.finest(),
+                      2 * pool.finest()};
+  if (pool.targets) {
+    options.forced_targets = *pool.targets;
+    auto& region = *options.forced_targets;
+    region.centre_m = {pool.width() * (0.5 + region.centre_m[0]), pool.width() * region.centre_m[1],
+                       pool.width() * (0.5 + region.centre_m[2])};
+    region.radius_m *= pool.width();
+  }
+  if (pool.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(pool.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  return sim::make_simulation(scene, options);
+}
+
+State Pool::still() const {
+  State state = settled(backend, {width(), width() / 3, width()}, spacing(), 40);
+  for (auto& p : state) p.level = level;
+  if (!targets) return state;
+  const auto fluid = run_of(*this, state, 0, everything);
+  for (int k = 0; k < 30; ++k) fluid->step_frame();
+  return fluid->read_state();
+}
+
+/// Speed round the tank's middle over omega(r), by least squares within two cores, s.
+double spin(const Pool& pool, const State& state) {
+  double along = 0, norm = 0;
+  for (const auto& p : state) {
+    const double x = place(p)[0] - pool.width() / 2, z = place(p)[2] - pool.width() / 2;
+    const double r = std::hypot(x, z);
+    if (r > 2 * pool.radius() || r == 0) continue;
+    const double omega = pool.omega(r);
+    along += mass(p) * omega * (velocity(p)[0] * z - velocity(p)[2] * x) / r;
+    norm += mass(p) * omega * omega;
+  }
+  return along / norm;
+}
+
+double confinement_back(const Pool& pool) {
+  const State start = pool.turning();
+  double gained[2];
+  std::string levels;
+  double time = 0, solved = 1;
+  for (const bool on : {false, true}) {
+    const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
+    // Who rests is chosen by what the last frames were like.
+    for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
+    fluid->put(start);
+    for (int k = 0; k < frames; ++k) fluid->step_frame();
+    gained[on] = spin(pool, fluid->read_state());
+    time = frames * sim::Scene{}.frame_dt_s;
+    levels.clear();
+    const auto report = fluid->report();
+    for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
+    solved = static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
+  }
+  const double back = (gained[1] - gained[0]) / (time * pool.given());
+  std::printf("level %d, beta %.2f, %.2f solved, by level%s: confinement %.3f of what was given\n",
+              pool.level, pool.beta, solved, levels.c_str(), back);
+  return back;
+}
+
+constexpr double within = 0.15;
+sim::TargetRegion half_fine() { return {{-0.5, 0, 0}, 0.5, 0, 3}; }
+
+void vortices_of_one_level(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(confinement_back({.backend = backend}), 1, within);
+  EXPECT_NEAR(confinement_back({.level = 3, .method = MethodKind::LoRes, .backend = backend}), 1, within);
+}
+void a_vortex_of_mixed_levels(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(
+      confinement_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}),
+      1, within);
+}
+void a_vortex_that_rests_in_turns(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(confinement_back({.beta = 0.67, .backend = backend}), 1, within);
+}
+
+double energy(const State& state) {
+  return mean(state, [](const auto& p) {
+    const Vec3d v = velocity(p);
+    return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2;
+  });
+}
+
+/// The core stays narrower than without, and the water's energy below what it began with.
+void a_core_is_kept_longer(Backend backend) {
+  NEEDS_EFFECTS;
+  const Pool pool{.backend = backend};
+  const State start = pool.turning();
+  double core[2], left[2];
+  for (const bool on : {false, true}) {
+    const auto fluid = run_of(pool, start, on ? 0.1 : 0, usual);
+    for (int k = 0; k < 30; ++k) fluid->step_frame();
+    const State state = fluid->read_state();
+    core[on] = std::sqrt(core_of(state, pool.vortex(), pool.radius()));
+    left[on] = energy(state) / energy(start);
+  }
+  std::printf("core after 0.5 s over that at first: %.3f without, %.3f with; energy: %.3f, %.3f\n",
+              core[0] / pool.radius(), core[1] / pool.radius(), left[0], left[1]);
+  EXPECT_LT(core[1], 0.9 * core[0]);
+  EXPECT_GT(left[1], left[0]);
+  EXPECT_LT(left[1], 1);
+}
+
+/// Ten times what a scene would list: the water's energy finds an end.
+void energy_is_bounded(Backend backend) {
+  NEEDS_EFFECTS;
+  const Pool pool{.spacings = 15, .core = 4, .backend = backend};
+  const State start = pool.turning();
+  const auto fluid = run_of(pool, start, 1, usual);
+  double most = 0;
+  for (int k = 0; k < 150; ++k) {
+    fluid->step_frame();
+    if (k % 10 == 0) most = std::max(most, energy(fluid->read_state()) / energy(start));
+  }
+  const double last = energy(fluid->read_state()) / energy(start);
+  std::printf("confinement of 1 m/s for 2.5 s: energy %.2f at most, %.2f at last\n", most, last);
+  EXPECT_LT(most, 1.8);
+  EXPECT_LT(last, most);
+}
+
+/// rms speed after two seconds, m/s.
+double unrest_of(const Pool& pool, const State& start, double confinement) {
+  const auto fluid = run_of(pool, start, confinement, usual, 0.01);
+  for (int k = 0; k < 120; ++k) fluid->step_frame();
+  return std::sqrt(2 * energy(fluid->read_state()));
+}
+void still_water_stays_still(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const int level : {0, 3}) {
+    const auto method = level == 0 ? MethodKind::HiRes : MethodKind::LoRes;
+    const Pool pool{.spacings = 15, .core = 4, .level = level, .method = method, .backend = backend};
+    const State start = pool.still();
+    const double without = unrest_of(pool, start, 0), with = unrest_of(pool, start, 0.5);
+    std::printf("still water of level %d: %.4f m/s without, %.4f with\n", level, without, with);
+    EXPECT_LT(with, 1.1 * without);
+  }
+}
+
+TEST(TruthVorticity, VorticesOfOneLevelGainWhatTheyShould) { vortices_of_one_level(Backend::Cpu); }
+TEST(TruthVorticity, AVortexOfMixedLevelsGains) { a_vortex_of_mixed_levels(Backend::Cpu); }
+TEST(TruthVorticity, AVortexThatRestsInTurnsGains) { a_vortex_that_rests_in_turns(Backend::Cpu); }
+TEST(TruthVorticity, ACoreIsKeptLonger) { a_core_is_kept_longer(Backend::Cpu); }
+TEST(TruthVorticity, EnergyIsBounded) { energy_is_bounded(Backend::Cpu); }
+TEST(TruthVorticity, StillWaterStaysStill) { still_water_stays_still(Backend::Cpu); }
+TEST(TruthVorticityGpu, VorticesOfOneLevelGainWhatTheyShould) { vortices_of_one_level(Backend::Cuda); }
+TEST(TruthVorticityGpu, AVortexOfMixedLevelsGains) { a_vortex_of_mixed_levels(Backend::Cuda); }
+TEST(TruthVorticityGpu, AVortexThatRestsInTurnsGains) { a_vortex_that_rests_in_turns(Backend::Cuda); }
+TEST(TruthVorticityGpu, ACoreIsKeptLonger) { a_core_is_kept_longer(Backend::Cuda); }
+TEST(TruthVorticityGpu, EnergyIsBounded) { energy_is_bounded(Backend::Cuda); }
+TEST(TruthVorticityGpu, StillWaterStaysStill) { still_water_stays_still(Backend::Cuda); }
+
+}  // namespace
