@@ -13,7 +13,7 @@ struct NeighbourPair {
   float slope;  ///< (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope times the way
 };
 
-/// A term that adds nothing. The others are like it: `sums`, how many of the three they use; `of_all`,
+/// A term that adds nothing. The others are like it: `sums`, how many of the four they use; `of_all`,
 /// whether those that are not solved have them too; Self, what is read once of particle i; add(), what a
 /// neighbour adds; finish(), by one lane, when all have; skip(), for those that have no sums.
 struct NoTerm {
@@ -21,8 +21,8 @@ struct NoTerm {
   static constexpr bool of_all = false;
   struct Self {};
   SIM_FN Self self(int) const { return {}; }
-  SIM_FN void add(const NeighbourPair&, Self, float&, float&, float&) const {}
-  SIM_FN void finish(int, Vec4, Self, float, float, float) const {}
+  SIM_FN void add(const NeighbourPair&, Self, float&, float&, float&, float&) const {}
+  SIM_FN void finish(int, Vec4, Self, float, float, float, float) const {}
   SIM_FN void skip(int) const {}
 };
 
@@ -42,8 +42,8 @@ struct PairLoop {
   };
 
   /// What particle j adds; see SIM_LANES.
-  SIM_FN void add(int j, const Self& me, float& ax, float& ay, float& az, float& bx, float& by,
-                  float& bz) const {
+  SIM_FN void add(int j, const Self& me, float& a0, float& a1, float& a2, float& a3, float& b0, float& b1,
+                  float& b2, float& b3) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);
     const float dx = me.at.x - other.x;
@@ -51,8 +51,8 @@ struct PairLoop {
     const float dz = me.at.z - other.z;
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
     const NeighbourPair pair{j, dx, dy, dz, me.pair.mass_ratio(other.w) * kernel.poly6 * t * t};
-    first.add(pair, me.first, ax, ay, az);
-    second.add(pair, me.second, bx, by, bz);
+    first.add(pair, me.first, a0, a1, a2, a3);
+    second.add(pair, me.second, b0, b1, b2, b3);
   }
 
   /// Over the lanes, where the term has so many.
@@ -77,25 +77,29 @@ struct PairLoop {
     }
     const Vec4 at = position[i];
     const Self me{at, PairKernel<OneLevel>(at.w), first.self(i), second.self(i)};
-    float ax = 0;
-    float ay = 0;
-    float az = 0;
-    float bx = 0;
-    float by = 0;
-    float bz = 0;
+    float a0 = 0;
+    float a1 = 0;
+    float a2 = 0;
+    float a3 = 0;
+    float b0 = 0;
+    float b1 = 0;
+    float b2 = 0;
+    float b3 = 0;
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(ax, ay, az, bx, by, bz)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, ax, ay, az, bx, by, bz);
-    ax = sum<First, 1>(team, ax);
-    ay = sum<First, 2>(team, ay);
-    az = sum<First, 3>(team, az);
-    bx = sum<Second, 1>(team, bx);
-    by = sum<Second, 2>(team, by);
-    bz = sum<Second, 3>(team, bz);
+    SIM_LANES(a0, a1, a2, a3, b0, b1, b2, b3)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, a0, a1, a2, a3, b0, b1, b2, b3);
+    a0 = sum<First, 1>(team, a0);
+    a1 = sum<First, 2>(team, a1);
+    a2 = sum<First, 3>(team, a2);
+    a3 = sum<First, 4>(team, a3);
+    b0 = sum<Second, 1>(team, b0);
+    b1 = sum<Second, 2>(team, b1);
+    b2 = sum<Second, 3>(team, b2);
+    b3 = sum<Second, 4>(team, b3);
     if (team.rank() > 0) return;
-    if (First::of_all || solved) first.finish(i, at, me.first, ax, ay, az);
-    if (Second::of_all || solved) second.finish(i, at, me.second, bx, by, bz);
+    if (First::of_all || solved) first.finish(i, at, me.first, a0, a1, a2, a3);
+    if (Second::of_all || solved) second.finish(i, at, me.second, b0, b1, b2, b3);
   }
 };
 

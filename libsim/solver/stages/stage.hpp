@@ -29,7 +29,7 @@ struct Demand {
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
 /// What a stage sums over neighbours, where another may share the loop (SharedLoop).
-enum class SharedTerm { None, SurfaceNormals, Conduction };
+enum class SharedTerm { None, SurfaceNormals, Curl, Conduction };
 
 struct Stage {
   const char* name;

@@ -18,10 +18,10 @@ struct Conduction {
 
   using Self = float;  ///< its own temperature
   SIM_FN Self self(int i) const { return temperature[i]; }
-  SIM_FN void add(const NeighbourPair& pair, Self own, float& gain, float&, float&) const {
+  SIM_FN void add(const NeighbourPair& pair, Self own, float& gain, float&, float&, float&) const {
     gain += pair.slope * (temperature[pair.j] - own);
   }
-  SIM_FN void finish(int i, Vec4 at, Self own, float gain, float, float) const {
+  SIM_FN void finish(int i, Vec4 at, Self own, float gain, float, float, float) const {
     next[i] = own + spread * mass_of(at.w, 1) * gain;
   }
   SIM_FN void skip(int) const {}

@@ -2,19 +2,28 @@
 /// of both.
 
 #include "libsim/solver/effects/loops/conduction.hpp"
+#include "libsim/solver/effects/loops/curl.hpp"
 #include "libsim/solver/effects/loops/surface_normals.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
 
-using View = ColumnView<columns(Column::Position, Column::Neighbours),
-                        columns(Column::Normal, Column::Temperature, Column::TemperatureNext)>;
+using NormalAndHeatView = ColumnView<columns(Column::Position, Column::Neighbours),
+                                     columns(Column::Normal, Column::Temperature, Column::TemperatureNext)>;
 
-void find_normals_and_conduct(FluidState& state, View p) {
+void find_normals_and_conduct(FluidState& state, NormalAndHeatView p) {
   with_surface_normals(state, p, [&](auto normals) {
     run_pair_loop("normals and heat", state, p, normals, conduction_of(state, p));
   });
+  p.swap<Column::Temperature, Column::TemperatureNext>();
+}
+
+using CurlAndHeatView = ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
+                                   columns(Column::Normal, Column::Temperature, Column::TemperatureNext)>;
+
+void find_curl_and_conduct(FluidState& state, CurlAndHeatView p) {
+  run_pair_loop("vorticity and heat", state, p, curl_of(p), conduction_of(state, p));
   p.swap<Column::Temperature, Column::TemperatureNext>();
 }
 
@@ -22,7 +31,9 @@ void find_normals_and_conduct(FluidState& state, View p) {
 
 std::vector<SharedLoop> shared_loops() {
   return {{SharedTerm::SurfaceNormals, SharedTerm::Conduction,
-           stage_of<find_normals_and_conduct>({.name = "normals and heat", .phase = Phase::SubstepEnd})}};
+           stage_of<find_normals_and_conduct>({.name = "normals and heat", .phase = Phase::SubstepEnd})},
+          {SharedTerm::Curl, SharedTerm::Conduction,
+           stage_of<find_curl_and_conduct>({.name = "vorticity and heat", .phase = Phase::SubstepEnd})}};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -16,13 +16,13 @@ struct SurfaceNormals {
 
   struct Self {};
   SIM_FN Self self(int) const { return {}; }
-  SIM_FN void add(const NeighbourPair& pair, Self, float& nx, float& ny, float& nz) const {
+  SIM_FN void add(const NeighbourPair& pair, Self, float& nx, float& ny, float& nz, float&) const {
     const float along = 6 * pair.slope;
     nx -= along * pair.x;
     ny -= along * pair.y;
     nz -= along * pair.z;
   }
-  SIM_FN void finish(int i, Vec4 at, Self, float nx, float ny, float nz) const {
+  SIM_FN void finish(int i, Vec4 at, Self, float nx, float ny, float nz, float) const {
     Vec3 wall;
     walls.missing(xyz(at), at.w, wall);
     normal[i] = with_w(at.w * (mass_of(at.w, 1) * Vec3{nx, ny, nz} + wall), 0);
