@@ -1,0 +1,153 @@
+#include "libsim/render/floor_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/render/render_passes.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr float height_steps = 16777216;  // of 24 bits, up to four times the tank
+// Light that meets the floor went into the water at most so far beside its straight way, over the water's
+// depth: below the sun of shaders/light.glsl flat water bends it by 0.14 and 0.18, waves by less.
+constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
+constexpr int border_cells = 8;           // beyond that, for the smoothing
+constexpr float smoothing_r = 2;          // hides the lattice of the particles and keeps waves of 12 of them
+constexpr int surface_cell_in_cells = 2;  // edge over that of a cell of the floor
+
+std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
+
+std::string defines_of(const Scene& scene, const std::string& more = "") {
+  return (scene.obstacles.empty() ? "" : "#define OBSTACLES\n") + more;
+}
+
+}  // namespace
+
+FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
+  const auto tank = [&](std::size_t k) { return static_cast<float>(scene.tank_size_m[k]); };
+  const float longest = std::max(tank(0), tank(2));
+  const float edge = longest / static_cast<float>(options.floor_cells);
+  const float surface_edge = edge * surface_cell_in_cells;
+  // Water is seldom deeper than wide, and what is higher is in the air.
+  const float deepest = std::min(tank(1), longest);
+  const auto cells = [](float length, float of) { return static_cast<std::int32_t>(std::ceil(length / of)); };
+  const int before = cells(aside_with_the_sun * deepest, surface_edge) + border_cells;
+  const int behind = cells(aside_against_it * deepest, surface_edge) + border_cells;
+  const float low = -static_cast<float>(before) * surface_edge;
+  block_ = {{tank(0), tank(1), tank(2), 4 * tank(1) / height_steps},
+            {before + cells(tank(0), surface_edge) + behind, before + cells(tank(2), surface_edge) + behind,
+             cells(tank(0), edge), cells(tank(2), edge)},
+            {low, low, surface_edge, options.radius_scale},
+            {edge, 1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, smoothing_r},
+            {strength_of(scene.picture_effects, PictureEffectKind::Shadows),
+             strength_of(scene.picture_effects, PictureEffectKind::Caustics), 0, 0}};
+  splat_ = compute_program("light_splat.comp");
+  smooth_first_ = compute_program("light_smooth.comp", "#define FIRST\n");
+  smooth_second_ = compute_program("light_smooth.comp");
+  maps_.reserve(sizeof block_);
+  maps_.write(&block_, sizeof block_);
+  const auto& [surface_x, surface_z, floor_x, floor_z] = block_.cells;
+  for (GlBuffer* buffer : {&top_, &thickness_}) buffer->reserve(4 * size_of(surface_x, surface_z));
+  for (GlBuffer* buffer : {&surface_a_, &surface_b_}) buffer->reserve(16 * size_of(surface_x, surface_z));
+  defines_ = "#define LIT_FLOOR\n";
+  if (strength(PictureEffectKind::Shadows) > 0) {
+    shadows_ = compute_program("shadows.comp", defines_of(scene).c_str());
+    shadow_.reserve(8 * size_of(floor_x, floor_z));
+    defines_ += "#define SHADOWS\n";
+  }
+  if (strength(PictureEffectKind::Caustics) > 0) {
+    caustics_ = compute_program("caustics.comp");
+    caustic_.reserve(4 * size_of(floor_x, floor_z));
+    defines_ += "#define CAUSTICS\n";
+  }
+}
+
+void FloorLight::splat(const FloorWater& water) {
+  top_.fill(0);
+  thickness_.fill(0);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  if (water.count == 0) return;
+  splat_.use();
+  glUniform1ui(splat_.uniform("particle_count"), static_cast<GLuint>(water.count));
+  bind_storage({water.particles, top_.name(), thickness_.name()});
+  dispatch_particles(water.count);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FloorLight::smooth() {
+  const auto& cells = block_.cells;
+  smooth_first_.use();
+  glUniform2i(smooth_first_.uniform("direction"), 1, 0);
+  bind_storage({top_.name(), thickness_.name(), surface_a_.name()});
+  dispatch_pixels(cells[0], cells[1]);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  smooth_second_.use();
+  glUniform2i(smooth_second_.uniform("direction"), 0, 1);
+  bind_storage({surface_a_.name(), 0, surface_b_.name()});
+  dispatch_pixels(cells[0], cells[1]);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FloorLight::cast_shadows(const FloorWater& water) {
+  shadows_.use();
+  if (water.obstacle_count > 0) glUniform1i(shadows_.uniform("obstacle_count"), water.obstacle_count);
+  bind_storage({surface_b_.name(), shadow_.name(), 0, 0, water.obstacles});
+  dispatch_pixels(block_.cells[2], block_.cells[3]);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FloorLight::gather_caustics() {
+  caustic_.fill(0);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  caustics_.use();
+  bind_storage({surface_b_.name(), caustic_.name()});
+  dispatch_pixels(block_.cells[0], block_.cells[1]);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FloorLight::compute(const FloorWater& water, PassTimer& timer) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, maps_.name());
+  splat(water);
+  smooth();
+  timer.mark("light");
+  if (strength(PictureEffectKind::Shadows) > 0) {
+    cast_shadows(water);
+    timer.mark(traits_of(PictureEffectKind::Shadows).word);
+  }
+  if (strength(PictureEffectKind::Caustics) > 0) {
+    gather_caustics();
+    timer.mark(traits_of(PictureEffectKind::Caustics).word);
+  }
+}
+
+void FloorLight::bind() const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, maps_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, shadow_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, caustic_.name());
+}
+
+FloorMap FloorLight::read() const {
+  FloorMap out;
+  out.width = block_.cells[2];
+  out.depth = block_.cells[3];
+  out.cell_m = block_.floor_grid[0];
+  const auto cells = static_cast<std::size_t>(size_of(out.width, out.depth));
+  if (strength(PictureEffectKind::Shadows) > 0) {
+    std::vector<std::array<float, 2>> words(cells);
+    shadow_.read(words.data(), static_cast<std::int64_t>(8 * cells));
+    for (const auto& [open, way] : words) {
+      out.open.push_back(open);
+      out.way_m.push_back(way);
+    }
+  }
+  if (strength(PictureEffectKind::Caustics) > 0) {
+    std::vector<std::uint32_t> words(cells);
+    caustic_.read(words.data(), static_cast<std::int64_t>(4 * cells));
+    for (const std::uint32_t word : words) out.gathered.push_back(static_cast<float>(word) / 65536);
+  }
+  return out;
+}
+
+}  // namespace sim

@@ -1,0 +1,57 @@
+#pragma once
+/// The picture effects of a scene: maps of the light on the floor, the same for every view. Internal to the
+/// renderer.
+
+#include <cstdint>
+#include <string>
+
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/render/gl_buffer.hpp"
+#include "libsim/render/gl_program.hpp"
+#include "libsim/render/pass_timer.hpp"
+
+namespace sim {
+
+/// What the passes read.
+struct FloorWater {
+  unsigned particles = 0;  ///< GL buffer of RenderParticle
+  std::int64_t count = 0;
+  unsigned obstacles = 0;  ///< GL buffer of their poses (shaders/obstacles.glsl); 0: none
+  int obstacle_count = 0;
+};
+
+/// Made only where a scene lists a picture effect. Needs a current context at every call and when destroyed.
+class FloorLight {
+ public:
+  FloorLight(const Scene& scene, const RenderOptions& options);
+
+  /// What shaders that show the floor must be told.
+  const std::string& defines() const { return defines_; }
+  void compute(const FloorWater& water, PassTimer& timer);
+  /// For shaders that show the floor, after a barrier.
+  void bind() const;
+  FloorMap read() const;
+
+ private:
+  /// std140 layout of shaders/floor_maps.glsl.
+  struct Block {
+    std::array<float, 4> tank;
+    std::array<std::int32_t, 4> cells;
+    std::array<float, 4> surface_grid, floor_grid, strength;
+  };
+
+  float strength(PictureEffectKind kind) const { return block_.strength[static_cast<std::size_t>(kind)]; }
+  void splat(const FloorWater& water);
+  void smooth();
+  void cast_shadows(const FloorWater& water);
+  void gather_caustics();
+
+  Block block_;
+  std::string defines_;
+  GlProgram splat_, smooth_first_, smooth_second_, shadows_, caustics_;
+  GlBuffer maps_;                                     // the Block
+  GlBuffer top_, thickness_, surface_a_, surface_b_;  // surface map; smoothed it ends in surface_b_
+  GlBuffer shadow_, caustic_;                         // floor maps of the effects that there are
+};
+
+}  // namespace sim
