@@ -6,6 +6,8 @@ layout(local_size_x = 16, local_size_y = 8) in;
 #ifdef FIRST
 layout(std430, binding = 0) readonly buffer Top { uint top[]; };
 layout(std430, binding = 1) readonly buffer Thickness { uint thickness[]; };
+layout(std430, binding = 3) readonly buffer ImageTop { uint image_top[]; };
+layout(std430, binding = 4) readonly buffer ImageThickness { uint image_thickness[]; };
 #else
 layout(std430, binding = 0) readonly buffer Source { vec4 source[]; };
 #endif
@@ -17,9 +19,10 @@ const vec2 narrow = vec2(2.0, 4.0);  // particle radii: within the first a pair 
 
 vec4 cell_at(int at) {
 #ifdef FIRST
-  const uint key = top[at];
+  const uint key = max(top[at], image_top[at]);
+  const float length_m = (float(thickness[at]) + float(image_thickness[at])) * maps.floor_grid.z;
   const float radius = key == 0u ? 0.0 : maps.surface_grid.z * exp2((float(key & 255u) - 128.0) / 16.0);
-  return vec4(float(key >> 8) * maps.tank.w, radius, float(thickness[at]) * maps.floor_grid.z, 0.0);
+  return vec4(float(key >> 8) * maps.tank.w, radius, length_m, 0.0);
 #else
   return source[at];
 #endif

@@ -1,6 +1,6 @@
 // Water as the sun sees it: one invocation a particle. The highest place of a ray that is in water, and the length of
-// the ray in water. Mirror images beyond the walls that the sun is behind let the water go on there, so that light
-// that came in through the glass is the light of a wider pool.
+// the ray in water. IMAGES: mirror images of the pool beyond the walls, where the water goes on in them: light that
+// came in through the glass is the light of a wider pool, and so is what leaves it.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #include "usable.glsl"
@@ -8,6 +8,10 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) buffer Top { uint top[]; };              // height in 24 bits, radius in 8; 0: no water
 layout(std430, binding = 2) buffer Thickness { uint thickness[]; };  // fixed point
+#ifdef IMAGES
+layout(std430, binding = 3) readonly buffer OwnTop { uint own_top[]; };  // what the particles themselves left
+layout(std430, binding = 4) readonly buffer OwnThickness { uint own_thickness[]; };
+#endif
 uniform uint particle_count;
 
 const float least_cells = 0.75;  // radius of a sphere that meets a cell's middle wherever it is
@@ -49,6 +53,20 @@ void splat(vec3 centre, float own_radius) {
   }
 }
 
+#ifdef IMAGES
+// Is the sun's ray through a particle in water most of its way through the tank? Spray and jets have no image, which
+// would darken the floor a second time.
+bool is_in_pool(vec4 particle) {
+  const vec2 through = particle.xz - leans * particle.y;
+  const ivec2 cell = ivec2(floor((through - maps.surface_grid.xy) / maps.surface_grid.z));
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, maps.cells.xy))) return false;
+  const int at = cell.y * maps.cells.x + cell.x;
+  const vec2 leaves = -through / leans;  // heights where it leaves by the walls
+  const float height = float(own_top[at] >> 8) * maps.tank.w - max(max(leaves.x, leaves.y), 0.0);
+  return float(own_thickness[at]) * maps.floor_grid.z * sun.y > 0.5 * max(height, particle.w);
+}
+#endif
+
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
   if (i >= particle_count) return;
@@ -57,10 +75,19 @@ void main() {
   const vec3 at = particle.xyz;
   const vec3 size = maps.tank.xyz;
   if (any(lessThan(at, vec3(-particle.w))) || any(greaterThan(at.xz, size.xz + particle.w))) return;
-  for (int image = 0; image < 4; ++image) {
-    vec3 centre = at;
-    if ((image & 1) != 0) centre.x = 2.0 * size.x - at.x;
-    if ((image & 2) != 0) centre.z = 2.0 * size.z - at.z;
-    splat(centre, particle.w);
+#ifdef IMAGES
+  if (!is_in_pool(particle)) return;
+  const vec2 end = maps.surface_grid.xy + vec2(maps.cells.xy) * maps.surface_grid.z;
+  const bvec2 mirrored = lessThan(2.0 * size.xz - at.xz - leans * at.y - 3.0 * particle.w, end);
+  for (int z = -1; z <= (mirrored.y ? 1 : 0); ++z) {
+    for (int x = -1; x <= (mirrored.x ? 1 : 0); ++x) {
+      if (x == 0 && z == 0) continue;
+      const vec2 place = mix(at.xz, mix(2.0 * size.xz - at.xz, -at.xz, lessThan(vec2(x, z), vec2(0.0))),
+                             notEqual(ivec2(x, z), ivec2(0)));
+      splat(vec3(place.x, at.y, place.y), particle.w);
+    }
   }
+#else
+  splat(at, particle.w);
+#endif
 }

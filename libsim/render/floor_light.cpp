@@ -44,12 +44,14 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
             {strength_of(scene.picture_effects, PictureEffectKind::Shadows),
              strength_of(scene.picture_effects, PictureEffectKind::Caustics), 0, 0}};
   splat_ = compute_program("light_splat.comp");
+  splat_images_ = compute_program("light_splat.comp", "#define IMAGES\n");
   smooth_first_ = compute_program("light_smooth.comp", "#define FIRST\n");
   smooth_second_ = compute_program("light_smooth.comp");
   maps_.reserve(sizeof block_);
   maps_.write(&block_, sizeof block_);
   const auto& [surface_x, surface_z, floor_x, floor_z] = block_.cells;
-  for (GlBuffer* buffer : {&top_, &thickness_}) buffer->reserve(4 * size_of(surface_x, surface_z));
+  for (GlBuffer* buffer : {&top_, &thickness_, &image_top_, &image_thickness_})
+    buffer->reserve(4 * size_of(surface_x, surface_z));
   for (GlBuffer* buffer : {&surface_a_, &surface_b_}) buffer->reserve(16 * size_of(surface_x, surface_z));
   defines_ = "#define LIT_FLOOR\n";
   if (strength(PictureEffectKind::Shadows) > 0) {
@@ -65,22 +67,27 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
 }
 
 void FloorLight::splat(const FloorWater& water) {
-  top_.fill(0);
-  thickness_.fill(0);
+  for (GlBuffer* buffer : {&top_, &thickness_, &image_top_, &image_thickness_}) buffer->fill(0);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   if (water.count == 0) return;
-  splat_.use();
-  glUniform1ui(splat_.uniform("particle_count"), static_cast<GLuint>(water.count));
-  bind_storage({water.particles, top_.name(), thickness_.name()});
-  dispatch_particles(water.count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  const auto run = [&](const GlProgram& program, std::initializer_list<unsigned> buffers) {
+    program.use();
+    glUniform1ui(program.uniform("particle_count"), static_cast<GLuint>(water.count));
+    bind_storage(buffers);
+    dispatch_particles(water.count);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  };
+  run(splat_, {water.particles, top_.name(), thickness_.name()});
+  run(splat_images_,
+      {water.particles, image_top_.name(), image_thickness_.name(), top_.name(), thickness_.name()});
 }
 
 void FloorLight::smooth() {
   const auto& cells = block_.cells;
   smooth_first_.use();
   glUniform2i(smooth_first_.uniform("direction"), 1, 0);
-  bind_storage({top_.name(), thickness_.name(), surface_a_.name()});
+  bind_storage(
+      {top_.name(), thickness_.name(), surface_a_.name(), image_top_.name(), image_thickness_.name()});
   dispatch_pixels(cells[0], cells[1]);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   smooth_second_.use();

@@ -48,10 +48,11 @@ class FloorLight {
 
   Block block_;
   std::string defines_;
-  GlProgram splat_, smooth_first_, smooth_second_, shadows_, caustics_;
-  GlBuffer maps_;                                     // the Block
-  GlBuffer top_, thickness_, surface_a_, surface_b_;  // surface map; smoothed it ends in surface_b_
-  GlBuffer shadow_, caustic_;                         // floor maps of the effects that there are
+  GlProgram splat_, splat_images_, smooth_first_, smooth_second_, shadows_, caustics_;
+  GlBuffer maps_;                                           // the Block
+  GlBuffer top_, thickness_, image_top_, image_thickness_;  // surface map: splats, those of mirror images,
+  GlBuffer surface_a_, surface_b_;                          // smoothed
+  GlBuffer shadow_, caustic_;                               // floor maps of the effects that there are
 };
 
 }  // namespace sim
