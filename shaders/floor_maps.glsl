@@ -7,6 +7,7 @@ layout(std140, binding = 1) uniform FloorMaps {
   vec4 floor_grid;    // a cell's edge, m; units of thickness per m; m of water per unit; standard deviation of
                       // the surface's smoothing in particle radii
   vec4 strength;      // of shadows, of caustics
+  vec4 absorption;    // by water, red, green and blue, per m
 } maps;
 
 const vec2 leans = sun.xz / sun.y;  // m aside for a metre up along sunlight

@@ -85,7 +85,7 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
   if (c.leave_axis == 1 && d.y < 0.0) {
     vec3 below = tiles(p, d, width);
 #ifdef LIT_FLOOR
-    below *= floor_light(p.xz);
+    below *= floor_light(p, d, width);
 #endif
     return mix(below, frame_colour, frame_cover(p, 1, width));
   }

@@ -37,7 +37,21 @@ bool meets(vec3 low, vec3 up, float length_m) {
   return meet_obstacles(low + length_m * up, -up).at < length_m;
 }
 
+// May an obstacle stand in the light of a place? A ball round it has a shadow of at most 1.6 radii about that of its
+// middle, whatever part of the way is water.
+bool may_be_dark(vec2 place, float depth) {
+  for (int k = 0; k < obstacle_count; ++k) {
+    const vec4 centre = obstacles[3 * k];
+    const float under = min(centre.y, depth);
+    const vec2 middle = centre.xz - leans_in_water * under - leans * (centre.y - under);
+    const float reach = 1.6 * (centre.w + length(obstacles[3 * k + 1].xyz)) + maps.floor_grid.x;
+    if (distance(place, middle) < reach) return true;
+  }
+  return false;
+}
+
 float open_share(vec2 place, float depth) {
+  if (!may_be_dark(place, depth)) return 1.0;
   const float far_m = 4.0 * (maps.tank.x + maps.tank.y + maps.tank.z);
   const vec3 across = normalize(cross(sun, vec3(0.0, 0.0, 1.0))), along = cross(across, sun);
   int open = 0;

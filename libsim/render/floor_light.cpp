@@ -1,6 +1,7 @@
 #include "libsim/render/floor_light.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "libsim/render/render_passes.hpp"
@@ -19,9 +20,9 @@ constexpr int surface_cell_in_cells = 2;  // edge over that of a cell of the flo
 
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
-std::string defines_of(const Scene& scene, const std::string& more = "") {
-  return (scene.obstacles.empty() ? "" : "#define OBSTACLES\n") + more;
-}
+const char* defines_of(const Scene& scene) { return scene.obstacles.empty() ? "" : "#define OBSTACLES\n"; }
+
+GLsizei levels_of(int cells) { return static_cast<GLsizei>(std::bit_width(static_cast<unsigned>(cells))); }
 
 }  // namespace
 
@@ -42,7 +43,8 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
             {low, low, surface_edge, options.radius_scale},
             {edge, 1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, smoothing_r},
             {strength_of(scene.picture_effects, PictureEffectKind::Shadows),
-             strength_of(scene.picture_effects, PictureEffectKind::Caustics), 0, 0}};
+             strength_of(scene.picture_effects, PictureEffectKind::Caustics), 0, 0},
+            {options.absorption_per_m[0], options.absorption_per_m[1], options.absorption_per_m[2], 0}};
   splat_ = compute_program("light_splat.comp");
   splat_images_ = compute_program("light_splat.comp", "#define IMAGES\n");
   smooth_first_ = compute_program("light_smooth.comp", "#define FIRST\n");
@@ -53,18 +55,26 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   for (GlBuffer* buffer : {&top_, &thickness_, &image_top_, &image_thickness_})
     buffer->reserve(4 * size_of(surface_x, surface_z));
   for (GlBuffer* buffer : {&surface_a_, &surface_b_}) buffer->reserve(16 * size_of(surface_x, surface_z));
-  defines_ = "#define LIT_FLOOR\n";
+  std::string effects;
   if (strength(PictureEffectKind::Shadows) > 0) {
-    shadows_ = compute_program("shadows.comp", defines_of(scene).c_str());
+    shadows_ = compute_program("shadows.comp", defines_of(scene));
     shadow_.reserve(8 * size_of(floor_x, floor_z));
-    defines_ += "#define SHADOWS\n";
+    effects += "#define SHADOWS\n";
   }
   if (strength(PictureEffectKind::Caustics) > 0) {
-    caustics_ = compute_program("caustics.comp");
+    caustics_ = compute_program("caustics.comp", defines_of(scene));
     caustic_.reserve(4 * size_of(floor_x, floor_z));
-    defines_ += "#define CAUSTICS\n";
+    effects += "#define CAUSTICS\n";
   }
+  join_ = compute_program("light_floor.comp", effects.c_str());
+  glCreateTextures(GL_TEXTURE_2D, 1, &sunlight_);
+  glTextureStorage2D(sunlight_, levels_of(std::max(floor_x, floor_z)), GL_RGBA16F, floor_x, floor_z);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(sunlight_, axis, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(sunlight_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
 }
+
+FloorLight::~FloorLight() { glDeleteTextures(1, &sunlight_); }
 
 void FloorLight::splat(const FloorWater& water) {
   for (GlBuffer* buffer : {&top_, &thickness_, &image_top_, &image_thickness_}) buffer->fill(0);
@@ -105,13 +115,24 @@ void FloorLight::cast_shadows(const FloorWater& water) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void FloorLight::gather_caustics() {
+void FloorLight::gather_caustics(const FloorWater& water) {
   caustic_.fill(0);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   caustics_.use();
-  bind_storage({surface_b_.name(), caustic_.name()});
+  if (water.obstacle_count > 0) glUniform1i(caustics_.uniform("obstacle_count"), water.obstacle_count);
+  bind_storage({surface_b_.name(), caustic_.name(), 0, 0, water.obstacles});
   dispatch_pixels(block_.cells[0], block_.cells[1]);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FloorLight::join() {
+  join_.use();
+  bind_storage({shadow_.name(), caustic_.name()});
+  glBindImageTexture(0, sunlight_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  dispatch_pixels(block_.cells[2], block_.cells[3]);
+  glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  glGenerateTextureMipmap(sunlight_);
 }
 
 void FloorLight::compute(const FloorWater& water, PassTimer& timer) {
@@ -124,15 +145,16 @@ void FloorLight::compute(const FloorWater& water, PassTimer& timer) {
     timer.mark(traits_of(PictureEffectKind::Shadows).word);
   }
   if (strength(PictureEffectKind::Caustics) > 0) {
-    gather_caustics();
+    gather_caustics(water);
     timer.mark(traits_of(PictureEffectKind::Caustics).word);
   }
+  join();
+  timer.mark("light");
 }
 
 void FloorLight::bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, maps_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, shadow_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, caustic_.name());
+  glBindTextureUnit(0, sunlight_);
 }
 
 FloorMap FloorLight::read() const {

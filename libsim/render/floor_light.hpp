@@ -24,11 +24,12 @@ struct FloorWater {
 class FloorLight {
  public:
   FloorLight(const Scene& scene, const RenderOptions& options);
+  ~FloorLight();
+  FloorLight(const FloorLight&) = delete;
+  FloorLight& operator=(const FloorLight&) = delete;
 
-  /// What shaders that show the floor must be told.
-  const std::string& defines() const { return defines_; }
   void compute(const FloorWater& water, PassTimer& timer);
-  /// For shaders that show the floor, after a barrier.
+  /// For shaders that show the floor (shaders/lit_floor.glsl).
   void bind() const;
   FloorMap read() const;
 
@@ -37,22 +38,23 @@ class FloorLight {
   struct Block {
     std::array<float, 4> tank;
     std::array<std::int32_t, 4> cells;
-    std::array<float, 4> surface_grid, floor_grid, strength;
+    std::array<float, 4> surface_grid, floor_grid, strength, absorption;
   };
 
   float strength(PictureEffectKind kind) const { return block_.strength[static_cast<std::size_t>(kind)]; }
   void splat(const FloorWater& water);
   void smooth();
   void cast_shadows(const FloorWater& water);
-  void gather_caustics();
+  void gather_caustics(const FloorWater& water);
+  void join();
 
   Block block_;
-  std::string defines_;
-  GlProgram splat_, splat_images_, smooth_first_, smooth_second_, shadows_, caustics_;
+  GlProgram splat_, splat_images_, smooth_first_, smooth_second_, shadows_, caustics_, join_;
   GlBuffer maps_;                                           // the Block
   GlBuffer top_, thickness_, image_top_, image_thickness_;  // surface map: splats, those of mirror images,
   GlBuffer surface_a_, surface_b_;                          // smoothed
   GlBuffer shadow_, caustic_;                               // floor maps of the effects that there are
+  unsigned sunlight_ = 0;                                   // texture, both together
 };
 
 }  // namespace sim

@@ -67,7 +67,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
       floor_light(lights_the_floor(scene) ? std::make_unique<FloorLight>(scene, chosen) : nullptr),
       composite(compute_program("composite.comp",
-                                (defines_of(scene) + (floor_light ? floor_light->defines() : "")).c_str())),
+                                (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
@@ -301,6 +301,7 @@ void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuff
     dispatch_pixels(t.width, t.height);
   });
   picture.end(framebuffer, views);
+  if (floor_light) glBindTextureUnit(0, 0);
   timer.mark("shade");
 }
 

@@ -106,13 +106,13 @@ EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
   return out;
 }
 
-std::vector<Effect> read_effects(const base::TomlTable& scene) {
+std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables) {
   const auto words = all_words();
   auto known = words;
   for (const std::string& word : picture_effect_words()) known.push_back(word);
-  std::vector<base::TomlTable> tables;
+  std::vector<base::TomlTable> read;
   std::vector<Effect> out;
-  for (const auto& table : scene.tables("effect")) {
+  for (const auto& table : tables) {
     const auto word = std::find(words.begin(), words.end(), table.choice("kind", known));
     if (word == words.end()) continue;  // the picture's
     const auto kind = static_cast<EffectKind>(word - words.begin());
@@ -127,10 +127,10 @@ std::vector<Effect> read_effects(const base::TomlTable& scene) {
         table.fail(option.key, "is no whole number", "write for example " + base::shortest(option.usual));
     }
     out.push_back(effect);
-    tables.push_back(table);
+    read.push_back(table);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (!stands(out, out[i])) tables[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
+    if (!stands(out, out[i])) read[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
   return out;
 }
 

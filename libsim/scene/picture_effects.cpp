@@ -39,10 +39,10 @@ std::vector<std::string> picture_effect_words() {
   return out;
 }
 
-std::vector<PictureEffect> read_picture_effects(const base::TomlTable& scene) {
+std::vector<PictureEffect> read_picture_effects(const std::vector<base::TomlTable>& tables) {
   const auto words = picture_effect_words();
   std::vector<PictureEffect> out;
-  for (const auto& table : scene.tables("effect")) {
+  for (const auto& table : tables) {
     const auto word = std::find(words.begin(), words.end(), table.string("kind"));
     if (word == words.end()) continue;
     const auto kind = static_cast<PictureEffectKind>(word - words.begin());

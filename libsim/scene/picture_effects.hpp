@@ -46,7 +46,7 @@ std::vector<std::string> picture_effect_words();
 
 /// Those of the tables [[effect]] of a scene file whose kind is a picture effect's. Errors are base::Error at
 /// file:line:column: listed twice, out of range.
-std::vector<PictureEffect> read_picture_effects(const base::TomlTable& scene);
+std::vector<PictureEffect> read_picture_effects(const std::vector<base::TomlTable>& tables);
 /// The same of a scene that no file described; base::Error names the effect.
 void check_picture_effects(const std::vector<PictureEffect>& effects);
 
