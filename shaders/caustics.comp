@@ -75,8 +75,9 @@ bool is_kept_off(ivec2 cell) {
   const vec2 place = place_of(cell) + 0.5 * maps.surface_grid.z;
   const vec2 under = place + leans * surface_at(cell).x;
   const vec3 low = vec3(under.x, surface_at(cell).x, under.y);
-  const float far_m = 4.0 * (maps.tank.x + maps.tank.y + maps.tank.z);
-  return meet_obstacles(low + far_m * sun, -sun).at < far_m;
+  const float far_m = maps.tank.x + maps.tank.y + maps.tank.z;
+  const vec3 up = normalize(sun);
+  return meet_obstacles(low + far_m * up, -up).at < far_m;
 }
 #endif
 

@@ -32,7 +32,7 @@ vec4 entry_of(vec2 place) {
 }
 
 #ifdef OBSTACLES
-// Looking down from far above, so that what stands on the floor is met from outside.
+// Looking down from beyond the tank, so that what stands on the floor is met from outside.
 bool meets(vec3 low, vec3 up, float length_m) {
   return meet_obstacles(low + length_m * up, -up).at < length_m;
 }
@@ -52,7 +52,7 @@ bool may_be_dark(vec2 place, float depth) {
 
 float open_share(vec2 place, float depth) {
   if (!may_be_dark(place, depth)) return 1.0;
-  const float far_m = 4.0 * (maps.tank.x + maps.tank.y + maps.tank.z);
+  const float far_m = maps.tank.x + maps.tank.y + maps.tank.z;
   const vec3 across = normalize(cross(sun, vec3(0.0, 0.0, 1.0))), along = cross(across, sun);
   int open = 0;
   for (int k = 0; k < rays; ++k) {

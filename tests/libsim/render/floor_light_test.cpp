@@ -256,6 +256,15 @@ TEST_F(FloorLightGl, AnObstaclesShadowLiesWhereTheSunPutsIt) {
   EXPECT_NEAR(wet.area_m2, disc / -refracted({0, 1, 0})[1], 0.03 * disc);
 }
 
+TEST_F(FloorLightGl, CausticsGatherNoLightThatAnObstacleKeepsOff) {
+  const auto scene = with_ball(tank({caustics}), 1, 0.4);
+  const auto map = drawn(scene, {});
+  double dark = 0;
+  for (const float light : map.gathered) dark += 1 - double{light};
+  const double disc = std::numbers::pi * 0.4 * 0.4;
+  EXPECT_NEAR(dark * double{map.cell_m} * double{map.cell_m}, disc / sun[1], 0.03 * disc);
+}
+
 TEST_F(FloorLightGl, WhatStandsOnTheFloorHasNoGapToItsShadow) {
   auto scene = tank({shadows});
   sim::Obstacle box;
