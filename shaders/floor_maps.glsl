@@ -6,7 +6,7 @@ layout(std140, binding = 1) uniform FloorMaps {
   vec4 surface_grid;  // low corner x, z and a cell's edge, m; radius of splatted spheres / particle radius
   vec4 floor_grid;    // a cell's edge, m; units of thickness per m; m of water per unit; standard deviation of
                       // the surface's smoothing in particle radii
-  vec4 strength;      // of shadows, of caustics
+  vec4 strength;      // of the picture effects, in the registry's order
   vec4 absorption;    // by water, red, green and blue, per m
 } maps;
 
@@ -19,10 +19,8 @@ const vec2 leans_in_water =
     sun.xz * into_water * inversesqrt(1.0 - into_water * into_water * (1.0 - sun.y * sun.y));
 const float way_per_depth = inversesqrt(1.0 - into_water * into_water * (1.0 - sun.y * sun.y));
 
-// A cell of the smoothed surface: height above the floor and radius of the particles there, both 0 without water;
-// length of water that the ray of sunlight goes through, m.
-//
-// The share of a ray's way below the surface that is water: 1 in a pool, little through spray and jets.
+// How much of the way of a ray below the surface (light_smooth.comp) is water, as a switch: 1 in a pool, 0 through
+// spray and jets.
 float pool_share(vec4 surface) {
   return surface.y > 0.0 ? smoothstep(0.4, 0.8, surface.z * sun.y / max(surface.x, 1e-6)) : 0.0;
 }

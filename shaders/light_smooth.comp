@@ -1,4 +1,5 @@
-// One direction of a Gaussian over the surface as the sun sees it. Pairs of cells whose mean lies about as high as the
+// One direction of a Gaussian over the surface as the sun sees it: x height above the floor, y radius of the particles
+// there, both 0 without water, z length of the ray in water, m. Pairs of cells whose mean lies about as high as the
 // middle take part: planes stay planes, and water does not run into what flies above it. FIRST reads the splats.
 #include "light.glsl"
 #include "floor_maps.glsl"
@@ -51,7 +52,8 @@ void main() {
     if (before.y == 0.0 || after.y == 0.0) continue;
     const vec3 mean = 0.5 * (before.xyz + after.xyz);
     const float off = abs(mean.x - middle.x) / middle.y;
-    const float w = 2.0 * exp(-0.5 * float(away * away) / (sigma * sigma)) * (1.0 - smoothstep(narrow.x, narrow.y, off));
+    const float near = exp(-0.5 * float(away * away) / (sigma * sigma));
+    const float w = 2.0 * near * (1.0 - smoothstep(narrow.x, narrow.y, off));
     sum += w * mean;
     weights += w;
   }

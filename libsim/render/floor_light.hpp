@@ -2,8 +2,8 @@
 /// The picture effects of a scene: maps of the light on the floor, the same for every view. Internal to the
 /// renderer.
 
+#include <array>
 #include <cstdint>
-#include <string>
 
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_buffer.hpp"
