@@ -315,6 +315,7 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   const auto spray = scales("sea_spray");
   EXPECT_NEAR(spray.reynolds, 2000, 0.5);
   EXPECT_TRUE(std::isinf(spray.weber));
+  EXPECT_NEAR(scales("pool_light").reynolds, 1350, 0.5);
 }
 
 TEST(PictureEffects, AreReadFromASceneFileBesideTheOthers) {
@@ -337,6 +338,14 @@ TEST(PictureEffects, ErrorsNameThePlaceAndTheMend) {
               AllOf(HasSubstr("strength"), HasSubstr("out of range")));
   EXPECT_THAT(error(effect("shadows", "tension_n_m", "1.0")), HasSubstr("is not a known key"));
   EXPECT_THAT(fluid_test::scene_error(dam_of_format("1") + "\n" + shadows), HasSubstr("came with format 2"));
+}
+
+TEST(PictureEffects, EachHasOnePassAndStandsInTheDocs) {
+  const std::string page = base::read_file(base::resource("docs/methods.md"), 1 << 20);
+  for (const std::string& word : sim::picture_effect_words()) {
+    EXPECT_TRUE(std::filesystem::exists(base::resource("shaders/" + word + ".comp"))) << word;
+    EXPECT_THAT(page, HasSubstr("| `" + word + "` |"));
+  }
 }
 
 TEST(PictureEffects, AreNothingToTheSolver) {
