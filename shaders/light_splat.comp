@@ -30,12 +30,13 @@ void add_thickness(int at, float length_m) {
 void splat(vec3 centre, float own_radius) {
   const float edge = maps.surface_grid.z;
   const float radius = max(own_radius * maps.surface_grid.w, least_cells * edge);
-  const float share = pow(own_radius / radius, 3.0);
+  const float narrowed = own_radius / radius;
   const vec2 middle = (centre.xz - leans * centre.y - maps.surface_grid.xy) / edge;
   const vec2 reach = radius / edge * sqrt(1.0 + leans * leans);
   const ivec2 low = ivec2(clamp(ceil(middle - reach - 0.5), vec2(0.0), vec2(maps.cells.xy)));
   const ivec2 high = ivec2(clamp(floor(middle + reach - 0.5) + 1.0, vec2(0.0), vec2(maps.cells.xy)));
   const uint code = radius_code(own_radius);
+  const float volume_share = narrowed * narrowed * narrowed;
   const float a = 1.0 + dot(leans, leans);
   for (int z = low.y; z < high.y; ++z) {
     for (int x = low.x; x < high.x; ++x) {
@@ -44,7 +45,7 @@ void splat(vec3 centre, float own_radius) {
       const float square = b * b - a * (dot(off, off) - radius * radius);
       if (square <= 0.0) continue;
       const int at = z * maps.cells.x + x;
-      add_thickness(at, share * 2.0 * sqrt(square / a));
+      add_thickness(at, volume_share * 2.0 * sqrt(square / a));
       const float height = centre.y + (sqrt(square) - b) / a;
       if (height <= 0.0) continue;
       const uint key = uint(clamp(height / maps.tank.w, 1.0, 16777215.0)) << 8 | code;
@@ -78,9 +79,10 @@ void main() {
 #ifdef IMAGES
   if (!is_in_pool(particle)) return;
   const vec2 end = maps.surface_grid.xy + vec2(maps.cells.xy) * maps.surface_grid.z;
-  const bvec2 mirrored = lessThan(2.0 * size.xz - at.xz - leans * at.y - 3.0 * particle.w, end);
-  for (int z = -1; z <= (mirrored.y ? 1 : 0); ++z) {
-    for (int x = -1; x <= (mirrored.x ? 1 : 0); ++x) {
+  const bvec2 beyond = lessThan(2.0 * size.xz - at.xz - leans * at.y - 3.0 * particle.w, end);
+  const bvec2 before = lessThan(at.xz + leans * at.y - 3.0 * particle.w, -maps.surface_grid.xy);
+  for (int z = before.y ? -1 : 0; z <= (beyond.y ? 1 : 0); ++z) {
+    for (int x = before.x ? -1 : 0; x <= (beyond.x ? 1 : 0); ++x) {
       if (x == 0 && z == 0) continue;
       const vec2 place = mix(at.xz, mix(2.0 * size.xz - at.xz, -at.xz, lessThan(vec2(x, z), vec2(0.0))),
                              notEqual(ivec2(x, z), ivec2(0)));

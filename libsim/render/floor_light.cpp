@@ -16,7 +16,7 @@ constexpr float height_steps = 16777216;  // of 24 bits, up to four times the ta
 constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
 constexpr int border_cells = 8;   // beyond that, for the smoothing
 constexpr float smoothing_r = 2;  // hides the particles' lattice; waves 11 radii long keep half their height
-constexpr int surface_cell_in_cells = 2;  // edge over that of a cell of the floor
+constexpr int surface_cell_in_cells = 3;  // edge over that of a cell of the floor
 
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
