@@ -14,7 +14,8 @@ constexpr float height_steps = 16777216;  // of 24 bits, up to four times the ta
 // Light that meets the floor went into the water at most so far beside its straight way, over the water's
 // depth: below the sun of shaders/light.glsl flat water bends it by 0.14 and 0.18, waves by less.
 constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
-constexpr int border_cells = 8;   // beyond that, for the smoothing
+constexpr float caustic_units = 65536;  // of shaders/caustic_units.glsl
+constexpr int border_cells = 8;         // beyond that, for the smoothing
 constexpr float smoothing_r = 2;  // hides the particles' lattice; waves 11 radii long keep half their height
 constexpr int surface_cell_in_cells = 3;  // edge over that of a cell of the floor
 
@@ -174,7 +175,7 @@ FloorMap FloorLight::read() const {
   if (strength(PictureEffectKind::Caustics) > 0) {
     std::vector<std::uint32_t> words(cells);
     caustic_.read(words.data(), static_cast<std::int64_t>(4 * cells));
-    for (const std::uint32_t word : words) out.gathered.push_back(static_cast<float>(word) / 65536);
+    for (const std::uint32_t word : words) out.gathered.push_back(static_cast<float>(word) / caustic_units);
   }
   return out;
 }
