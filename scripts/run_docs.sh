@@ -21,9 +21,11 @@ README.md|vip-study run|person||
 docs/figures.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
+docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/performance.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
+docs/performance.md|vip-bench frame data/scenes/pool_light.toml|s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|
 docs/performance.md|vip-bench frame data/scenes/single_dam.toml|s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|

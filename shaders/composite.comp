@@ -26,8 +26,8 @@ float water_length(vec2 xy) {
 
 vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m, float distance_m) {
   const float facing = clamp(-dot(d, n), 0.0, 1.0);
-  const float fresnel = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * smoothstep(0.0, thin_m, length_m);
-  const vec3 inside = refract(d, n, 1.0 / 1.333);
+  const float fresnel = reflected_share(facing) * smoothstep(0.0, thin_m, length_m);
+  const vec3 inside = refract(d, n, into_water);
   float room = max(cross_tank(position, inside).leave, 0.0);
 #ifdef OBSTACLES
   room = min(room, meet_obstacles(position, inside).at);

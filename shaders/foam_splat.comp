@@ -1,6 +1,7 @@
 // One invocation a diffuse particle: a soft disc, laid before the water's surface or below it.
 #include "view.glsl"
 #include "foam.glsl"
+#include "usable.glsl"
 #ifdef OBSTACLES
 #include "room.glsl"
 #endif
@@ -14,11 +15,6 @@ uniform uint foam_count;
 const float middle_depth = 1.2;   // optical depth through a disc's middle
 const float most_px = 48.0;       // radius of the largest disc
 const float dimmed_per_m = 0.7;   // by the water above it
-
-bool is_usable(vec4 particle) {
-  const uvec4 exponent = floatBitsToUint(particle) & 0x7f800000u;
-  return all(lessThan(exponent, uvec4(0x7f800000u))) && particle.w > 0.0;
-}
 
 // How far a depth lies below the water's surface at a pixel, m, along its normal, and which share of it still counts as
 // on it: the surface is drawn up to half a particle too high.

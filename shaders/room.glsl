@@ -1,10 +1,13 @@
 // What stands around the fluid: a tiled floor, a glass tank with frame and level marks, ground and sky. Linear
 // light.
-const vec3 sun = vec3(0.3536, 0.8130, 0.4625);
+#include "light.glsl"
 const float frame_m = 0.06;
 
 #ifdef OBSTACLES
 #include "obstacles.glsl"
+#endif
+#ifdef LIT_FLOOR
+#include "lit_floor.glsl"
 #endif
 
 vec3 sky(vec3 d) {
@@ -79,7 +82,13 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
 #endif
   const vec3 p = o + max(c.leave, 0.0) * d;
   const float width = footprint_per_m * (travelled + max(c.leave, 0.0));
-  if (c.leave_axis == 1 && d.y < 0.0) return mix(tiles(p, d, width), frame_colour, frame_cover(p, 1, width));
+  if (c.leave_axis == 1 && d.y < 0.0) {
+    vec3 below = tiles(p, d, width);
+#ifdef LIT_FLOOR
+    below *= floor_light(p, d, width);
+#endif
+    return mix(below, frame_colour, frame_cover(p, 1, width));
+  }
   const vec3 beyond = outdoors(p, d);
   if (c.leave_axis == 1) return mix(beyond, frame_colour, frame_cover(p, 1, width));
   const float mark = line(abs(fract(p.y + 0.5) - 0.5), 0.012, width) * 0.35;

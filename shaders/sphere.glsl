@@ -1,4 +1,5 @@
 // Spheres as the splat passes see them. `precise`: the depth pass and the front pass must agree in every bit.
+#include "usable.glsl"
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 uniform uint particle_count;
 
@@ -13,11 +14,6 @@ struct Sphere {
   float near;
   uint nearest;  // bits of a depth that no sample of it comes below
 };
-
-bool is_usable(vec4 particle) {
-  const uvec4 exponent = floatBitsToUint(particle) & 0x7f800000u;
-  return all(lessThan(exponent, uvec4(0x7f800000u))) && particle.w > 0;
-}
 
 Sphere sphere_of(vec4 particle) {
   precise vec3 eye = world_to_eye[0].xyz * particle.x + world_to_eye[1].xyz * particle.y +

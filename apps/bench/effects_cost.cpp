@@ -49,8 +49,10 @@ std::vector<EffectVariant> variants_of(const sim::Scene& scene) {
     at_zero.push_back(effect);
   }
   if (all.empty())
-    throw base::Error("scene " + scene.name, "lists no effect with a coefficient above 0",
-                      "give a scene with [[effect]] tables, such as data/scenes/splash.toml");
+    throw base::Error(
+        "scene " + scene.name, "lists no effect with a coefficient above 0",
+        "give a scene with such [[effect]] tables, as data/scenes/splash.toml; what picture effects "
+        "take, vip-bench frame tells");
   std::vector<EffectVariant> out{{"none", with(scene, {})}};
   for (const sim::Effect& effect : all) {
     auto effects = alone(all, effect);

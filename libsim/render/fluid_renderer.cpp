@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "libsim/render/render_passes.hpp"
@@ -29,6 +30,7 @@ void check_options(const RenderOptions& o) {
         "use 1/65536 m and pi/6");
   check(o.thread_px >= 0 && o.group_px >= std::max(o.thread_px, 1),
         "footprint limits must be 0 <= thread_px <= group_px", "use 0 and 128");
+  check(o.floor_cells >= 64 && o.floor_cells <= 2048, "floor_cells must be 64 to 2048", "use 512");
 }
 
 void check_view(const View& view) {
@@ -47,19 +49,29 @@ void check_view(const View& view) {
 
 std::string passes_in_words(const Scene& scene) {
   const float foam = coefficients_of(scene.effects)[EffectKind::Foam];
-  std::ostringstream out;
+  std::ostringstream out, absent;
   out << "  picture: clear, splat small, splat wide, occlusion, front, wet tiles, filter, clean-up, normals, "
          "thickness, ";
-  if (foam > 0) {
-    out << "foam (the scene lists " << traits_of(EffectKind::Foam).key << " = " << foam << "), shade\n";
-  } else {
-    out << "shade\n  -  foam                not called for\n";
+  const auto add = [&](const char* pass, const char* key, float value) {
+    if (value > 0) {
+      out << pass << " (the scene lists " << key << " = " << value << "), ";
+    } else {
+      absent << "  -  " << std::left << std::setw(20) << pass << "not called for\n";
+    }
+  };
+  add("foam", traits_of(EffectKind::Foam).key, foam);
+  if (lights_the_floor(scene)) out << "light (for what follows), ";
+  for (std::size_t k = 0; k < picture_effect_count; ++k) {
+    const auto kind = static_cast<PictureEffectKind>(k);
+    add(traits_of(kind).word, "strength", strength_of(scene.picture_effects, kind));
   }
+  out << "shade\n" << absent.str();
   return out.str();
 }
 
 FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
   check_options(options);
+  check_picture_effects(scene.picture_effects);
   state_ = std::make_unique<State>(scene, options);
 }
 
@@ -137,6 +149,14 @@ std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
   std::vector<float> out;
   state_->drawn(view).read_depth(out);
   return out;
+}
+
+FloorMap FluidRenderer::read_floor() const {
+  const State& s = *state_;
+  if (!s.floor_light || s.views_drawn == 0)
+    throw base::Error("light on the floor", "there is none", "list a picture effect and draw first");
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  return s.floor_light->read();
 }
 
 GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {

@@ -52,6 +52,8 @@ struct RenderOptions {
   int thread_px = 0;
   /// Larger ones up to this by a team of 8 x 4; beyond it they are split among many work groups.
   int group_px = 128;
+  /// Cells of the maps of the light on the floor along its longer side, with picture effects; 64 to 2048.
+  int floor_cells = 512;
   bool time_passes = false;  ///< see FluidRenderer::times(); costs waits on software GL
 };
 
@@ -77,6 +79,16 @@ struct Overlay {
   bool classes = false;           ///< whole numbers 0 to 3, one colour each, instead of a scale
 };
 
+/// What picture effects found on the floor: a value a cell, x first, from the tank's low corner; an array is
+/// empty where its effect is not there.
+struct FloorMap {
+  int width = 0, depth = 0;  ///< cells along x and z
+  float cell_m = 0;          ///< a cell's edge
+  std::vector<float> open;  ///< shadows: share of the sunlight that no obstacle and no flying water keeps off
+  std::vector<float> way_m;     ///< shadows: its way through the pool's water
+  std::vector<float> gathered;  ///< caustics: brightness over that without water
+};
+
 /// Milliseconds of one pass of the last draw, over all its views.
 struct PassTime {
   std::string pass;
@@ -92,8 +104,8 @@ std::string passes_in_words(const Scene& scene);
 /// in front.
 class FluidRenderer {
  public:
-  /// The scene gives the tank. Errors (base::Error): an option out of range, a shader that is missing or does
-  /// not compile.
+  /// The scene gives the tank, the obstacles and the effects. Errors (base::Error): an option out of range, a
+  /// shader that is missing or does not compile.
   explicit FluidRenderer(const Scene& scene, const RenderOptions& options = {});
   ~FluidRenderer();
   FluidRenderer(const FluidRenderer&) = delete;
@@ -121,6 +133,9 @@ class FluidRenderer {
   GBuffer read_gbuffer(std::size_t view = 0) const;
   /// Its depth alone (GBuffer::depth).
   std::vector<float> read_depth(std::size_t view = 0) const;
+  /// The light on the floor of the last draw, over all its views; waits for the device. base::Error where the
+  /// scene lists no picture effect, or nothing was drawn.
+  FloorMap read_floor() const;
   /// Waits for the device.
   RenderCounts counts() const;
   /// In order of the passes; empty unless time_passes. Waits for the device.

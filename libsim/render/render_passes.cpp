@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
@@ -25,6 +26,8 @@ std::array<float, 4> pack(const PixelRays& rays) {
   return {rays.scale_x, rays.offset_x, rays.scale_y, rays.offset_y};
 }
 
+}  // namespace
+
 void dispatch_pixels(int width, int height) {
   glDispatchCompute(static_cast<GLuint>(width + 15) / 16, static_cast<GLuint>(height + 7) / 8, 1);
 }
@@ -34,8 +37,6 @@ void dispatch_particles(std::int64_t count) {
   const std::int64_t across = std::min<std::int64_t>(groups, 32768);
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
 }
-
-}  // namespace
 
 void bind_storage(std::initializer_list<unsigned> buffers) {
   glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizei>(buffers.size()), std::data(buffers));
@@ -53,13 +54,20 @@ std::string defines_of(const Scene& scene) {
 }
 }  // namespace
 
+bool lights_the_floor(const Scene& scene) {
+  return std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
+                     [](const PictureEffect& effect) { return effect.strength > 0; });
+}
+
 FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
     : options(chosen),
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
       timer(chosen.time_passes),
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
-      composite(compute_program("composite.comp", defines_of(scene).c_str())),
+      floor_light(lights_the_floor(scene) ? std::make_unique<FloorLight>(scene, chosen) : nullptr),
+      composite(compute_program("composite.comp",
+                                (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
   // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
@@ -278,9 +286,14 @@ void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
   timer.mark("foam");
 }
 
+void FluidRenderer::State::light_floor() {
+  floor_light->compute({particles_, count_, poses.name(), static_cast<int>(obstacles.size())}, timer);
+}
+
 void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
   composite.use();
   tell_obstacles(composite);
+  if (floor_light) floor_light->bind();
   picture.begin(framebuffer, views);
   each_view([&](const ViewTargets& t) {
     bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name()});
@@ -288,6 +301,7 @@ void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuff
     dispatch_pixels(t.width, t.height);
   });
   picture.end(framebuffer, views);
+  if (floor_light) glBindTextureUnit(0, 0);
   timer.mark("shade");
 }
 
@@ -311,6 +325,7 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   smooth_depth();
   smooth_thickness();
   if (foam && foam_from && foam_from->count() > 0) splat_foam(*foam_from);
+  if (floor_light) light_floor();
   shade(views, framebuffer);
 }
 

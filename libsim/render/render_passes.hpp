@@ -1,6 +1,6 @@
 #pragma once
-/// What stands behind a FluidRenderer: its programs and buffers, and the passes of a draw. Seen by
-/// fluid_renderer.cpp alone.
+/// What stands behind a FluidRenderer: its programs and buffers, and the passes of a draw. Internal to the
+/// renderer.
 
 #include <epoxy/gl.h>
 
@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <span>
 
+#include "libsim/render/floor_light.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
@@ -23,6 +24,13 @@ GlProgram compute_program(const char* file, const char* defines = "");
 
 /// The buffers become shader storage 0, 1, ...; 0 is none.
 void bind_storage(std::initializer_list<unsigned> buffers);
+
+/// An invocation a pixel, in groups of 16 x 8, or a particle, in groups of 64.
+void dispatch_pixels(int width, int height);
+void dispatch_particles(std::int64_t count);
+
+/// Does the scene list a picture effect with a strength above 0?
+bool lights_the_floor(const Scene& scene);
 
 struct FluidRenderer::State {
   RenderOptions options;
@@ -42,6 +50,7 @@ struct FluidRenderer::State {
   GlProgram normals = compute_program("normals.comp");
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
+  std::unique_ptr<FloorLight> floor_light;  // only with picture effects
   GlProgram composite;
   GlProgram splat_foam_program;
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
@@ -80,6 +89,7 @@ struct FluidRenderer::State {
   void splat_foam(const ParticleBuffer& from);
   void tell_obstacles(const GlProgram& program) const;  ///< to a program in use
   void bind_obstacles() const;
+  void light_floor();
   void shade(std::span<const View> views, unsigned framebuffer);
 
   GLuint particles_ = 0;  // of this draw

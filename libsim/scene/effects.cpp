@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "libsim/scene/picture_effects.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
@@ -107,12 +108,15 @@ EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
   return out;
 }
 
-std::vector<Effect> read_effects(const base::TomlTable& scene) {
-  const auto tables = scene.tables("effect");
+std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables) {
   const auto words = all_words();
+  auto known = words;
+  for (const std::string& word : picture_effect_words()) known.push_back(word);
+  std::vector<base::TomlTable> read;
   std::vector<Effect> out;
   for (const auto& table : tables) {
-    const auto word = std::find(words.begin(), words.end(), table.choice("kind", words));
+    const auto word = std::find(words.begin(), words.end(), table.choice("kind", known));
+    if (word == words.end()) continue;  // the picture's
     const auto kind = static_cast<EffectKind>(word - words.begin());
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");
@@ -125,9 +129,10 @@ std::vector<Effect> read_effects(const base::TomlTable& scene) {
         table.fail(option.key, "is no whole number", "write for example " + base::shortest(option.usual));
     }
     out.push_back(effect);
+    read.push_back(table);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (!stands(out, out[i])) tables[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
+    if (!stands(out, out[i])) read[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
   return out;
 }
 

@@ -135,9 +135,10 @@ struct EffectCoefficients {
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
-/// The tables [[effect]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown,
-/// listed twice, without the effect that it needs, out of range, or a program built without effects.
-std::vector<Effect> read_effects(const base::TomlTable& scene);
+/// The tables [[effect]] of a scene file of format 2, but for the picture's (picture_effects.hpp). Errors are
+/// base::Error at file:line:column: unknown, listed twice, without the effect that it needs, out of range, or
+/// a program built without effects.
+std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables);
 /// The same of a scene that no file described; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 

@@ -191,7 +191,9 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");
   if (format < 2 && root.has("obstacle"))
     root.fail("format", "has no obstacles: [[obstacle]] came with format 2", "write format = 2");
-  scene.effects = read_effects(root);
+  const auto effects = root.tables("effect");
+  scene.effects = read_effects(effects);
+  scene.picture_effects = read_picture_effects(effects);
   read_warm(root, scene);
   scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m, scene.v_ref_m_s);
   read_nozzles(root, scene);

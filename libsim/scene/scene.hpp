@@ -15,6 +15,7 @@
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/obstacle.hpp"
 #include "libsim/scene/outlet.hpp"
+#include "libsim/scene/picture_effects.hpp"
 
 namespace sim {
 
@@ -54,9 +55,10 @@ struct Scene {
   Vec3d fill_min_m{};
   Vec3d fill_max_m{};
   double gravity_m_s2 = 9.81;
-  std::optional<CentralForce> central_force;  ///< beside gravity
-  std::vector<Effect> effects;                ///< each kind once; a coefficient of 0 is listed and dropped
-  std::vector<WarmBox> warm;                  ///< with the effect heat only
+  std::optional<CentralForce> central_force;   ///< beside gravity
+  std::vector<Effect> effects;                 ///< each kind once; a coefficient of 0 is listed and dropped
+  std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver does not read them
+  std::vector<WarmBox> warm;                   ///< with the effect heat only
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
   double v_ref_m_s = 0;

@@ -323,6 +323,50 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   const auto spray = scales("sea_spray");
   EXPECT_NEAR(spray.reynolds, 2000, 0.5);
   EXPECT_TRUE(std::isinf(spray.weber));
+  EXPECT_NEAR(scales("pool_light").reynolds, 1350, 0.5);
+}
+
+TEST(PictureEffects, AreReadFromASceneFileBesideTheOthers) {
+  const auto scene = sim::parse_scene(
+      dam_with("[[effect]]\nkind = \"shadows\"\n" + effect("caustics", "strength", "0.5")), "scene.toml");
+  EXPECT_TRUE(scene.effects.empty());
+  ASSERT_EQ(scene.picture_effects.size(), 2u);
+  EXPECT_EQ(sim::strength_of(scene.picture_effects, sim::PictureEffectKind::Shadows), 1);
+  EXPECT_EQ(sim::strength_of(scene.picture_effects, sim::PictureEffectKind::Caustics), 0.5F);
+  EXPECT_EQ(sim::strength_of({}, sim::PictureEffectKind::Caustics), 0);
+}
+
+TEST(PictureEffects, ErrorsNameThePlaceAndTheMend) {
+  const auto error = [](const std::string& effects) { return fluid_test::scene_error(dam_with(effects)); };
+  const std::string shadows = effect("shadows", "strength", "1.0");
+  EXPECT_THAT(error(effect("magic", "x", "1.0")), AllOf(HasSubstr("\"shadows\""), HasSubstr("\"caustics\"")));
+  EXPECT_THAT(error(shadows + shadows),
+              AllOf(HasSubstr("scene.toml:"), HasSubstr("is listed twice"), HasSubstr("keep one")));
+  EXPECT_THAT(error(effect("shadows", "strength", "1.5")),
+              AllOf(HasSubstr("strength"), HasSubstr("out of range")));
+  EXPECT_THAT(error(effect("shadows", "tension_n_m", "1.0")), HasSubstr("is not a known key"));
+  EXPECT_THAT(fluid_test::scene_error(dam_of_format("1") + "\n" + shadows), HasSubstr("came with format 2"));
+}
+
+TEST(PictureEffects, EachHasOnePassAndStandsInTheDocs) {
+  const std::string page = base::read_file(base::resource("docs/methods.md"), 1 << 20);
+  for (const std::string& word : sim::picture_effect_words()) {
+    EXPECT_TRUE(std::filesystem::exists(base::resource("shaders/" + word + ".comp"))) << word;
+    EXPECT_THAT(page, HasSubstr("| `" + word + "` |"));
+  }
+}
+
+TEST(PictureEffects, AreNothingToTheSolver) {
+  auto scene = small_dam();
+  const Cost bare = cost_of(scene, sim::MethodKind::OursTsp);
+  const std::string key = sim::run_key(scene, options_of());
+  scene.picture_effects = {{sim::PictureEffectKind::Shadows}, {sim::PictureEffectKind::Caustics}};
+  const Cost with = cost_of(scene, sim::MethodKind::OursTsp);
+  EXPECT_EQ(with.launches, bare.launches);
+  EXPECT_EQ(with.bytes, bare.bytes);
+  EXPECT_EQ(with.explanation, bare.explanation);
+  EXPECT_TRUE(same_bits(with.state, bare.state));
+  EXPECT_EQ(sim::run_key(scene, options_of()), key);
 }
 
 TEST(Effects, BelongToTheKeyOfAState) {

@@ -1,0 +1,60 @@
+#pragma once
+/// The picture effects of a scene: maps of the light on the floor, the same for every view. Internal to the
+/// renderer.
+
+#include <array>
+#include <cstdint>
+
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/render/gl_buffer.hpp"
+#include "libsim/render/gl_program.hpp"
+#include "libsim/render/pass_timer.hpp"
+
+namespace sim {
+
+/// What the passes read.
+struct FloorWater {
+  unsigned particles = 0;  ///< GL buffer of RenderParticle
+  std::int64_t count = 0;
+  unsigned obstacles = 0;  ///< GL buffer of their poses (shaders/obstacles.glsl); 0: none
+  int obstacle_count = 0;
+};
+
+/// Made only where a scene lists a picture effect. Needs a current context at every call and when destroyed.
+class FloorLight {
+ public:
+  FloorLight(const Scene& scene, const RenderOptions& options);
+  ~FloorLight();
+  FloorLight(const FloorLight&) = delete;
+  FloorLight& operator=(const FloorLight&) = delete;
+
+  void compute(const FloorWater& water, PassTimer& timer);
+  /// For shaders that show the floor (shaders/lit_floor.glsl).
+  void bind() const;
+  FloorMap read() const;
+
+ private:
+  /// std140 layout of shaders/floor_maps.glsl.
+  struct Block {
+    std::array<float, 4> tank;
+    std::array<std::int32_t, 4> cells;
+    std::array<float, 4> surface_grid, floor_grid, strength, absorption;
+  };
+
+  float strength(PictureEffectKind kind) const { return block_.strength[static_cast<std::size_t>(kind)]; }
+  void splat(const FloorWater& water);
+  void smooth();
+  void cast_shadows(const FloorWater& water);
+  void gather_caustics(const FloorWater& water);
+  void join();
+
+  Block block_;
+  GlProgram splat_, splat_images_, smooth_first_, smooth_second_, shadows_, caustics_, join_;
+  GlBuffer maps_;                                           // the Block
+  GlBuffer top_, thickness_, image_top_, image_thickness_;  // surface map: splats, those of mirror images,
+  GlBuffer surface_a_, surface_b_;                          // smoothed
+  GlBuffer shadow_, caustic_;                               // floor maps of the effects that there are
+  unsigned sunlight_ = 0;                                   // texture, both together
+};
+
+}  // namespace sim
