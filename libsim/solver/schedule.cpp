@@ -1,5 +1,6 @@
 #include "libsim/solver/schedule.hpp"
 
+#include <array>
 #include <sstream>
 
 #include "stats/base/error.hpp"
@@ -22,6 +23,12 @@ std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
       break;
   }
   return schedule.frame_end;
+}
+
+/// In the order of a frame.
+template <class AnySchedule>
+auto phases_of(AnySchedule& s) {
+  return std::array{&s.frame_start, &s.substep, &s.iteration, &s.substep_end, &s.frame_end};
 }
 
 const char* phase_name(Phase phase) {
@@ -61,6 +68,7 @@ void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
 void run_all(const std::vector<Stage>& passes, FluidState& state) {
   for (const auto& pass : passes) {
     state.clock.enter(pass.part);
+    state.pass_clock.enter(pass.place);
     pass.run(state);
     state.impulse.mark(pass.changes, state.particles, state.guard());
   }
@@ -106,9 +114,10 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
     out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) +
                        padded(reason, 40) + stage.source + "\n";
   }
-  for (const auto* passes :
-       {&out.frame_start, &out.substep, &out.iteration, &out.substep_end, &out.frame_end})
+  for (auto* passes : phases_of(out)) {
     check_reads(*passes, written);
+    for (Stage& pass : *passes) pass.place = out.passes++;
+  }
   out.explanation += absent + "  columns:";
   for (ColumnSet left = out.columns; !left.empty(); left = left - columns(left.first()))
     out.explanation += std::string(" ") + column_name(left.first());
@@ -116,8 +125,17 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   return out;
 }
 
+std::vector<PassTime> pass_times(const Schedule& schedule, const PassClock& clock) {
+  std::vector<PassTime> out;
+  for (const auto* passes : phases_of(schedule))
+    for (const Stage& pass : *passes)
+      out.push_back({pass.name, phase_name(pass.phase), pass.effect, clock.milliseconds(pass.place)});
+  return out;
+}
+
 void run_frame(const Schedule& schedule, FluidState& state) {
   state.clock.start_frame();
+  state.pass_clock.start_frame();
   state.impulse.begin_frame(state.particles, state.guard());
   state.obstacles.begin_frame();
   state.substep = 0;
@@ -134,6 +152,7 @@ void run_frame(const Schedule& schedule, FluidState& state) {
   }
   run_all(schedule.frame_end, state);
   state.clock.end_frame();
+  state.pass_clock.end_frame();
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -38,6 +38,7 @@ struct Stage {
   /// What its change of the water's momentum is counted as; each stage that writes velocities has one.
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< that alone calls for it
+  std::size_t place = 0;          ///< among the passes of a schedule, which says so
   // From the function's view, by stage_of:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;
