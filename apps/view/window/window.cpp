@@ -187,6 +187,7 @@ void Viewer::exchange_effects() {
       prepared.scene.effects = wished;
       std::printf("frame %d: %zu passes, with %s\n", figures_.frame, prepared.fluid->passes().size(),
                   in_words(wished).c_str());
+      std::fflush(stdout);
       figures_.said.clear();
     }
   } catch (const base::Error& error) {
