@@ -150,7 +150,7 @@ struct PartTimes {
 };
 
 /// A pass of the compiled schedule.
-struct PassTime {
+struct StageTime {
   std::string name, phase;        ///< as --explain names them
   EffectKind effect = no_effect;  ///< that alone calls for it
   double ms = 0;  ///< that all its runs took in the last frame; 0 unless Simulation::time_passes
@@ -309,7 +309,7 @@ class Simulation {
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
   /// The passes that frames run, in the schedule's order.
-  virtual std::vector<PassTime> passes() const { return {}; }
+  virtual std::vector<StageTime> passes() const { return {}; }
   /// Switches the clock round each pass on or off. While it is on, a frame waits for the device after each.
   virtual void time_passes(bool) {}
   /// Switches the clock round every launch of this back end on, forgetting what it had measured, or off. It

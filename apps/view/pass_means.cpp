@@ -7,14 +7,14 @@ namespace apps {
 
 namespace {
 
-bool same_schedule(const std::vector<sim::PassTime>& a, const std::vector<sim::PassTime>& b) {
+bool same_schedule(const std::vector<sim::StageTime>& a, const std::vector<sim::StageTime>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const auto& p, const auto& q) { return p.name == q.name && p.phase == q.phase; });
 }
 
 }  // namespace
 
-void PassMeans::push(const std::vector<sim::PassTime>& passes, double frame_s) {
+void PassMeans::push(const std::vector<sim::StageTime>& passes, double frame_s) {
   if (!same_schedule(passes, passes_)) {
     clear();
     passes_ = passes;

@@ -23,7 +23,7 @@ class PassMeans {
   static constexpr double span_s = 1;
 
   /// Takes the last frame's times, and how long the whole frame was, s. A new schedule forgets the old one.
-  void push(const std::vector<sim::PassTime>& passes, double frame_s);
+  void push(const std::vector<sim::StageTime>& passes, double frame_s);
   void clear() { *this = {}; }
   /// In the schedule's order; none before the first frame.
   std::vector<PassRow> rows() const;
@@ -35,7 +35,7 @@ class PassMeans {
     std::vector<double> ms;
     double seconds;
   };
-  std::vector<sim::PassTime> passes_;
+  std::vector<sim::StageTime> passes_;
   std::deque<Frame> frames_;
   double seconds_ = 0;  ///< of all frames that are kept
 };

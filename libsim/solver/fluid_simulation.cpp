@@ -156,7 +156,7 @@ class FluidSimulation final : public Simulation {
     time_passes(timing_passes_);
   }
 
-  std::vector<PassTime> passes() const override { return pass_times(schedule_, state_.pass_clock); }
+  std::vector<StageTime> passes() const override { return stage_times(schedule_, state_.pass_clock); }
   void time_passes(bool on) override {
     timing_passes_ = on;
     state_.pass_clock.measure(on ? schedule_.passes : 0);

@@ -125,8 +125,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   return out;
 }
 
-std::vector<PassTime> pass_times(const Schedule& schedule, const PassClock& clock) {
-  std::vector<PassTime> out;
+std::vector<StageTime> stage_times(const Schedule& schedule, const PassClock& clock) {
+  std::vector<StageTime> out;
   for (const auto* passes : phases_of(schedule))
     for (const Stage& pass : *passes)
       out.push_back({pass.name, phase_name(pass.phase), pass.effect, clock.milliseconds(pass.place)});

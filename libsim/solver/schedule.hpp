@@ -22,7 +22,7 @@ struct Schedule {
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages());
 
 /// The passes in their order, with what the clock last measured of each.
-std::vector<PassTime> pass_times(const Schedule& schedule, const PassClock& clock);
+std::vector<StageTime> stage_times(const Schedule& schedule, const PassClock& clock);
 
 /// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes),
 /// then the frame's end.

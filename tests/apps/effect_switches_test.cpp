@@ -57,7 +57,7 @@ TEST(EffectSwitches, WordsTurnThemOff) {
   EXPECT_EQ(in_words(Effects{}), "no effects");
 }
 
-std::vector<sim::PassTime> frame_of(double a, double b) {
+std::vector<sim::StageTime> frame_of(double a, double b) {
   return {{"saliency", "frame start", sim::no_effect, a},
           {"air drag", "substep end", EffectKind::AirDrag, b}};
 }

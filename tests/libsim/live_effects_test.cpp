@@ -84,13 +84,18 @@ std::vector<float> temperatures(const sim::Simulation& fluid) {
   return out;
 }
 
-/// All that two runs could differ in.
+/// The schedule in words, without the line that tells how many bytes there are.
+std::string schedule_of(const sim::Simulation& fluid) {
+  const std::string all = fluid.explain();
+  return all.substr(all.find('\n'));
+}
+
+/// All that two runs could differ in but for their memory.
 void expect_alike(sim::Simulation& a, sim::Simulation& b) {
   EXPECT_EQ(bits(a.read_state()), bits(b.read_state()));
   EXPECT_EQ(foam_of(a), foam_of(b));
   EXPECT_EQ(bits(temperatures(a)), bits(temperatures(b)));
-  EXPECT_EQ(a.particle_bytes(), b.particle_bytes());
-  EXPECT_EQ(a.explain(), b.explain());
+  EXPECT_EQ(schedule_of(a), schedule_of(b));
   EXPECT_EQ(a.substeps().taken, b.substeps().taken);
 }
 
@@ -106,6 +111,7 @@ void on_and_off_at_once_leave_no_trace(Backend backend) {
     run(*bare, 8);
     run(*turned, 8);
     expect_alike(*bare, *turned);
+    EXPECT_EQ(bare->particle_bytes(), turned->particle_bytes());
   }
 }
 TEST(LiveEffects, OnAndOffAtOnceLeaveNoTrace) {
@@ -136,6 +142,8 @@ void goes_on_as_one_that_had(const std::vector<sim::Effect>& before, const std::
     run(*turned, 12);
     run(*other, 12);
     expect_alike(*turned, *other);
+    // Where the water splits, what passes write for themselves is as large as it was at its most.
+    if (!method.adaptive()) EXPECT_EQ(turned->particle_bytes(), other->particle_bytes());
     EXPECT_NE(bits(turned->read_state()), bits(water));
   }
 }
@@ -270,7 +278,7 @@ TEST(LiveEffectsGpu, TheAccountOfMomentumCloses) {
   the_account_of_momentum_closes(Backend::Cuda);
 }
 
-double sum_of(const std::vector<sim::PassTime>& passes) {
+double sum_of(const std::vector<sim::StageTime>& passes) {
   return std::accumulate(passes.begin(), passes.end(), 0.0,
                          [](double sum, const auto& pass) { return sum + pass.ms; });
 }

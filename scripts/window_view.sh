@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# vip-view's panel on a virtual screen, by real keys: the schedule comes and goes, and effects are turned off and on while the water
+# goes on. Fails when a picture or a printed line is not as it should be.
+# usage: scripts/window_view.sh [FOLDER]    default: out/window_view. Takes half a minute.
+# Takes vip-view from $VIP_VIEW, else from build/dev. Pictures and logs go to FOLDER.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=${1:-out/window_view}
+view=${VIP_VIEW:-build/dev/bin/vip-view}
+size=${VIP_SCREEN:-1280x720}
+
+. scripts/window_lib.sh
+rm -f "$out"/*.{png,log,toml}
+screen_of "$out/screen" "$size"
+DISPLAY=:$(cat "$out/screen")
+export DISPLAY
+# The splash with more effects than one.
+{ cat data/scenes/splash.toml; printf '\n[[effect]]\nkind = "cohesion"\ntension_n_m = 50.0\n\n[[effect]]\nkind = "adhesion"\nwork_n_m = 20.0\n'; } >"$out/scene.toml"
+
+stdbuf -oL "$view" "$out/scene.toml" --method Ours --n-star 64 --backend cpu --size "$size" >"$out/view.log" 2>&1 &
+session=$!
+until_line() {  # until_line PATTERN: it stands in the log
+  local give_up=$((SECONDS + 60))
+  until grep -q "$1" "$out/view.log"; do
+    [ $SECONDS -lt $give_up ] && alive || { shoot stuck; cat "$out/view.log" >&2; echo "window_view: no line says $1" >&2; exit 1; }
+    sleep 0.1
+  done
+  sleep 0.6
+}
+last() { tail -n 1 "$out/view.log" | sed "s/^frame [0-9]*: //"; }
+frame() { tail -n 1 "$out/view.log" | sed -n 's/^frame \([0-9]*\): .*/\1/p'; }
+# Letters and lines of a table make a picture of many greys; a wall has few.
+lively() {  # lively NAME: of the right third of that picture
+  [ "$(convert "$out/$1.png" -crop "$((width / 3))x$((height / 2))+$((width * 2 / 3))+40" -colorspace Gray -format '%[fx:standard_deviation > 0.12]' info:)" = 1 ] && echo yes || echo no
+}
+
+until_line "particles on cpu"
+sleep 2
+shoot plain
+key t
+sleep 2
+shoot schedule
+expect "the schedule is shown" "no yes" "$(lively plain) $(lively schedule)"
+key 1
+until_line "with cohesion, adhesion$"
+without=$(last) at=$(frame)
+key 1
+until_line "with air_drag, cohesion, adhesion$"
+all=$(last)
+expect "a pass more" $(($(echo "$without" | cut -d' ' -f1) + 1)) "$(echo "$all" | cut -d' ' -f1)"
+expect "the water went on" 1 $(($(frame) > at))
+key 2
+until_line "with air_drag$"
+shoot without_cohesion
+expect "what needs the effect falls with it" "with air_drag" "$(last | sed 's/.*passes, //')"
+key t
+sleep 1
+shoot closed
+expect "the schedule is closed" no "$(lively closed)"
+kill "$session"
+wait "$session" || true
+session=
+exit $failed
