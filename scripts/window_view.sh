@@ -34,12 +34,16 @@ lively() {  # lively NAME: of the right third of that picture
   [ "$(convert "$out/$1.png" -crop "$((width / 3))x$((height / 2))+$((width * 2 / 3))+40" -colorspace Gray -format '%[fx:standard_deviation > 0.12]' info:)" = 1 ] && echo yes || echo no
 }
 
+until_lively() {  # until_lively NAME WANTED: such a picture, or the last of ten seconds
+  local give_up=$((SECONDS + 10))
+  sleep 0.5
+  until shoot "$1" && [ "$(lively "$1")" = "$2" ] || [ $SECONDS -ge $give_up ]; do sleep 0.3; done
+}
+
 until_line "particles on cpu"
-sleep 2
-shoot plain
+until_lively plain no
 key t
-sleep 2
-shoot schedule
+until_lively schedule yes
 expect "the schedule is shown" "no yes" "$(lively plain) $(lively schedule)"
 key 1
 until_line "with cohesion, adhesion$"
@@ -54,8 +58,7 @@ until_line "with air_drag$"
 shoot without_cohesion
 expect "what needs the effect falls with it" "with air_drag" "$(last | sed 's/.*passes, //')"
 key t
-sleep 1
-shoot closed
+until_lively closed no
 expect "the schedule is closed" no "$(lively closed)"
 kill "$session"
 wait "$session" || true

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "apps/bench/bar_chart.hpp"
+#include "libsim/methods/method.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
