@@ -143,7 +143,9 @@ void goes_on_as_one_that_had(const std::vector<sim::Effect>& before, const std::
     run(*other, 12);
     expect_alike(*turned, *other);
     // Where the water splits, what passes write for themselves is as large as it was at its most.
-    if (!method.adaptive()) EXPECT_EQ(turned->particle_bytes(), other->particle_bytes());
+    if (!method.adaptive()) {
+      EXPECT_EQ(turned->particle_bytes(), other->particle_bytes());
+    }
     EXPECT_NE(bits(turned->read_state()), bits(water));
   }
 }

@@ -175,8 +175,11 @@ void Panel::draw_effects(Controls& controls) {
 void Panel::draw_schedule(const PassMeans& passes) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x - 12, 12}, ImGuiCond_Once, {1, 0});
-  ImGui::SetNextWindowSize({schedule_width_px, display.y - 24}, ImGuiCond_Once);
-  ImGui::Begin("schedule");
+  const auto rows = passes.rows();
+  const float lines = static_cast<float>(rows.size()) + 8;
+  ImGui::SetNextWindowSize(
+      {schedule_width_px, std::min(lines * ImGui::GetTextLineHeightWithSpacing(), display.y - 24)});
+  ImGui::Begin("schedule", nullptr, ImGuiWindowFlags_NoResize);
   ImGui::Text("%.3f ms in all passes of a frame, mean over the last second", passes.total_ms());
   ImGui::TextWrapped("While this is open, each pass waits for the device: frames take longer.");
   constexpr auto flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
@@ -185,7 +188,7 @@ void Panel::draw_schedule(const PassMeans& passes) {
     for (const char* head : {"phase", "pass", "effect", "ms a frame"}) ImGui::TableSetupColumn(head);
     ImGui::TableSetupColumn("share", ImGuiTableColumnFlags_WidthFixed, share_width_px);
     ImGui::TableHeadersRow();
-    for (const PassRow& row : passes.rows()) {
+    for (const PassRow& row : rows) {
       for (const std::string& word : {row.phase, row.name, row.effect, fmt::format("{:10.3f}", row.ms)}) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(word.c_str());
