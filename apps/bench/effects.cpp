@@ -148,7 +148,7 @@ constexpr const char* columns_help =
     "and at all from a start whose coordinates lie an ulp away. They look at the scene's gaze point and see\n"
     "their own pictures. ms_passes: the effect's own passes; saved_percent: of what they take at all "
     "levels.\n"
-    "A clock stands round each pass, so that frames on a GPU take longer than without --levels. psnr_db,\n"
+    "Milliseconds are medians. A clock stands round each pass: frames on a GPU take longer. psnr_db,\n"
     "ssim and flip_percent are of four pictures of the timed frames against those at all levels; the moved\n"
     "start tells how much of a change is chance.";
 

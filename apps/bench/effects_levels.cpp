@@ -50,7 +50,7 @@ std::vector<LevelVariant> level_variants_of(const sim::Scene& scene) {
 TextTable to_table(const EffectsRun& run, const std::vector<LevelCost>& costs) {
   TextTable out{
       {"scene", "method", "backend", "n_star", "frames", "substeps", "effect", "levels", "particles_mean",
-       "ms_frame_mean", "ms_added", "ms_passes", "saved_percent", "psnr_db", "ssim", "flip_percent"},
+       "ms_frame_median", "ms_added", "ms_passes", "saved_percent", "psnr_db", "ssim", "flip_percent"},
       {}};
   for (const LevelCost& cost : costs) {
     const auto first = std::find_if(costs.begin(), costs.end(),

@@ -27,9 +27,9 @@ std::vector<LevelVariant> level_variants_of(const sim::Scene& scene);
 struct LevelCost {
   std::string effect, levels;
   double particles = 0;  ///< mean over frames
-  double ms_frame = 0;   ///< mean
-  double ms_passes = 0;  ///< of the effect's own passes; mean
-  /// Mean over the pictures; PSNR is infinite where all are equal.
+  double ms_frame = 0;   ///< median
+  double ms_passes = 0;  ///< of the effect's own passes; median
+  /// Over all pictures; PSNR is infinite where they are equal.
   double psnr_db = 0, ssim = 0, flip_percent = 0;
 };
 

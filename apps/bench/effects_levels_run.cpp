@@ -1,6 +1,7 @@
 #include "apps/bench/effects_levels_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -29,6 +30,7 @@ struct Running {
   std::unique_ptr<Onlooker> eye;
   std::unique_ptr<sim::Simulation> fluid;
   std::vector<Picture> pictures;
+  std::vector<double> ms_frame = {}, ms_passes = {};
 };
 
 Running start(const LevelVariant& variant, const std::vector<sim::ParticleState>& water,
@@ -58,22 +60,25 @@ void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool
   if (keep || fluid.follows_picture()) running.eye->draw(fluid);
   if (keep) running.pictures.push_back(running.eye->picture());
   if (!counts) return;
-  running.cost.ms_frame += ms / runs.frames;
   running.cost.particles += static_cast<double>(fluid.particle_count()) / runs.frames;
+  running.ms_frame.push_back(ms);
+  running.ms_passes.push_back(0);
   for (const auto& pass : fluid.passes())
-    if (pass.effect == running.kind) running.cost.ms_passes += pass.ms / runs.frames;
+    if (pass.effect == running.kind) running.ms_passes.back() += pass.ms;
 }
 
 /// Against the pictures of the effect at all levels.
 void compare(Running& running, const Running& reference) {
   const double pixels_per_degree = std::numbers::pi / 180 / sim::pixel_rays(running.eye->view()).scale_y;
   const double count = static_cast<double>(running.pictures.size());
+  double square = 0;
   for (std::size_t i = 0; i < running.pictures.size(); ++i) {
     const auto now = running.pictures[i].view(), then = reference.pictures[i].view();
-    running.cost.psnr_db += stats::psnr_db(now, then).value / count;
+    square += stats::mean_squared_error(now, then).value / count;
     running.cost.ssim += stats::ssim_map(now, then).mean().value / count;
     running.cost.flip_percent += 100 * stats::flip(now, then, pixels_per_degree).value / count;
   }
+  running.cost.psnr_db = 10 * std::log10(255 * 255 / square);
 }
 
 }  // namespace
@@ -101,6 +106,8 @@ std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, con
       return other.cost.effect == running.cost.effect;
     });
     compare(running, *std::next(first));
+    running.cost.ms_frame = quantile(running.ms_frame, 0.5);
+    running.cost.ms_passes = quantile(running.ms_passes, 0.5);
     out.push_back(running.cost);
   }
   return out;

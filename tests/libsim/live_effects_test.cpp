@@ -170,6 +170,33 @@ TEST(LiveEffectsGpu, WithThemTheWaterGoesOnAsIfTheyHadAlwaysBeenThere) {
   goes_on_as_one_that_had({}, several(), Backend::Cuda);
 }
 
+/// Before the first frame a turn makes what a scene with these effects makes, also of what is only met later:
+/// a bullet shows the guard's limit of speed.
+void at_the_start_are_the_scenes(Backend backend) {
+  for (const auto& [before, after] : {std::pair{std::vector<sim::Effect>{}, several()}, {several(), {}}}) {
+    const auto turned = sim::make_simulation(dam(before), options_of(backend, MethodKind::OursTsp));
+    turned->set_effects(after);
+    const auto listed = sim::make_simulation(dam(after), options_of(backend, MethodKind::OursTsp));
+    EXPECT_EQ(turned->explain(), listed->explain());
+    auto bullet = listed->read_state()[0];
+    bullet.vx_m_s = 1000;
+    for (const auto& fluid : {turned.get(), listed.get()}) {
+      fluid->put({bullet});
+      run(*fluid, 10);
+      EXPECT_GT(fluid->report().guards.speed_limited, 0u);
+    }
+    expect_alike(*turned, *listed);
+  }
+}
+TEST(LiveEffects, AtTheStartAreTheScenes) {
+  NEEDS_EFFECTS;
+  at_the_start_are_the_scenes(Backend::Cpu);
+}
+TEST(LiveEffectsGpu, AtTheStartAreTheScenes) {
+  NEEDS_EFFECTS;
+  at_the_start_are_the_scenes(Backend::Cuda);
+}
+
 void what_stays_keeps_its_own(Backend backend) {
   const auto fluid = sim::make_simulation(dam(several()), options_of(backend, MethodKind::Ours));
   run(*fluid, 30);

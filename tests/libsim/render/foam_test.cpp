@@ -124,7 +124,7 @@ TEST_F(FoamGl, IsRoughForSaliencyAsFarAsItCovers) {
   drawn(sea(1), {{0, 0, -4, 0.6F}});
   EXPECT_NEAR(roughness(), bare, 1e-6);
   // What covers little changes little.
-  const std::vector<RenderParticle> one{{0.01F, 0.01F, -1, 0.006F}};
+  const std::vector<RenderParticle> one{{0.1F, 0.1F, -1, 0.006F}};
   drawn(sea(1), one);
   EXPECT_LT(roughness(), bare + 0.1 * covered);
 }
