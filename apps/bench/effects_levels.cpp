@@ -74,7 +74,10 @@ std::string to_svg(const EffectsRun& run, const std::vector<LevelCost>& costs) {
   chart.digits = 3;
   for (const LevelCost& cost : costs) {
     if (cost.levels == "none") continue;
-    chart.bars.push_back({cost.effect, cost.levels == "0" ? "level 0" : cost.levels, cost.ms_passes});
+    const auto comma = cost.levels.find(", ");
+    const std::string label =
+        comma == std::string::npos ? "level " + cost.levels : cost.levels.substr(comma + 2);
+    chart.bars.push_back({cost.effect, label, cost.ms_passes});
   }
   return to_svg(chart);
 }

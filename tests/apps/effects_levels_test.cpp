@@ -57,10 +57,11 @@ TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
       {.effect = "air_drag", .levels = "0 to 3", .ms_frame = 11, .ms_passes = 1, .psnr_db = equal},
       {.effect = "foam", .levels = "none", .ms_frame = 10, .ms_passes = 0},
       {.effect = "foam", .levels = "0 to 3", .ms_frame = 15, .ms_passes = 4, .psnr_db = equal, .ssim = 1},
-      {.effect = "foam", .levels = "0", .ms_frame = 12, .ms_passes = 1, .psnr_db = 30, .flip_percent = 2.5}};
+      {.effect = "foam", .levels = "0", .ms_frame = 12, .ms_passes = 1, .psnr_db = 30, .flip_percent = 2.5},
+      {.effect = "foam", .levels = "0 to 3, start moved", .ms_frame = 15, .ms_passes = 4}};
   const EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
   const TextTable table = to_table(run, costs);
-  ASSERT_EQ(table.rows.size(), 5u);
+  ASSERT_EQ(table.rows.size(), 6u);
   const auto cell = [&](std::size_t row, const char* column) {
     const auto at = std::find(table.head.begin(), table.head.end(), column) - table.head.begin();
     return table.rows[row].at(static_cast<std::size_t>(at));
@@ -73,7 +74,8 @@ TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
   EXPECT_EQ(cell(3, "psnr_db"), "inf");
   EXPECT_EQ(cell(4, "flip_percent"), "2.50");
   const std::string svg = to_svg(run, costs);
-  for (const char* words : {"Pond, Ours on cpu, n_* 1k", ">foam<", ">level 0<", "4.000"})
+  for (const char* words :
+       {"Pond, Ours on cpu, n_* 1k", ">foam<", ">level 0 to 3<", ">level 0<", ">start moved<", "4.000"})
     EXPECT_THAT(svg, HasSubstr(words));
   EXPECT_THAT(svg, ::testing::Not(HasSubstr(">none<")));
 }
