@@ -149,6 +149,13 @@ struct PartTimes {
   double solve_ms = 0;       ///< everything else
 };
 
+/// A pass of the compiled schedule.
+struct StageTime {
+  std::string name, phase;        ///< as --explain names them
+  EffectKind effect = no_effect;  ///< that alone calls for it
+  double ms = 0;  ///< that all its runs took in the last frame; 0 unless Simulation::time_passes
+};
+
 /// What SimulationOptions::start_projections came to.
 struct RelaxedStart {
   int projections = 0;
@@ -235,6 +242,14 @@ class Simulation {
   virtual LiveNumbers live_numbers() const { return {}; }
   /// Changes them from the next frame on; base::Error when one is out of range.
   virtual void change(const LiveNumbers&) {}
+  /// The scene lists these effects from the next frame on: the schedule is compiled anew, and the water goes
+  /// on from where it is, with the same particles, velocities, levels and guards. What an effect alone keeps
+  /// comes and goes with it: temperatures begin as in a start, by the scene's boxes, and foam with nobody
+  /// there; other effects keep theirs. Substeps follow the new effects' steps. Without the effects that went,
+  /// the run is bit for bit one that never had them from this state on, and their columns are freed.
+  /// base::Error, and nothing has changed: what check_effects refuses, and more substeps than the options or
+  /// the program allow.
+  virtual void set_effects(const std::vector<Effect>&) {}
   /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
   /// Of the frame that step_frame computed last; before the first, who is there.
@@ -293,6 +308,10 @@ class Simulation {
   virtual bool copy_foam_to_gl(const GlBufferRef&) { return false; }
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
+  /// The passes that frames run, in the schedule's order.
+  virtual std::vector<StageTime> passes() const { return {}; }
+  /// Switches the clock round each pass on or off. While it is on, a frame waits for the device after each.
+  virtual void time_passes(bool) {}
   /// Switches the clock round every launch of this back end on, forgetting what it had measured, or off. It
   /// costs a few microseconds a launch.
   virtual void profile_launches(bool) {}

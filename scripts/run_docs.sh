@@ -23,6 +23,7 @@ docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
+docs/performance.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/|it takes minutes on two cores|
 docs/performance.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/pool_light.toml|s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|
@@ -33,8 +34,9 @@ docs/performance.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
 docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--observer random --clock virtual --display none/|half an hour of a person before a fast computer|scripts/window_protocols.sh
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
-docs/truth.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
+docs/stability.md|vip-bench stability --case S9,S11,S12|s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|
 docs/stability.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
+docs/truth.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
 "
 outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview|cells|checkpoints-to)'
 

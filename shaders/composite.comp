@@ -3,11 +3,13 @@
 #include "room.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Nearness { float nearness[]; };
-layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
 #ifdef FOAM
 #include "foam.glsl"
+layout(std430, binding = 1) buffer Normals { vec4 normals[]; };
 layout(std430, binding = 3) buffer Cover { uint cover[]; };
+#else
+layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 #endif
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
@@ -72,6 +74,21 @@ vec2 foam_cover(int at) {
   cover[2 * at] = cover[2 * at + 1] = 0u;
   return 1.0 - exp(-depths);
 }
+
+uint scrambled(uint word) {
+  word = (word ^ (word >> 16)) * 0x45d9f3bu;
+  word = (word ^ (word >> 16)) * 0x45d9f3bu;
+  return word ^ (word >> 16);
+}
+
+// For who looks at the picture's normals: bubbles show each direction as a sphere does over its disc, in no order.
+vec3 rough_normal(vec3 smooth_one, int at, float covered) {
+  const uint first = scrambled(uint(at)), second = scrambled(first + 1u);
+  const float squared = float(first >> 8) / 16777216.0, angle = 6.2831853 * float(second >> 8) / 16777216.0;
+  const vec3 bubble = vec3(sqrt(squared) * vec2(cos(angle), sin(angle)), sqrt(1.0 - squared));
+  const vec3 mixed = mix(smooth_one, bubble, covered);
+  return length(mixed) > 0.1 ? normalize(mixed) : smooth_one;
+}
 #endif
 
 void main() {
@@ -109,6 +126,7 @@ void main() {
 #ifdef FOAM
     shaded = mix(shaded, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
     foam_normal = n;
+    if (foam.x > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, foam.x);
 #endif
     light = mix(light, shaded, water_cover);
     // Water that touches the near wall lies behind its frame.

@@ -8,6 +8,7 @@
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
 #include "apps/bench/effects_cost.hpp"
+#include "apps/bench/effects_levels_run.hpp"
 #include "apps/bench/timed_run.hpp"
 #include "apps/common/finite_water.hpp"
 #include "apps/common/options.hpp"
@@ -26,6 +27,8 @@ struct EffectsOptions {
   std::string n_star = "4k", method = "HiRes", backend = "auto", tau = "fixed:-6";
   std::string csv, markdown, svg;
   int frames = 60, warm_up = 5, substeps = 0;
+  bool levels = false;
+  PictureSize size{640, 480};
 };
 
 sim::SimulationOptions choice_of(const EffectsOptions& options) {
@@ -83,13 +86,9 @@ void count_launches(Running& running) {
   running.fluid->profile_launches(false);
 }
 
-void run_effects(const EffectsOptions& options) {
-  check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
-  const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
+std::vector<EffectCost> costs_of(const sim::Scene& scene, const EffectsOptions& options,
+                                 const sim::SimulationOptions& choice) {
   const auto variants = variants_of(scene);
-  sim::SimulationOptions choice = choice_of(options);
-  // The same in every variant, so that an effect is not charged for its shorter substeps.
-  choice.substeps = sim::least_substeps(scene, choice);
   std::vector<Running> all;
   for (const EffectVariant& variant : variants) all.push_back(start(variant, choice, options.warm_up));
   Progress progress("frames", static_cast<std::size_t>(options.frames));
@@ -105,17 +104,34 @@ void run_effects(const EffectsOptions& options) {
     count_launches(running);
     costs.push_back(running.cost);
   }
+  return costs;
+}
+
+/// Writes what was measured wherever it is asked for.
+template <class Costs>
+void tell(const EffectsOptions& options, const EffectsRun& run, const Costs& costs) {
+  const TextTable table = to_table(run, costs);
+  std::printf("%s", to_markdown(table).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(table));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(run, costs));
+}
+
+void run_effects(const EffectsOptions& options) {
+  check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
+  const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
+  sim::SimulationOptions choice = choice_of(options);
+  // The same in every variant, so that an effect is not charged for its shorter substeps.
+  choice.substeps = sim::least_substeps(scene, choice);
   const EffectsRun run{scene.name,
                        sim::method_name(choice.method),
                        sim::backend_name(choice.backend),
                        options.n_star,
                        options.frames,
                        choice.substeps};
-  const TextTable table = to_table(run, costs);
-  std::printf("%s", to_markdown(table).c_str());
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
-  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(table));
-  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(run, costs));
+  if (!options.levels) return tell(options, run, costs_of(scene, options, choice));
+  const LevelRuns runs{choice, options.warm_up, options.frames, options.size};
+  tell(options, run, run_levels(level_variants_of(scene), runs));
 }
 
 constexpr const char* columns_help =
@@ -127,7 +143,14 @@ constexpr const char* columns_help =
     "vectors of viscosity's conjugate gradients and lists of neighbours are in neither but in\n"
     "device_bytes, all of the device's memory (- on the CPU). same_state: after the timed frames all\n"
     "particles are where they are without effects, bit for bit. Water with an effect is other water, so its\n"
-    "time holds what that changed too.";
+    "time holds what that changed too.\n"
+    "--levels: rows for each effect that has a coarsest_level: without it (none), at all levels, at fewer,\n"
+    "and at all from a start whose coordinates lie an ulp away. They look at the scene's gaze point and see\n"
+    "their own pictures. ms_passes: the effect's own passes; saved_percent: of what they take at all "
+    "levels.\n"
+    "Milliseconds are medians. A clock stands round each pass: frames on a GPU take longer. psnr_db,\n"
+    "ssim and flip_percent are of four pictures of the timed frames against those at all levels; the moved\n"
+    "start tells how much of a change is chance.";
 
 }  // namespace
 
@@ -146,6 +169,10 @@ void add_effects_command(CLI::App& app) {
             "Substeps in every frame; 0 = the least that the effects and the scene allow");
   add_count(*command, "--frames", options->frames, 1, 100000, "Timed frames of each variant");
   add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Untimed frames before");
+  auto* levels = command->add_flag(
+      "--levels", options->levels,
+      "What it saves and changes to keep an effect to fine levels; --method Ours or another with levels");
+  add_size(*command, options->size, "Pictures of --levels, px")->needs(levels);
   command->add_option("--csv", options->csv, "File for a row for each variant")->check(output_file());
   command->add_option("--markdown", options->markdown, "File for the table")->check(output_file());
   command->add_option("--svg", options->svg, "File for a picture with a bar for each variant")

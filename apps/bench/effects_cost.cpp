@@ -20,17 +20,6 @@ const sim::Effect* find(const std::vector<sim::Effect>& effects, sim::EffectKind
   return nullptr;
 }
 
-/// An effect with those that it needs, they first.
-std::vector<sim::Effect> alone(const std::vector<sim::Effect>& all, const sim::Effect& effect) {
-  std::vector<sim::Effect> out{effect};
-  for (auto needs = sim::traits_of(effect.kind).needs; needs != sim::no_effect;
-       needs = sim::traits_of(needs).needs) {
-    // A scene is read only with what its effects need.
-    if (const sim::Effect* other = find(all, needs)) out.insert(out.begin(), *other);
-  }
-  return out;
-}
-
 std::string name_of(const std::vector<sim::Effect>& effects) {
   std::string out;
   for (const sim::Effect& effect : effects)
@@ -39,6 +28,16 @@ std::string name_of(const std::vector<sim::Effect>& effects) {
 }
 
 }  // namespace
+
+std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const sim::Effect& effect) {
+  std::vector<sim::Effect> out{effect};
+  for (auto needs = sim::traits_of(effect.kind).needs; needs != sim::no_effect;
+       needs = sim::traits_of(needs).needs) {
+    // A scene is read only with what its effects need.
+    if (const sim::Effect* other = find(all, needs)) out.insert(out.begin(), *other);
+  }
+  return out;
+}
 
 std::vector<EffectVariant> variants_of(const sim::Scene& scene) {
   std::vector<sim::Effect> all, at_zero;
@@ -55,7 +54,7 @@ std::vector<EffectVariant> variants_of(const sim::Scene& scene) {
         "take, vip-bench frame tells");
   std::vector<EffectVariant> out{{"none", with(scene, {})}};
   for (const sim::Effect& effect : all) {
-    auto effects = alone(all, effect);
+    auto effects = with_needs(all, effect);
     out.push_back({name_of(effects), with(scene, std::move(effects))});
   }
   const auto holds_all = [&](const EffectVariant& variant) {

@@ -15,6 +15,8 @@ struct EffectVariant {
   std::string name;  ///< "none", an effect's word with what it needs, "all", "all at 0"
   sim::Scene scene;
 };
+/// One of a scene's effects, the last, behind those of them that it needs.
+std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const sim::Effect& effect);
 /// The bare scene first, each effect alone, then all of them (unless one needs all others) and all at 0.
 /// base::Error where the scene lists none with a coefficient above 0.
 std::vector<EffectVariant> variants_of(const sim::Scene& scene);

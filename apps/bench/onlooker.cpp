@@ -12,14 +12,18 @@ Onlooker::Onlooker(const sim::Scene& scene, const PictureSize& size)
       target_(size.width, size.height),
       picture_(scene) {}
 
-void Onlooker::step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool wanted) {
+void Onlooker::look(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m) {
   const sim::TargetSource source = sim::traits_of(method).target;
   const sim::Gaze gaze = gaze_at(camera_, gaze_m);
   if (source == sim::TargetSource::Saliency) picture_.look(fluid, view_, gaze);
   if (source == sim::TargetSource::Gaze) fluid.look({{{gaze, view_, nullptr}}});
+}
+
+void Onlooker::step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool wanted) {
+  look(fluid, method, gaze_m);
   const double start = milliseconds_now();
   fluid.step_frame();
-  if (wanted || source == sim::TargetSource::Saliency) draw(fluid);
+  if (wanted || sim::traits_of(method).target == sim::TargetSource::Saliency) draw(fluid);
   fluid.synchronize();
   fluid.frame_time(milliseconds_now() - start);
 }

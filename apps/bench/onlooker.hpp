@@ -20,6 +20,8 @@ class Onlooker {
   const sim::Camera& camera() const { return camera_; }
   /// Before another run; see FluidPicture::begin.
   void begin(const sim::GBuffer* seen) { picture_.begin(seen); }
+  /// Tells a method that looks where the gaze is and, where it looks at pictures, what was drawn last.
+  void look(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m);
   /// Looks, if the method does, advances by a frame and, when asked to or when the method looks at pictures,
   /// draws.
   void step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool draw);

@@ -80,10 +80,16 @@ std::string failure(const Outcome& outcome) {
   return text.starts_with("; ") ? text.substr(2) : text;
 }
 
+/// With effects water comes to rest elsewhere and at other speeds: that is no failure then.
+Outcome run(const HardCase& hard_case, const Setting& setting) {
+  const Outcome outcome = hard_case.run(setting);
+  return setting.effects.empty() ? outcome : of_stability(outcome);
+}
+
 /// A number that the program refuses has its limit there too.
 std::string failure(const HardCase& hard_case, const Setting& setting) {
   try {
-    return failure(hard_case.run(setting));
+    return failure(run(hard_case, setting));
   } catch (const base::Error& error) {
     return std::string("is refused: ") + error.what();
   }
@@ -120,7 +126,7 @@ void turn(const Job& job, const StabilityOptions& options, MapCell& cell) {
 void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
   // What is wrong with the back end shows here, and is an error.
-  const std::string at_its_own = failure(one.run(job.setting));
+  const std::string at_its_own = failure(run(one, job.setting));
   step();
   for (const Knob knob : all_knobs) {
     MapCell cell{.case_id = one.id,
@@ -170,12 +176,13 @@ std::vector<sim::Effect> effects_of(const std::string& path) {
   return effects;
 }
 
-std::string in_words(const std::vector<sim::Effect>& effects) {
-  std::string out;
+/// "cohesion tension_n_m = 1000"
+std::vector<std::string> in_words(const std::vector<sim::Effect>& effects) {
+  std::vector<std::string> out;
   for (const auto& effect : effects) {
     const auto& traits = sim::traits_of(effect.kind);
-    out += std::string("; effect ") + traits.word + " " + traits.key + " = " + shortest(effect.coefficient) +
-           sim::options_in_words(effect);
+    out.push_back(std::string(traits.word) + " " + traits.key + " = " + shortest(effect.coefficient) +
+                  sim::options_in_words(effect));
   }
   return out;
 }
@@ -187,8 +194,8 @@ StabilityMap map_of(const StabilityOptions& options) {
   out.most = options.most;
   out.resolution = options.resolution;
   out.circumstances = processor() + "; back end " + sim::backend_name(backend) + "; " +
-                      (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration" +
-                      in_words(effects);
+                      (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration";
+  out.effects = in_words(effects);
   const auto methods = methods_of(options.methods);
   for (const auto method : methods) out.methods.push_back(sim::method_name(method));
   std::vector<Job> jobs;

@@ -32,6 +32,13 @@ const MapCell* find(const StabilityMap& map, const std::string& id, const std::s
   return found == map.cells.end() ? nullptr : &*found;
 }
 
+/// Circumstances and effects.
+std::string measured_on(const StabilityMap& map) {
+  std::string out = map.circumstances;
+  for (const std::string& effect : map.effects) out += "; effect " + effect;
+  return out;
+}
+
 }  // namespace
 
 const char* knob_name(Knob knob) {
@@ -59,7 +66,7 @@ TextTable to_table(const StabilityMap& map) {
     out.rows.push_back({cell.case_id, in_a_cell(cell.title), cell.method, knob_name(cell.knob),
                         in_a_cell(cell.of), shortest(cell.usual), shortest(cell.limit),
                         number(margin_of(cell), 3), reach_name(cell.reach), in_a_cell(cell.failed),
-                        shortest(map.most), shortest(map.resolution), in_a_cell(map.circumstances)});
+                        shortest(map.most), shortest(map.resolution), in_a_cell(measured_on(map))});
   }
   return out;
 }
@@ -84,7 +91,7 @@ std::string to_markdown(const StabilityMap& map) {
       table.rows.push_back(row);
     }
   }
-  return "Measured on " + map.circumstances + ". Factors up to " + shortest(map.most) +
+  return "Measured on " + measured_on(map) + ". Factors up to " + shortest(map.most) +
          " were tried. Between what passed and what failed lies a factor of " + shortest(map.resolution) +
          " at most, or one iteration. + says that all that was tried passed.\n\n" + to_markdown(table);
 }

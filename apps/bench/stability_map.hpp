@@ -34,6 +34,8 @@ struct StabilityMap {
   double most = 0;                   ///< largest factor that was tried
   double resolution = 0;             ///< factor between what passed and what failed, at most
   std::string circumstances;         ///< machine, back end, size, seed
+  /// Of the water, each in words; then a case fails by what is of stability alone.
+  std::vector<std::string> effects = {};
 };
 
 /// A row for each cell.

@@ -11,7 +11,7 @@ namespace {
 
 using svg::Point;
 
-constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 22;
+constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 22, line_px = 14;
 
 /// Shades of one blue, the darker the farther from failing, told apart by their lightness with any colour
 /// vision.
@@ -106,7 +106,7 @@ std::string to_svg(const StabilityMap& map) {
   const double rows_end = top_px + row_px * static_cast<double>(map.cases.size());
   svg::Picture picture{.id = "stability", .title = "Stability map"};
   picture.width = std::max(left_px + 3 * panel_px + 2 * gap_px + 8, 820.0);
-  picture.height = rows_end + 88;
+  picture.height = rows_end + 88 + line_px * static_cast<double>(map.effects.size());
   picture.description =
       "Hard cases by methods in three panels: how far the frame step, the iterations and the speed or size "
       "may be turned before the case fails.";
@@ -125,6 +125,9 @@ std::string to_svg(const StabilityMap& map) {
   picture.body += svg::text({8, rows_end + 76}, map.circumstances + "; factors up to " + shortest(map.most) +
                                                     ", resolution " + shortest(map.resolution) +
                                                     "; + : all that was tried passed");
+  double line = rows_end + 76;
+  for (const std::string& effect : map.effects)
+    picture.body += svg::text({8, line += line_px}, "water with the effect " + effect);
   picture.body += "</g>\n";
   return svg::document(picture);
 }

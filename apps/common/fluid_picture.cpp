@@ -17,7 +17,7 @@ void FluidPicture::take(sim::Simulation& fluid) {
 }
 
 void FluidPicture::take_foam(sim::Simulation& fluid) {
-  if (fluid.foam_capacity() == 0) return;
+  if (fluid.foam_capacity() == 0) return foam_.set_count(0);
   foam_.reserve(fluid.foam_capacity());
   if (fluid.copy_foam_to_gl(foam_.gl())) {
     foam_.set_count(fluid.foam_capacity());

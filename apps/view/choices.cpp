@@ -27,7 +27,8 @@ Change change_between(const ViewOptions& before, const ViewOptions& after) {
                            before.preset != after.preset || before.n_star != after.n_star ||
                            before.levels != after.levels;
   if (other_fluid) return Change::Fluid;
-  const bool other_numbers = before.alpha != after.alpha || before.iterations != after.iterations;
+  const bool other_numbers =
+      before.alpha != after.alpha || before.iterations != after.iterations || before.effects != after.effects;
   return other_numbers ? Change::Numbers : Change::Nothing;
 }
 

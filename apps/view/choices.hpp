@@ -11,11 +11,11 @@ namespace apps {
 /// What must be done about new choices.
 enum class Change {
   Nothing,
-  Numbers,  ///< Simulation::change(), from the next frame on
+  Numbers,  ///< Simulation::change() and set_effects(), from the next frame on
   Fluid     ///< another fluid, from frame 0
 };
-/// Compares scene, method, preset, n_*, N, alpha and iterations; the rest of the options stays while a window
-/// is open.
+/// Compares scene, method, preset, n_*, N, alpha, iterations and effects; the rest of the options stays while
+/// a window is open.
 Change change_between(const ViewOptions& before, const ViewOptions& after);
 
 /// The paper's scenes that are here, and the one that was opened when it is another.

@@ -65,6 +65,8 @@ int main(int argc, char** argv) {
   app.add_option("--sweep", sweep,
                  "Sweep file of vip-bench accuracy: says what the setting in force costs and errs by, beside "
                  "HiRes");
+  app.add_option("--effects-off", options.effects_off,
+                 "Effects of the scene that do not run, and with them what needs them: kinds with commas");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
     if (headless) options.display = "headless";

@@ -37,11 +37,14 @@ struct ViewOptions {
   std::string display = "window";  ///< window | headless | openxr
   std::string clock = "real";      ///< of a headset: real | virtual
   bool explain = false;
+  std::string effects_off;  ///< words with commas: effects of the scene that do not run
+  std::optional<std::vector<sim::Effect>> effects;  ///< that run; none = the scene's but effects_off
 };
 
 /// A scene with its fluid at frame 0.
 struct PreparedFluid {
-  sim::Scene scene;
+  sim::Scene scene;                 ///< with the effects that run
+  std::vector<sim::Effect> listed;  ///< that the file lists
   sim::Camera camera;
   std::optional<sim::PtpeFile> ptpe;
   std::unique_ptr<sim::Simulation> fluid;

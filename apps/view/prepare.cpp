@@ -4,6 +4,7 @@
 
 #include "apps/common/program.hpp"
 #include "apps/common/setting_file.hpp"
+#include "apps/view/effect_switches.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -65,6 +66,8 @@ std::vector<std::string> price_lines(const ViewOptions& options, const SolverSet
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));
+  prepared.listed = prepared.scene.effects;
+  prepared.scene.effects = options.effects ? *options.effects : left_on(prepared.listed, options.effects_off);
   prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
   if (!options.ptpe.empty()) prepared.ptpe = sim::read_ptpe_file(options.ptpe);
   sim::SimulationOptions choice =
@@ -89,6 +92,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
               sim::method_name(choice.method).c_str(), static_cast<long long>(choice.n_star),
               static_cast<long long>(prepared.fluid->particle_count()),
               sim::backend_name(choice.backend).c_str());
+  if (!options.effects_off.empty()) std::printf("with %s\n", in_words(prepared.scene.effects).c_str());
   if (as_set(options)) {
     std::printf("%s\n", describe(*options.setting).c_str());
     const auto note = other_scene(*options.setting, prepared.scene.sha256);

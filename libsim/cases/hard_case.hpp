@@ -63,6 +63,12 @@ struct Outcome {
   std::string text() const;
 };
 
+/// Whether it says that the water is lost, braked or pressed together: what no effect may change. The others
+/// say where and how fast water comes to rest and the like, which effects are there to change.
+bool is_of_stability(const Finding& finding);
+/// The outcome by these findings alone.
+Outcome of_stability(Outcome outcome);
+
 struct HardCase {
   const char* id;     ///< "S2"; a second case of the same row has a letter: "S8b"
   const char* suite;  ///< of its tests: "S02TallColumn"

@@ -42,6 +42,16 @@ double Outcome::margin() const {
   return least;
 }
 
+bool is_of_stability(const Finding& finding) {
+  return finding.name.ends_with("particles outside") || finding.name.ends_with("braked") ||
+         finding.name.find("largest rho / rho_0") != std::string::npos;
+}
+
+Outcome of_stability(Outcome outcome) {
+  std::erase_if(outcome.findings, [](const Finding& one) { return !is_of_stability(one); });
+  return outcome;
+}
+
 std::string Outcome::text() const {
   std::string out;
   for (const Finding& one : findings) {

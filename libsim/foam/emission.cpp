@@ -44,12 +44,16 @@ struct Surface {
   WaterRound water;
   Walls walls;
   Potential energy;
+  const std::uint8_t* level;
+  int coarsest;
   Vec4* normal;
   float* approach;
 
   SIM_FN void operator()(int i) const {
     normal[i] = {0, 0, 0, 0};
     approach[i] = 0;
+    // Too coarse to emit, and to stand beside what does: levels of neighbours differ by one.
+    if (level[i] > coarsest + 1) return;
     const Vec3 v = xyz(velocity[i]);
     if (!(energy(specific_energy(v)) > 0)) return;
     const Vec4 self = position[i];
@@ -229,6 +233,8 @@ void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const W
                    .water = {grid.cells(), water.position()},
                    .walls = walls,
                    .energy = rules.energy,
+                   .level = water.level(),
+                   .coarsest = rules.coarsest,
                    .normal = water.normal(),
                    .approach = pool.approach.data()});
 }

@@ -126,6 +126,19 @@ void Particles::allocate(ColumnSet set, int n, int capacity) {
   resize(n);
 }
 
+void Particles::change_columns(ColumnSet set) {
+  set_ = set;
+  for_each_column(*this, [&](auto& column, bool wanted, Life, Descent rule) {
+    if (!wanted) {
+      column = std::remove_reference_t<decltype(column)>();
+    } else if (column.bytes() == 0) {
+      column.reserve(static_cast<std::size_t>(capacity_));
+      column.resize(static_cast<std::size_t>(n_));
+      if (by_rule(rule)) column.zero();
+    }
+  });
+}
+
 void Particles::resize(int n) {
   n_ = n;
   for_each_column(*this, [&](auto& column, bool wanted, Life, Descent) {

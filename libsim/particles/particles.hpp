@@ -69,6 +69,9 @@ class Particles {
   /// Gives each column of the set room for `capacity` particles (at least n), n of them in use, and frees the
   /// others.
   void allocate(ColumnSet set, int n, int capacity = 0);
+  /// Gives each column of the set that is not there room for as many, at 0 where it descends by a rule, and
+  /// frees the others. Those that stay keep their values.
+  void change_columns(ColumnSet set);
   int size() const { return n_; }
   int capacity() const { return capacity_; }
   bool has(Column column) const { return set_.has(column); }

@@ -120,6 +120,8 @@ struct Effect {
   EffectKind kind{};
   double coefficient = 0;  ///< >= 0; 0 drops the effect
   EffectOptions options = usual_options;
+
+  friend bool operator==(const Effect&, const Effect&) = default;
 };
 /// " key = value" of each of an effect's options, for records and people; empty without options.
 std::string options_in_words(const Effect& effect);

@@ -135,9 +135,9 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
 }
 
-float most_speed(const Scene& scene, const Resolution& resolution, const SolverParameters& parameters,
-                 const std::vector<ParticleState>& start) {
-  const double fall = 3 * fall_speed(scene, start);
+float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
+                 const SolverParameters& parameters) {
+  const double fall = 3 * fall_speed;
   const double most = fall > 0 ? fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)
                                : 4 * resolution.finest_spacing_m / static_cast<double>(parameters.dt);
   return static_cast<float>(most);

@@ -55,7 +55,7 @@ class FluidSimulation final : public Simulation {
       resume(read_state_file(options.resume_from, run_key(scene, options)));
     } else if (options.start) {
       open(*options.start);
-      if (options.start_projections > 0) prepare_start();
+      if (options.start_projections > 0) relaxed_ = prepare_start(state_, options.start_projections);
     } else {
       const double edge = static_cast<double>(state_.parameters.coarse_edge) * 2 * resolution_.spacing_m;
       check_extent(scene, options.method, options.n_star, edge);
@@ -138,38 +138,40 @@ class FluidSimulation final : public Simulation {
     state_.parameters.iterations = to.iterations;
   }
 
+  void set_effects(const std::vector<Effect>& effects) override {
+    Scene scene = scene_;
+    scene.effects = effects;
+    check_effects(effects);
+    const SolverParameters numbers = solver_parameters(scene, options_);
+    check_foam(numbers.effects, scene, frame_dt());
+    Schedule schedule = compile_schedule(demand_of(scene, options_, numbers));
+    // Nothing fails from here on.
+    scene_ = std::move(scene);
+    schedule_ = std::move(schedule);
+    state_.parameters.effects = numbers.effects;
+    state_.parameters.most_speed = most_speed(fall_speed_, scene_, resolution_, numbers);
+    set_substeps(numbers.substeps);
+    substeps_.take_bounds(substep_rule(scene_, options_, resolution_, 0, 0));
+    exchange_effects(state_, scene_, schedule_.columns);
+    time_passes(timing_passes_);
+  }
+
+  std::vector<StageTime> passes() const override { return stage_times(schedule_, state_.pass_clock); }
+  void time_passes(bool on) override {
+    timing_passes_ = on;
+    state_.pass_clock.measure(on ? schedule_.passes : 0);
+  }
+
   void frame_time(double ms) override { tolerance_.frame_time(ms); }
 
   FrameReport report() override {
-    const Measured measured = measure(state_);
-    FrameReport out;
+    FrameReport out = report_of(state_);
     out.frame = frame_;
     out.substeps = substeps_taken_;
     out.time_s = time_s();
-    out.particles = particle_count();
-    for (const std::uint8_t level : state_.particles.all().level.to_host()) {
-      if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
-      ++out.particles_by_level[level];
-      out.mass_units += std::int64_t{1} << level;
-    }
     if (adaptive()) out.levels = events_of(state_.levels.counts.to_host()[0]);
-    out.jump_share = measured.jump_share;
-    out.density_error_mean = measured.density_error_mean;
-    out.density_max = measured.density_max;
-    out.neighbours_mean = measured.neighbours_mean;
-    out.listed_mean = measured.listed_mean;
-    out.speed_max_m_s = measured.speed_max_m_s;
-    out.guards = guard_counts(state_.guards.to_host()[0], state_);
-    out.poured = state_.jets.poured;
-    out.particles_in = state_.jets.made;
-    out.particles_out = state_.jets.taken + state_.drained.particles;
-    out.drained = state_.drained.mass;
-    out.reservoir = state_.jets.reservoir;
-    out.heat = heat_of(state_);
     out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
-    out.seen = state_.saliency.input.seen();
     out.start = relaxed_;
-    out.foam = report_of(state_.foam);
     return out;
   }
 
@@ -318,7 +320,8 @@ class FluidSimulation final : public Simulation {
     coarsest_level_ = adaptive() ? std::max(coarsest, options_.levels - 1) : coarsest;
     lay_out(static_cast<int>(start.size()), capacity);
     keeper_.begin(start, finest_level_, coarsest_level_);
-    state_.parameters.most_speed = most_speed(scene_, resolution_, state_.parameters, start);
+    fall_speed_ = fall_speed(scene_, start);
+    state_.parameters.most_speed = most_speed(fall_speed_, scene_, resolution_, state_.parameters);
     substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
                              start_acceleration(scene_, start));
     put_in(state_, start);
@@ -339,12 +342,13 @@ class FluidSimulation final : public Simulation {
     state_.walls = walls_of(scene_, false);
     begin_obstacles(state_, scene_, time_s(), options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
-    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_, frame_dt());
+    check_foam(state_.parameters.effects, scene_, frame_dt());
+    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_);
   }
 
   template <class Archive>
   void keep(Archive& archive) {
-    archive(frame_, relaxed_, substeps_, substeps_taken_, compression_, tolerance_, keeper_);
+    archive(frame_, relaxed_, fall_speed_, substeps_, substeps_taken_, compression_, tolerance_, keeper_);
     keep_fluid(archive, state_);
   }
 
@@ -367,22 +371,17 @@ class FluidSimulation final : public Simulation {
   }
   double frame_dt() const { return frame_dt_of(scene_, options_); }
 
-  void prepare_start() {
-    relaxed_ = relax_start(state_, options_.start_projections);
-    if (state_.particles.has(Column::Active)) start_velocity_grid(state_);
-    // What was met on the way is not part of the run.
-    state_.guards.zero();
-  }
-
   Scene scene_;
   SimulationOptions options_;
   Resolution resolution_;
   RelaxedStart relaxed_;
+  double fall_speed_ = 0;  ///< of the start, m/s
   FluidState state_;
   Schedule schedule_;
   SubstepRule substeps_;
   SubstepCount substeps_taken_;
   MomentumAccount momentum_;
+  bool timing_passes_ = false;
   ToleranceSwitch tolerance_;
   GlSharing gl_{GlSharing::Access::Overwrite}, foam_gl_{GlSharing::Access::Overwrite};
   int frame_;

@@ -32,11 +32,11 @@ double start_acceleration(const Scene& scene, const std::vector<ParticleState>& 
 /// Number of substeps from now on; `fastest` m/s are what the start, the nozzles and the obstacles bring.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
-/// Three times what falling gives, m/s. Water that strikes a wall shoots up at twice that (PeersDam: 8.7 m/s
-/// where it falls at 4.4); what is faster is no water's speed. Without gravity and speed there is no such
-/// measure; then two supports of the finest a substep.
-float most_speed(const Scene& scene, const Resolution& resolution, const SolverParameters& parameters,
-                 const std::vector<ParticleState>& start);
+/// Three times what falling gives, and what the surface's energy may add, m/s. Water that strikes a wall
+/// shoots up at twice that (PeersDam: 8.7 m/s where it falls at 4.4); what is faster is no water's speed.
+/// Without gravity and speed there is no such measure; then two supports of the finest a substep.
+float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
+                 const SolverParameters& parameters);
 /// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// What the method calls for while it runs.
@@ -82,9 +82,13 @@ void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// The scene's jets as they stand before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
-/// The pool of the scene's foam, with nobody in it. base::Error when its particles are so small that a frame
-/// may make more than an int counts.
-void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s);
+/// base::Error when foam's particles are so small that a frame may make more than an int counts.
+void check_foam(const EffectCoefficients& effects, const Scene& scene, double frame_dt_s);
+/// The pool of the scene's foam, with nobody in it.
+void begin_foam(FluidState& state);
+/// What the effects keep, after others than before are in force: with these columns, and with the memory of
+/// those alone that the scene lists. What stays keeps its values.
+void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);
 /// Lets the water come to rest, at one level and behind the gate where there is one; the walls are the tank's
 /// then. base::Error when a particle was not finite.
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);
@@ -94,5 +98,7 @@ RelaxedStart relax_start(FluidState& state, int most);
 /// V^n and E^n of temporal acceleration from the present particles, as the frame before would have left them.
 /// Call after relax_start: spray is told by its density.
 void start_velocity_grid(FluidState& state);
+/// Both, of a start in the middle of a run; what the guards met meanwhile does not count.
+RelaxedStart prepare_start(FluidState& state, int most);
 
 }  // namespace sim::SIM_BACKEND

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "libsim/solver/account_keeper.hpp"
+#include "libsim/solver/fluid_simulation.hpp"
+
 namespace sim::SIM_BACKEND {
 
 namespace {
@@ -79,6 +82,33 @@ LevelEvents events_of(const LevelCounts& counts) {
   return {counts.splits,         counts.born,          counts.merges,
           counts.split_deferred, counts.split_at_wall, counts.split_no_room,
           counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
+}
+
+FrameReport report_of(const FluidState& state) {
+  const Measured measured = measure(state);
+  FrameReport out;
+  out.particles = state.particles.size();
+  for (const std::uint8_t level : state.particles.all().level.to_host()) {
+    if (level >= out.particles_by_level.size()) out.particles_by_level.resize(level + std::size_t{1});
+    ++out.particles_by_level[level];
+    out.mass_units += std::int64_t{1} << level;
+  }
+  out.jump_share = measured.jump_share;
+  out.density_error_mean = measured.density_error_mean;
+  out.density_max = measured.density_max;
+  out.neighbours_mean = measured.neighbours_mean;
+  out.listed_mean = measured.listed_mean;
+  out.speed_max_m_s = measured.speed_max_m_s;
+  out.guards = guard_counts(state.guards.to_host()[0], state);
+  out.poured = state.jets.poured;
+  out.particles_in = state.jets.made;
+  out.particles_out = state.jets.taken + state.drained.particles;
+  out.drained = state.drained.mass;
+  out.reservoir = state.jets.reservoir;
+  out.heat = heat_of(state);
+  out.seen = state.saliency.input.seen();
+  out.foam = report_of(state.foam);
+  return out;
 }
 
 std::vector<ParticleState> states_of(const Particles& particles) {

@@ -23,6 +23,9 @@ HeatReport heat_of(const FluidState& state);
 
 LevelEvents events_of(const LevelCounts& counts);
 
+/// What the state tells of itself: all but frame, time, substeps, tau, splits and merges, and the start.
+FrameReport report_of(const FluidState& state);
+
 /// By id.
 std::vector<ParticleState> states_of(const Particles& particles);
 

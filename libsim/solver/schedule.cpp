@@ -1,6 +1,7 @@
 #include "libsim/solver/schedule.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <sstream>
 
@@ -24,6 +25,12 @@ std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
       break;
   }
   return schedule.frame_end;
+}
+
+/// In the order of a frame.
+template <class AnySchedule>
+auto phases_of(AnySchedule& s) {
+  return std::array{&s.frame_start, &s.substep, &s.iteration, &s.substep_end, &s.frame_end};
 }
 
 const char* phase_name(Phase phase) {
@@ -83,9 +90,10 @@ std::optional<Sharing> next_to_share(const std::vector<Stage>& passes, const std
 
 /// Where two passes can walk over the neighbours together, the later one joins the earlier one.
 void share_loops(std::vector<Stage>& passes, const std::vector<SharedLoop>& loops, std::string& explanation) {
-  while (const auto sharing = next_to_share(passes, loops)) {
+  while (auto sharing = next_to_share(passes, loops)) {
     explanation += "  one loop     " + padded(sharing->stage.name, 20) + "instead of " +
                    passes[sharing->first].name + " and " + passes[sharing->second].name + "\n";
+    sharing->stage.effect = passes[sharing->first].effect;
     passes[sharing->first] = sharing->stage;
     passes.erase(passes.begin() + static_cast<std::ptrdiff_t>(sharing->second));
   }
@@ -94,6 +102,7 @@ void share_loops(std::vector<Stage>& passes, const std::vector<SharedLoop>& loop
 void run_all(const std::vector<Stage>& passes, FluidState& state) {
   for (const auto& pass : passes) {
     state.clock.enter(pass.part);
+    state.pass_clock.enter(pass.place);
     pass.run(state);
     state.impulse.mark(pass.changes, state.particles, state.guard());
   }
@@ -142,9 +151,10 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   }
   for (auto* passes : {&out.substep, &out.iteration, &out.substep_end})
     share_loops(*passes, loops, out.explanation);
-  for (const auto* passes :
-       {&out.frame_start, &out.substep, &out.iteration, &out.substep_end, &out.frame_end})
+  for (auto* passes : phases_of(out)) {
     check_reads(*passes, written);
+    for (Stage& pass : *passes) pass.place = out.passes++;
+  }
   out.explanation += absent + "  columns:";
   for (ColumnSet left = out.columns; !left.empty(); left = left - columns(left.first()))
     out.explanation += std::string(" ") + column_name(left.first());
@@ -152,8 +162,17 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   return out;
 }
 
+std::vector<StageTime> stage_times(const Schedule& schedule, const PassClock& clock) {
+  std::vector<StageTime> out;
+  for (const auto* passes : phases_of(schedule))
+    for (const Stage& pass : *passes)
+      out.push_back({pass.name, phase_name(pass.phase), pass.effect, clock.milliseconds(pass.place)});
+  return out;
+}
+
 void run_frame(const Schedule& schedule, FluidState& state) {
   state.clock.start_frame();
+  state.pass_clock.start_frame();
   state.impulse.begin_frame(state.particles, state.guard());
   state.obstacles.begin_frame();
   state.substep = 0;
@@ -170,6 +189,7 @@ void run_frame(const Schedule& schedule, FluidState& state) {
   }
   run_all(schedule.frame_end, state);
   state.clock.end_frame();
+  state.pass_clock.end_frame();
 }
 
 }  // namespace sim::SIM_BACKEND

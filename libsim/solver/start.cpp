@@ -167,8 +167,7 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
 }
 
-void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s) {
-  const EffectCoefficients& e = state.parameters.effects;
+void check_foam(const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
   const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
   const Vec3d& tank = scene.tank_size_m;
   // Approach and crest may both be at their full potential, in a tank full of water.
@@ -179,7 +178,26 @@ void begin_foam(FluidState& state, const Scene& scene, double frame_dt_s) {
     throw base::Error("effect foam", "its particles are too small: a frame may make more than can be counted",
                       "raise diameter_m, or lower emission_per_s");
   }
+}
+
+void begin_foam(FluidState& state) {
+  const EffectCoefficients& e = state.parameters.effects;
   state.foam.begin(static_cast<int>(e[EffectOption::FoamMost]), state.particles.capacity());
+}
+
+void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) {
+  const EffectCoefficients& e = state.parameters.effects;
+  const bool was_warm = state.particles.has(Column::Temperature);
+  state.particles.change_columns(columns);
+  const bool warm = state.particles.has(Column::Temperature);
+  if (warm && !was_warm) warm_up(state, scene);
+  if (!warm) state.heat = {};
+  if (!(e[EffectKind::Viscosity] > 0)) state.conjugate_gradient = {};
+  if (!(e[EffectKind::Foam] > 0)) {
+    state.foam = {};
+  } else if (state.foam.capacity() != static_cast<int>(e[EffectOption::FoamMost])) {
+    begin_foam(state);
+  }
 }
 
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options) {
@@ -225,6 +243,14 @@ void start_velocity_grid(FluidState& state) {
   state.activation.beta = 1;
   activation_stage().run(state);
   velocity_grid_stage().run(state);
+}
+
+RelaxedStart prepare_start(FluidState& state, int most) {
+  const RelaxedStart out = relax_start(state, most);
+  if (state.particles.has(Column::Active)) start_velocity_grid(state);
+  // What was met on the way is not part of the run.
+  state.guards.zero();
+  return out;
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -41,6 +41,11 @@ class SubstepRule {
   /// `fastest_m_s`: the speed that the first two frames go by.
   SubstepRule(const SubstepLimits& limits, double fastest_m_s) : limits_(limits), fastest_(fastest_m_s) {}
 
+  /// From now on as many as the other allows, by the speeds that this one has seen.
+  void take_bounds(const SubstepRule& other) {
+    limits_.least = other.limits_.least;
+    limits_.most = other.limits_.most;
+  }
   /// Takes the largest speed at the end of a frame, m/s.
   void frame_ended(double fastest_m_s) { fastest_.frame_ended(fastest_m_s); }
   /// Substeps that the next frame asks for; past `most` it is larger than what next() allows.

@@ -24,6 +24,9 @@ TEST(Choices, OnlyNumbersChangeARunningFluid) {
   after = before;
   after.iterations = 3;
   EXPECT_EQ(apps::change_between(before, after), Change::Numbers);
+  after = before;
+  after.effects.emplace();
+  EXPECT_EQ(apps::change_between(before, after), Change::Numbers) << "none instead of the scene's";
   for (const auto& [member, value] : {std::pair{&apps::ViewOptions::scene, "b.toml"},
                                       {&apps::ViewOptions::method, "Ours"},
                                       {&apps::ViewOptions::preset, "paper"},

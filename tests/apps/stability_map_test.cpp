@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libsim/scene/effects.hpp"
 #include "tests/apps/table_test_support.hpp"
 
 namespace apps {
@@ -83,6 +84,17 @@ TEST(StabilityMap, PictureWritesEachValueInItsCell) {
   EXPECT_EQ(count(">-<"), 3u) << "S1 is not for LoRes";
 }
 
+TEST(StabilityMap, NamesTheEffectsOfTheWater) {
+  auto map = small_map();
+  const std::string bare = to_svg(map);
+  EXPECT_THAT(bare, Not(HasSubstr("effect")));
+  map.effects = {"cohesion tension_n_m = 1000", "air_drag rate_per_s = 4"};
+  const std::string svg = to_svg(map);
+  for (const auto& effect : map.effects) EXPECT_THAT(svg, HasSubstr("water with the effect " + effect));
+  EXPECT_THAT(to_csv(to_table(map)), HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
+  EXPECT_THAT(to_markdown(map), HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
+}
+
 class StabilityE2e : public test::TableTest {};
 
 TEST_F(StabilityE2e, MapsOneCaseQuickly) {
@@ -102,6 +114,20 @@ TEST_F(StabilityE2e, MapsOneCaseQuickly) {
   EXPECT_THAT(ended.out, HasSubstr("| S9 | HiRes |"));
   EXPECT_THAT(base::read_file(path("map.md"), 1 << 16), HasSubstr("| S9 | HiRes |"));
   EXPECT_THAT(base::read_file(path("map.svg"), 1 << 20), HasSubstr("<svg"));
+}
+
+TEST_F(StabilityE2e, MapsACaseInWaterWithEffects) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto ended =
+      table("stability --case S9 --method LoRes --quick --effects data/scenes/splash.toml --csv " +
+            path("map.csv"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  const auto map = rows("map.csv");
+  ASSERT_EQ(map.size(), 3u);
+  for (const auto& row : map) {
+    EXPECT_NE(row.at("status"), "default_fails") << row.at("failed_beyond");
+    EXPECT_THAT(row.at("circumstances"), HasSubstr("effect air_drag rate_per_s = 4 coarsest_level = 3"));
+  }
 }
 
 TEST_F(StabilityE2e, RefusesWhatIsNotThereAndSaysWhatIs) {

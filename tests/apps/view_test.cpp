@@ -59,6 +59,23 @@ TEST_F(ViewE2e, ExplainsItsSchedule) {
   EXPECT_NE(outcome.out.find("density constraint"), std::string::npos) << outcome.out;
 }
 
+TEST_F(ViewE2e, LeavesOutTheEffectsThatAreTurnedOff) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const std::string run =
+      "--headless data/scenes/splash.toml --backend cpu --n-star 64 --frames 1 --explain ";
+  const auto all = view(run);
+  ASSERT_EQ(all.exit_code, 0) << all.out;
+  EXPECT_NE(all.out.find("the scene lists rate_per_s"), std::string::npos) << all.out;
+  EXPECT_EQ(all.out.find("\nwith "), std::string::npos) << all.out;
+  const auto without = view(run + "--effects-off air_drag");
+  ASSERT_EQ(without.exit_code, 0) << without.out;
+  EXPECT_EQ(without.out.find("the scene lists rate_per_s"), std::string::npos) << without.out;
+  EXPECT_NE(without.out.find("\nwith no effects\n"), std::string::npos) << without.out;
+  const auto wrong = view(run + "--effects-off magic");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(wrong.out.find("--effects-off magic"), std::string::npos) << wrong.out;
+}
+
 TEST_F(ViewE2e, LoadsAFittedModel) {
   sim::PtpeFile file;
   file.model = {31.5, 0.035};

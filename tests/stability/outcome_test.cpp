@@ -23,6 +23,23 @@ TEST(CaseOutcome, MarginsAreSharesOfTheLimit) {
   EXPECT_EQ(reported("a", 1e9).margin(), infinite);
 }
 
+TEST(CaseOutcome, WithEffectsOnlyStabilityCounts) {
+  const Outcome all{{at_most("speed at rest", 3, 2), at_most("at 30 m/s: particles outside", 0, 0),
+                     at_most("braked", 0, 0), at_most("largest rho / rho_0", 1.1, 1.5)},
+                    {}};
+  EXPECT_FALSE(all.passes());
+  EXPECT_TRUE(of_stability(all).passes());
+  EXPECT_EQ(of_stability(all).findings.size(), 3u);
+  for (std::size_t k = 1; k < 4; ++k) {
+    Outcome broken = all;
+    broken.findings[k].value = 2;
+    EXPECT_FALSE(of_stability(broken).passes()) << broken.findings[k].name;
+  }
+  Outcome stopped = all;
+  stopped.stopped = Stop{3, "not finite"};
+  EXPECT_FALSE(of_stability(stopped).passes());
+}
+
 TEST(CaseOutcome, WhatIsNoNumberFails) {
   for (const Finding& one : {at_most("a", std::nan(""), 1), at_least("a", std::nan(""), 1)}) {
     EXPECT_FALSE(one.passes());

@@ -19,6 +19,7 @@ namespace apps {
 namespace {
 
 constexpr float item_width_px = 190, price_width_px = 400;
+constexpr float schedule_width_px = 480, share_width_px = 110;
 
 /// A combo box over words; true when another one was chosen.
 bool choose(const char* label, const std::vector<std::string>& words, std::size_t& at) {
@@ -78,6 +79,8 @@ void draw_painting(Controls& controls, const std::string& legend) {
 
 void draw_running(Controls& controls) {
   ImGui::Checkbox("gaze follows the mouse", &controls.mouse_gaze);
+  ImGui::Checkbox("schedule (t)", &controls.schedule);
+  ImGui::SameLine();
   ImGui::Checkbox("pause (space)", &controls.paused);
   ImGui::SameLine();
   if (ImGui::Button("step (s)")) controls.step_once = true;
@@ -144,6 +147,61 @@ void Panel::draw_numbers(Controls& controls) {
     controls.chosen.iterations = iterations;
 }
 
+/// A box for each effect of the scene; its coefficient takes effect when the slider is let go.
+void Panel::draw_effects(Controls& controls) {
+  if (controls.switches.empty()) return;
+  int number = 0;
+  bool changed = false;
+  for (EffectSwitch& one : controls.switches) {
+    const auto& traits = sim::traits_of(one.effect.kind);
+    const std::string label = fmt::format("{} ({})", traits.word, ++number);
+    auto coefficient = static_cast<float>(one.effect.coefficient);
+    ImGui::BeginDisabled(one.most == 0);
+    changed |= ImGui::Checkbox(label.c_str(), &one.on);
+    ImGui::SameLine(item_width_px);
+    ImGui::BeginDisabled(!one.on);
+    ImGui::SliderFloat(traits.key, &coefficient, 0, static_cast<float>(one.most), "%.4g",
+                       ImGuiSliderFlags_NoInput);
+    if (ImGui::IsItemActive()) one.effect.coefficient = static_cast<double>(coefficient);
+    changed |= ImGui::IsItemDeactivatedAfterEdit();
+    ImGui::EndDisabled();
+    ImGui::EndDisabled();
+  }
+  if (changed) controls.chosen.effects = turned_on(controls.switches);
+  ImGui::Separator();
+}
+
+/// The compiled passes in their order.
+void Panel::draw_schedule(const PassMeans& passes) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({display.x - 12, 12}, ImGuiCond_Once, {1, 0});
+  const auto rows = passes.rows();
+  const float lines = static_cast<float>(rows.size()) + 8;
+  ImGui::SetNextWindowSize(
+      {schedule_width_px, std::min(lines * ImGui::GetTextLineHeightWithSpacing(), display.y - 24)});
+  ImGui::Begin("schedule", nullptr, ImGuiWindowFlags_NoResize);
+  ImGui::Text("%.3f ms in all passes of a frame, mean over the last second", passes.total_ms());
+  ImGui::TextWrapped("While this is open, each pass waits for the device: frames take longer.");
+  constexpr auto flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (ImGui::BeginTable("passes", 5, flags)) {
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const char* head : {"phase", "pass", "effect", "ms a frame"}) ImGui::TableSetupColumn(head);
+    ImGui::TableSetupColumn("share", ImGuiTableColumnFlags_WidthFixed, share_width_px);
+    ImGui::TableHeadersRow();
+    for (const PassRow& row : rows) {
+      for (const std::string& word : {row.phase, row.name, row.effect, fmt::format("{:10.3f}", row.ms)}) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(word.c_str());
+      }
+      ImGui::TableNextColumn();
+      ImGui::ProgressBar(static_cast<float>(row.share), {-1, ImGui::GetTextLineHeight()},
+                         fmt::format("{:.1f} %", 100 * row.share).c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
 void Panel::draw(Controls& controls, const Figures& figures) {
   begin_frame();
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_Once);
@@ -154,6 +212,7 @@ void Panel::draw(Controls& controls, const Figures& figures) {
   draw_fluid(controls);
   draw_numbers(controls);
   ImGui::Separator();
+  draw_effects(controls);
   if (!figures.price.empty()) {
     draw_price(figures.price);
     ImGui::Separator();
@@ -163,6 +222,7 @@ void Panel::draw(Controls& controls, const Figures& figures) {
   if (!figures.said.empty()) ImGui::TextUnformatted(figures.said.c_str());
   ImGui::PopItemWidth();
   ImGui::End();
+  if (controls.schedule) draw_schedule(figures.passes);
   end_frame();
 }
 

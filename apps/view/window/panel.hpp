@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "apps/view/choices.hpp"
+#include "apps/view/effect_switches.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "apps/view/pass_means.hpp"
 #include "stats/fps_window.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
@@ -26,6 +28,7 @@ struct Figures {
   FrameStrip strip;
   std::string legend;              ///< of what is painted over the water
   std::vector<std::string> price;  ///< what the setting costs and errs by; empty: no sweep was given
+  PassMeans passes;                ///< while the schedule is shown
   std::string said;                ///< the last error, or where a screenshot went
 };
 
@@ -40,6 +43,8 @@ struct Controls {
   bool screenshot = false;
   bool restart = false;
   OverlayKind overlay = OverlayKind::None;
+  bool schedule = false;               ///< shown, and so timed
+  std::vector<EffectSwitch> switches;  ///< of the scene's effects, also while a slider is dragged
 };
 
 class Panel {
@@ -62,6 +67,8 @@ class Panel {
  private:
   void draw_fluid(Controls& controls);
   void draw_numbers(Controls& controls);
+  void draw_effects(Controls& controls);
+  void draw_schedule(const PassMeans& passes);
 
   std::vector<std::string> scenes_, methods_, sizes_;
   int size_ = 0;    ///< of the slider of n_*, while it is dragged

@@ -28,17 +28,25 @@ constexpr double progress_every_s = 0.1;
 /// Thrown out of a settling when the window was closed meanwhile.
 struct Closed {};
 
+/// With all its effects, of which any may be turned on while the picture is there.
+sim::Scene as_listed(const PreparedFluid& prepared) {
+  sim::Scene out = prepared.scene;
+  out.effects = prepared.listed;
+  return out;
+}
+
 /// A fluid that runs, and what is drawn of it.
 struct Running {
   explicit Running(PreparedFluid fluid)
       : prepared(std::move(fluid)),
-        picture(prepared.scene),
+        picture(as_listed(prepared)),
         painter(prepared.scene, prepared.finest_spacing_m) {}
 
   PreparedFluid prepared;
   FluidPicture picture;
   OverlayPainter painter;
   stats::FpsWindow fps{30};
+  bool timed = false;   ///< its passes
   double shown_s = -1;  ///< when the last frame was shown; < 0 when a pause lies between
 };
 
@@ -71,6 +79,8 @@ class Viewer {
   void begin_anew();
   void follow_keys();
   void follow_choices();
+  void follow_schedule();
+  void exchange_effects();
   void step(const sim::View& view);
   stats::PtpeModel model() const {
     return fluid_->prepared.ptpe ? fluid_->prepared.ptpe->model : stats::PtpeModel{};
@@ -123,11 +133,17 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
   const sim::LiveNumbers numbers = prepared.fluid->live_numbers();
   controls_.alpha = numbers.alpha;
   controls_.iterations = numbers.iterations;
+  controls_.switches = switches_of(prepared.listed, prepared.scene.effects);
   figures_.price = price_lines(controls_.chosen, prepared.setting, prepared.scene);
 }
 
 /// The old fluid stays when the new one cannot be made.
 void Viewer::begin_anew() {
+  // Another scene lists effects of its own.
+  if (controls_.chosen.scene != running_.scene) {
+    controls_.chosen.effects.reset();
+    controls_.chosen.effects_off.clear();
+  }
   try {
     take(make_fluid(controls_.chosen));
     running_ = controls_.chosen;
@@ -145,7 +161,40 @@ void Viewer::follow_keys() {
     if (key == GLFW_KEY_S) controls_.step_once = true;
     if (key == GLFW_KEY_R) controls_.restart = true;
     if (key == GLFW_KEY_P) controls_.screenshot = true;
+    if (key == GLFW_KEY_T) controls_.schedule = !controls_.schedule;
+    const auto number = static_cast<std::size_t>(key - GLFW_KEY_1);
+    if (key < GLFW_KEY_1 || number >= controls_.switches.size()) continue;
+    controls_.switches[number].on = !controls_.switches[number].on;
+    controls_.chosen.effects = turned_on(controls_.switches);
   }
+}
+
+/// The clock round each pass stands only while its times are shown.
+void Viewer::follow_schedule() {
+  if (fluid_->timed == controls_.schedule) return;
+  fluid_->prepared.fluid->time_passes(controls_.schedule);
+  fluid_->timed = controls_.schedule;
+  figures_.passes.clear();
+}
+
+/// The old ones stay where the new ones are refused.
+void Viewer::exchange_effects() {
+  PreparedFluid& prepared = fluid_->prepared;
+  const auto wished = controls_.chosen.effects.value_or(prepared.scene.effects);
+  try {
+    if (wished != prepared.scene.effects) {
+      prepared.fluid->set_effects(wished);
+      prepared.scene.effects = wished;
+      std::printf("frame %d: %zu passes, with %s\n", figures_.frame, prepared.fluid->passes().size(),
+                  in_words(wished).c_str());
+      std::fflush(stdout);
+      figures_.said.clear();
+    }
+  } catch (const base::Error& error) {
+    controls_.chosen.effects = running_.effects;
+    figures_.said = error.what();
+  }
+  controls_.switches = switches_of(prepared.listed, prepared.scene.effects);
 }
 
 void Viewer::follow_choices() {
@@ -153,6 +202,7 @@ void Viewer::follow_choices() {
   controls_.restart = false;
   if (change == Change::Fluid) return begin_anew();
   if (change == Change::Nothing) return;
+  exchange_effects();
   sim::Simulation& fluid = *fluid_->prepared.fluid;
   sim::LiveNumbers numbers = fluid.live_numbers();
   numbers.alpha = controls_.chosen.alpha.value_or(numbers.alpha);
@@ -193,6 +243,7 @@ void Viewer::note_time(bool stepped) {
   if (!whole) return;
   fluid_->fps.push(interval_s);
   fluid_->prepared.fluid->frame_time(1e3 * interval_s);
+  if (fluid_->timed) figures_.passes.push(fluid_->prepared.fluid->passes(), interval_s);
   figures_.frame_ms = 1e3 * interval_s;
   figures_.strip.push(figures_.frame_ms);
   figures_.fps = fluid_->fps.moments();
@@ -235,6 +286,7 @@ void Viewer::run() {
     note_time(stepped);
     follow_keys();
     follow_choices();
+    follow_schedule();
   }
 }
 

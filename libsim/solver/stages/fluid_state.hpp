@@ -116,6 +116,7 @@ struct FluidState {
   ImpulseRecorder impulse;
   ConjugateGradient conjugate_gradient;
   PartClock clock;
+  PassClock pass_clock;
 
   /// Who was solved in the last frame; nullptr when everyone was.
   const std::uint8_t* last_active() const {

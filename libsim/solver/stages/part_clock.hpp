@@ -1,8 +1,9 @@
 #pragma once
-/// How long the parts of a frame take.
+/// How long the parts of a frame take, and its passes.
 
 #include <array>
 #include <chrono>
+#include <vector>
 
 #include "libsim/exec/space.hpp"
 
@@ -36,6 +37,34 @@ class PartClock {
   Part running_ = Part::count;
   std::chrono::steady_clock::time_point since_;
   std::array<double, static_cast<std::size_t>(Part::count)> seconds_{};
+};
+
+/// The same of each pass of a schedule, by its place there.
+class PassClock {
+ public:
+  /// Forgets what it had measured. 0 passes: off.
+  void measure(std::size_t passes) {
+    seconds_.assign(passes, 0);
+    running_ = passes;
+  }
+  void start_frame() { seconds_.assign(seconds_.size(), 0); }
+  void enter(std::size_t pass) {
+    if (seconds_.empty()) return;
+    synchronize();
+    const auto now = std::chrono::steady_clock::now();
+    if (running_ < seconds_.size()) seconds_[running_] += std::chrono::duration<double>(now - since_).count();
+    running_ = pass;
+    since_ = now;
+  }
+  void end_frame() { enter(seconds_.size()); }
+
+  /// Of the last frame; 0 while it is off.
+  double milliseconds(std::size_t pass) const { return seconds_.empty() ? 0 : 1e3 * seconds_[pass]; }
+
+ private:
+  std::size_t running_ = 0;
+  std::chrono::steady_clock::time_point since_;
+  std::vector<double> seconds_;
 };
 
 }  // namespace sim::SIM_BACKEND

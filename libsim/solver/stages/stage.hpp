@@ -42,6 +42,7 @@ struct Stage {
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< that alone calls for it
   SharedTerm loop = SharedTerm::None;
+  std::size_t place = 0;  ///< among the passes of a schedule, which says so
   // From the function's view, by stage_of:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;

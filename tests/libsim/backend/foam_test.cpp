@@ -181,6 +181,26 @@ SIM_TEST(Foam, CoarserLevelsThanItsDetailMakeNone) {
   EXPECT_GT(fine, 100);
 }
 
+SIM_TEST(Foam, WaterTwoLevelsTooCoarseIsNotLookedAt) {
+  Water all(mixed_crowd(), false, stirred);
+  all.births();
+  const auto whole = all.state.foam.approach.to_host();
+  Water fine(mixed_crowd(), false, stirred);
+  fine.rules.coarsest = 0;
+  fine.births();
+  const auto approach = fine.state.foam.approach.to_host();
+  const auto normal = fine.state.particles.all().normal.to_host();
+  const auto level = fine.state.particles.all().level.to_host();
+  int left_out = 0;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    EXPECT_EQ(approach[i], level[i] <= 1 ? whole[i] : 0);
+    if (level[i] <= 1) continue;
+    EXPECT_EQ(length(xyz(normal[i])), 0);
+    left_out += whole[i] > 0;
+  }
+  EXPECT_GT(left_out, 100);
+}
+
 SIM_TEST(Foam, AFullPoolDropsAnEvenShareAndTheBooksClose) {
   Water water(
       cube(1, 2, 0.2f), true,

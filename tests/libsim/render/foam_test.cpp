@@ -46,6 +46,7 @@ class FoamGl : public render_test::RenderGl {
     // The second picture must not know of the first.
     for (int k = 0; k < 2; ++k) renderer.draw(buffer, {&view, 1}, target.framebuffer(), &diffuse);
     last_passes = passes(renderer);
+    last_seen = renderer.read_gbuffer();
     return target.read();
   }
   /// Sum of the differences of the middle pixel's channels.
@@ -56,7 +57,21 @@ class FoamGl : public render_test::RenderGl {
     return out;
   }
 
+  /// Mean of |n - n of the middle| over the square of 17 px round the middle of the last picture.
+  double roughness() const {
+    const auto normal = [&](int x, int y, int c) {
+      return static_cast<double>(last_seen.normal[static_cast<std::size_t>(3 * (64 * y + x) + c)]);
+    };
+    double sum = 0;
+    for (int y = 24; y <= 40; ++y)
+      for (int x = 24; x <= 40; ++x)
+        sum += std::hypot(normal(x, y, 0) - normal(32, 32, 0), normal(x, y, 1) - normal(32, 32, 1),
+                          normal(x, y, 2) - normal(32, 32, 2));
+    return sum / (17 * 17);
+  }
+
   std::vector<std::string> last_passes;
+  sim::GBuffer last_seen;
 };
 
 TEST_F(FoamGl, HasAPassOnlyWhereTheSceneListsIt) {
@@ -89,6 +104,29 @@ TEST_F(FoamGl, SprayIsBeforeTheWaterAndBubblesAreDimmedBelowIt) {
   EXPECT_GT(below, 10);
   EXPECT_LT(below, on_it);
   EXPECT_LT(deep, below);
+}
+
+TEST_F(FoamGl, IsRoughForSaliencyAsFarAsItCovers) {
+  const RenderParticle wide{0, 0, -1, 0.6F};
+  drawn(sea(1), {});
+  const double bare = roughness();
+  drawn(sea(-1), {wide});
+  EXPECT_EQ(roughness(), bare) << "nothing without the effect";
+  drawn(sea(1), {wide});
+  const double covered = roughness();
+  for (std::size_t p = 0; p < last_seen.depth.size(); ++p) {
+    const float* n = &last_seen.normal[3 * p];
+    if (last_seen.front[p] == sim::GBuffer::no_particle) continue;
+    EXPECT_NEAR(std::hypot(n[0], n[1], n[2]), 1, 1e-3);
+  }
+  EXPECT_GT(covered, bare + 0.4);
+  // Bubbles deep below the surface leave it smooth.
+  drawn(sea(1), {{0, 0, -4, 0.6F}});
+  EXPECT_NEAR(roughness(), bare, 1e-6);
+  // What covers little changes little.
+  const std::vector<RenderParticle> one{{0.1F, 0.1F, -1, 0.006F}};
+  drawn(sea(1), one);
+  EXPECT_LT(roughness(), bare + 0.1 * covered);
 }
 
 TEST_F(FoamGl, WhoeverHasNoRadiusOrPlaceIsNobody) {

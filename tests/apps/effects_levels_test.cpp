@@ -1,0 +1,115 @@
+#include "apps/bench/effects_levels.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "stats/base/error.hpp"
+#include "tests/apps/table_test_support.hpp"
+
+namespace apps {
+namespace {
+
+using sim::EffectKind;
+using sim::EffectOption;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+sim::Scene scene_with(std::vector<sim::Effect> effects) {
+  sim::Scene out;
+  out.name = "Pond";
+  out.effects = std::move(effects);
+  return out;
+}
+
+TEST(EffectsLevels, EachEffectOfALevelOfItsOwnRunsAtEach) {
+  const auto variants = level_variants_of(scene_with(
+      {{EffectKind::Cohesion, 3}, {EffectKind::AirDrag, 2}, {EffectKind::Foam, 0}, {EffectKind::Heat, 1}}));
+  std::vector<std::string> levels;
+  for (const auto& variant : variants) {
+    EXPECT_EQ(variant.effect, "air_drag") << "no other has a coarsest level and a coefficient above 0";
+    levels.push_back(variant.levels);
+  }
+  EXPECT_THAT(levels, ElementsAre("none", "0 to 3", "0 to 2", "0 to 1", "0", "0 to 3, start moved"));
+  EXPECT_TRUE(variants[0].scene.effects.empty());
+  for (std::size_t i = 1; i < 6; ++i) {
+    ASSERT_EQ(variants[i].scene.effects.size(), 1u);
+    const auto& effect = variants[i].scene.effects[0];
+    EXPECT_EQ(effect.coefficient, 2);
+    EXPECT_EQ(effect.options[static_cast<std::size_t>(EffectOption::AirDragCoarsest)],
+              i == 5 ? 3 : 4 - static_cast<int>(i));
+    EXPECT_EQ(variants[i].moved, i == 5);
+  }
+}
+
+TEST(EffectsLevels, ASceneWithoutSuchAnEffectIsRefused) {
+  for (const auto& effects :
+       {std::vector<sim::Effect>{}, {{EffectKind::Cohesion, 3}}, {{EffectKind::Foam, 0}}})
+    EXPECT_THAT([&] { level_variants_of(scene_with(effects)); },
+                testing::ThrowsMessage<base::Error>(HasSubstr("no effect that has a coarsest_level")));
+}
+
+TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
+  const double equal = std::numeric_limits<double>::infinity();
+  const std::vector<LevelCost> costs{
+      {.effect = "air_drag", .levels = "none", .ms_frame = 9, .ms_passes = 0, .psnr_db = 40},
+      {.effect = "air_drag", .levels = "0 to 3", .ms_frame = 11, .ms_passes = 1, .psnr_db = equal},
+      {.effect = "foam", .levels = "none", .ms_frame = 10, .ms_passes = 0},
+      {.effect = "foam", .levels = "0 to 3", .ms_frame = 15, .ms_passes = 4, .psnr_db = equal, .ssim = 1},
+      {.effect = "foam", .levels = "0", .ms_frame = 12, .ms_passes = 1, .psnr_db = 30, .flip_percent = 2.5},
+      {.effect = "foam", .levels = "0 to 3, start moved", .ms_frame = 15, .ms_passes = 4}};
+  const EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
+  const TextTable table = to_table(run, costs);
+  ASSERT_EQ(table.rows.size(), 6u);
+  const auto cell = [&](std::size_t row, const char* column) {
+    const auto at = std::find(table.head.begin(), table.head.end(), column) - table.head.begin();
+    return table.rows[row].at(static_cast<std::size_t>(at));
+  };
+  EXPECT_EQ(cell(4, "ms_added"), "2.0000");
+  EXPECT_EQ(cell(1, "ms_added"), "2.0000") << "each over its own bare scene";
+  EXPECT_EQ(cell(4, "saved_percent"), "75.0");
+  EXPECT_EQ(cell(3, "saved_percent"), "0.0");
+  EXPECT_EQ(cell(2, "saved_percent"), "100.0");
+  EXPECT_EQ(cell(3, "psnr_db"), "inf");
+  EXPECT_EQ(cell(4, "flip_percent"), "2.50");
+  const std::string svg = to_svg(run, costs);
+  for (const char* words :
+       {"Pond, Ours on cpu, n_* 1k", ">foam<", ">level 0 to 3<", ">level 0<", ">start moved<", "4.000"})
+    EXPECT_THAT(svg, HasSubstr(words));
+  EXPECT_THAT(svg, ::testing::Not(HasSubstr(">none<")));
+}
+
+class EffectsLevelsE2e : public test::TableTest {};
+
+TEST_F(EffectsLevelsE2e, AllLevelsAreTheReferenceAndNoneIsLeftToTake) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto ended = table(
+      "effects data/scenes/splash.toml --levels --method Ours --n-star 64 --frames 5 --warm-up 1 "
+      "--size 64x48 --csv " +
+      path("l.csv") + " --svg " + path("l.svg"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  const auto table = rows("l.csv");
+  ASSERT_EQ(table.size(), 6u);
+  EXPECT_EQ(table[0].at("levels"), "none");
+  EXPECT_EQ(std::stod(table[0].at("ms_passes")), 0);
+  EXPECT_GT(std::stod(table[1].at("ms_passes")), 0);
+  EXPECT_EQ(table[1].at("psnr_db"), "inf") << "it is its own reference";
+  EXPECT_EQ(table[1].at("flip_percent"), "0.00");
+  EXPECT_EQ(table[5].at("levels"), "0 to 3; start moved");
+  EXPECT_THAT(base::read_file(path("l.svg"), 1 << 20), HasSubstr("<svg"));
+}
+
+TEST_F(EffectsLevelsE2e, RefusesWhatHasNoLevels) {
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  const auto one = table("effects data/scenes/splash.toml --levels --n-star 64");
+  EXPECT_EQ(one.exit_code, 1) << one.out;
+  EXPECT_THAT(one.out, HasSubstr("HiRes has one"));
+  const auto none = table("effects data/scenes/droplet.toml --levels --method Ours --n-star 64");
+  EXPECT_EQ(none.exit_code, 1) << none.out;
+  EXPECT_THAT(none.out, HasSubstr("no effect that has a coarsest_level"));
+  EXPECT_EQ(table("effects data/scenes/splash.toml --n-star 64 --size 64x48").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace apps
