@@ -52,8 +52,7 @@ void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& pla
                  std::vector<RenderParticle>& out) {
   ByteReader in(payload, place);
   const std::size_t n = in.get<std::uint32_t>();
-  if (static_cast<std::int64_t>(n) > max_foam)
-    in.fail("states " + std::to_string(n) + " particles of foam");
+  if (static_cast<std::int64_t>(n) > max_foam) in.fail("states " + std::to_string(n) + " particles of foam");
   const auto ranges = bake::get_axes<fields>(in);
   if (n > 0 && !(ranges[3].min > 0)) in.fail("holds foam without a radius");
   unpack(in, 2 * fields * n, scratch);

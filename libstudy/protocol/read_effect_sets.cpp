@@ -53,7 +53,8 @@ EffectSet read_set(const base::TomlTable& table, const std::string& name) {
     set.words += (set.words.empty() ? "" : "; ") + read_effect(effect, kind);
   }
   if (kinds.empty())
-    table.fail("name", "holds no effect", "write keep or [[design.effect_set.effect]], or use level \"none\"");
+    table.fail("name", "holds no effect",
+               "write keep or [[design.effect_set.effect]], or use level \"none\"");
   return set;
 }
 
