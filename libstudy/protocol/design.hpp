@@ -10,9 +10,9 @@ namespace study {
 
 /// What is shown; libstudy only passes these words on.
 struct StimulusSpec {
-  std::string scene;   ///< scene file
-  std::string method;  ///< "HiRes", ...
-  std::string n_star;  ///< "32k"
+  std::string scene;         ///< scene file
+  std::string method;        ///< "HiRes", ...
+  std::string n_star;        ///< "32k"
   std::string effects = {};  ///< level of the factor effects: EffectSet::name; empty: they are no factor
 
   bool operator==(const StimulusSpec&) const = default;
@@ -32,6 +32,11 @@ struct EffectSet {
   /// and numbers are libsim's, which reads them from the protocol's text.
   std::string words;
 };
+
+/// Whether effects are a factor and this level of them holds some.
+inline bool has_effects(const StimulusSpec& what) {
+  return !what.effects.empty() && what.effects != no_effects_level;
+}
 
 /// Where the moments of the frame rate come from.
 enum class TimingSource {
@@ -62,7 +67,7 @@ enum class Assignment {
 /// Cells fall into groups of equal (scene, n_star), equally many in each; a participant meets `groups` of
 /// them, one after another, and within each all its cells, or all pairs of its cells.
 struct Design {
-  std::vector<Cell> cells;  ///< grouped, in file order; a trial names one or two by index
+  std::vector<Cell> cells;         ///< grouped, in file order; a trial names one or two by index
   std::vector<EffectSet> effects;  ///< levels in file order; empty: effects are no factor
   TimingSource timing = TimingSource::Settings;
   bool pairs = false;  ///< a trial shows two cells; all unordered pairs of a group

@@ -34,6 +34,9 @@ inline std::vector<Case> head_and_methods() {
        in_each("/study/protocols", "mixed_pictures", Json::object()),
        in_each("/study/protocols", "mixed_pictures",
                {{"a.toml: 640x360 px at 75 degrees by R and 64x36", 2}})},
+      {"Effects were a factor of # with the levels *#*.",
+       in_each("/study/protocols", "effects", Json::object()),
+       in_each("/study/protocols", "effects", {{"none", "no effects"}, {"foam", "keeps foam"}})},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",
