@@ -150,6 +150,9 @@ class TwoFeatures final : public FeatureSource {
  public:
   PictureFeatures of(const StimulusSpec& stimulus) override {
     if (stimulus.method == "LoRes") return {16, 0.02};
+    return {stimulus.method == "HiRes" ? 8.0 : 11.0, 0.02};
+  }
+};
 
 TEST(FramesObserver, PrefersEffectsByTheScoresThatItStates) {
   TwoFeatures features;
@@ -162,9 +165,6 @@ TEST(FramesObserver, PrefersEffectsByTheScoresThatItStates) {
   EXPECT_THAT(*FramesObserver(FramesObserverParameters(), features).simulated(),
               ::testing::EndsWith(",fatigue=0.02"));
 }
-    return {stimulus.method == "HiRes" ? 8.0 : 11.0, 0.02};
-  }
-};
 
 Question choice_of_two() {
   Question question;
