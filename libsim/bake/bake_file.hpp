@@ -10,10 +10,9 @@
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer comes last, so a file that was cut short is known as such. Positions are 16 bit per axis over
 /// each frame's bounding box: off by at most extent / 131070, which the writer holds under a twentieth of the
-/// finest radius. All else is kept exactly, the solver's account of each frame too (not in format 1). Since
-/// format 3 the header says how the fluid was watched and what tau followed from, since format 4 which
-/// effects were computed, and foam is kept, its places and radii rounded likewise over their own ranges.
-/// Equal content gives equal bytes (no date is stored).
+/// finest radius; foam's radii likewise. All else is exact, each frame's account too (not in format 1). Since
+/// format 3 the header tells how the fluid was watched and what tau followed from, since format 4 the effects
+/// that were computed, and foam is kept. Equal content gives equal bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>

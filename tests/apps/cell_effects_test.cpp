@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/study/bakes/bake_plan.hpp"
+#include "apps/study/cell_stimuli.hpp"
 #include "apps/study/check/measured_check.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -110,6 +111,27 @@ TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
                     HasSubstr("is the same water as \"foam\" in scene SeaSpray"), HasSubstr("remove one")));
   const auto bare = protocol_with("effects = [\"none\", \"scene\"]", "", "single_dam");
   EXPECT_THAT(error_of(bare), HasSubstr("is the same water as \"none\" in scene SingleDam"));
+}
+
+TEST(CellEffects, ReachTheFluidOfTheirCells) {
+  const auto protocol = study::read_protocol(base::resource("protocols/foam.toml"));
+  RunOptions options;
+  options.display = "headless";
+  options.backend = "cpu";
+  const CellStimuli stimuli(options, protocol, {}, {});
+  const auto live = [&](std::size_t cell) { return stimuli.choice_of(protocol.design.cells[cell]).effects; };
+  const auto baked = [&](std::size_t cell) {
+    return order_of(protocol, plan_bakes(protocol)[cell], {}).fluid.effects;
+  };
+  for (const auto& effects : {live(0), baked(0)}) {
+    ASSERT_TRUE(effects) << "none, not the scene's own";
+    EXPECT_THAT(*effects, IsEmpty());
+  }
+  for (const auto& effects : {live(1), baked(1)}) {
+    ASSERT_TRUE(effects);
+    ASSERT_EQ(effects->size(), 1u);
+    EXPECT_EQ(effects->front().coefficient, 0.3) << "as the scene's file lists it";
+  }
 }
 
 TEST(CellEffects, NameTheirBakesAndStimuli) {

@@ -1,3 +1,4 @@
+#include "libstudy/observer/frames_observer.hpp"
 #include "libstudy/observer/observer.hpp"
 
 #include <gmock/gmock.h>
