@@ -19,8 +19,9 @@ TEST(BakeFoam, Format3IsReadAndKeepsNoFoam) {
   EXPECT_FALSE(bake.header().effects);
   EXPECT_EQ(bake.header().max_foam, 0);
   EXPECT_EQ(bake.header().view.gaze, "none");
-  if (sim::has_effects())
+  if (sim::has_effects()) {
     EXPECT_EQ(sim::baked_scene(bake.header()).effects.at(0).kind, sim::EffectKind::Foam);
+  }
   sim::BakeFrame frame;
   bake.read_frame(2, frame);
   EXPECT_EQ(frame.particles.size(), 64u);
@@ -66,7 +67,9 @@ TEST(BakeFoam, FoamComesBackWithItsFrame) {
         EXPECT_NEAR(frame.foam[k].radius_m, wanted[k].radius_m, 1e-6);
       }
       EXPECT_EQ(frame.particles.size(), 960u);
-      if (pictures) EXPECT_EQ(reader.read(i).rgba, bake_test::picture(i, 8, 4));
+      if (pictures) {
+        EXPECT_EQ(reader.read(i).rgba, bake_test::picture(i, 8, 4));
+      }
     }
   }
 }
