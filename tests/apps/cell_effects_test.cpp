@@ -94,12 +94,12 @@ TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
   expect(protocol_with(two_levels, set_of("effect = [{kind = \"froth\", rate_per_s = 1}]")),
          "kind = |\"froth\"", "not a known choice", "foam");
   expect(protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\"}]")), "effect = [|{kind",
-         "'design.effect_set.effect.rate_per_s' is missing", "add");
+         "rate_per_s' is missing", "add");
   expect(
       protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 1, lifetime_s = 2}]")),
       "lifetime_s = |2", "is no key of air_drag", "rate_per_s, coarsest_level");
   expect(protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 2e6}]")),
-         "rate_per_s = |2e6", "out of range", "[0, 1e+06]");
+         "rate_per_s = |2e6", "out of range", "[0, 1000000]");
   expect(protocol_with(two_levels, set_of("effect = [{kind = \"adhesion\", work_n_m = 0.01}]")),
          "kind = |\"adhesion\"", "needs cohesion", "list cohesion too");
 }

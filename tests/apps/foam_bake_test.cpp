@@ -42,7 +42,7 @@ sim::Effect much_foam() {
 }
 
 void write(const BakeOrder& order, const std::filesystem::path& path) {
-  write_bake(order, header_of(order), path, true, {.stop = [] {}, .settling = {}, .frames = {}});
+  write_bake(order, header_of(order), path, true, {});
 }
 
 std::vector<std::uint8_t> picture_of(study::Stimulus& stimulus, std::int64_t step) {

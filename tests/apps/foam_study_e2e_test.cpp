@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "libsim/bake/bake_file.hpp"
+#include "libstudy/protocol/protocol.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -86,16 +88,25 @@ TEST_F(FoamStudyE2e, ThePageTellsTheLevelsAndTestsNoClaimAboutMethods) {
   EXPECT_THAT(results.at("hypotheses"), IsEmpty());
   EXPECT_EQ(results.at("study").at("protocols")[0].at("effects"),
             (json{{"none", "no effects"}, {"foam", "keeps foam"}}));
-  const std::string page = base::read_file(page_, 1 << 24);
+  const std::string page = std::regex_replace(base::read_file(page_, 1 << 24), std::regex("<[^>]*>"), "");
   EXPECT_THAT(page, AllOf(HasSubstr("Effects were a factor of"), HasSubstr("effects: none over foam"),
                           HasSubstr("LoRes, foam over HiRes, none"),
                           HasSubstr("H4 to H6, which are about methods alone, are not tested")));
 }
 
-TEST_F(FoamStudyE2e, PowerAndAClaimsBundleSayThatTheyKnowNoEffects) {
-  const Ended power = run_program({vip_stats, "power", foam_protocol(), "--participants", "4"});
+TEST_F(FoamStudyE2e, PowerSaysThatItKnowsNoEffects) {
+  const Ended power = run_program({vip_stats, "power", foam_protocol(), "--n", "4"});
   EXPECT_EQ(power.exit_code, 1);
   EXPECT_THAT(power.err, AllOf(HasSubstr("varies effects"), HasSubstr("mend: ")));
+}
+
+TEST_F(FoamStudyE2e, ABundleFreezesTheProtocolWithoutClaimsAboutMethods) {
+  const fs::path bundle = folder_ / "bundle";
+  const Ended frozen = run_program({vip_stats, "preregister", foam_protocol(), "--out", bundle});
+  ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
+  EXPECT_EQ(json::parse(base::read_file(bundle / "hypotheses.json", 1 << 20)), json::array());
+  EXPECT_THAT(base::read_file(bundle / "plan.toml", 1 << 20),
+              HasSubstr(study::read_protocol(foam_protocol()).sha256));
 }
 
 TEST_F(FoamStudyE2e, CheckNamesLevelsAndStimuli) {

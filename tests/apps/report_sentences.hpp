@@ -272,6 +272,7 @@ inline std::vector<Case> bundle_and_provenance() {
        "exclusions.",
        set("/preregistration/tasks/task2", true), with},
       {"Exploratory Hypotheses of Task 1: *", with},
+      {"Exploratory Hypotheses of Task [12]: *", set("/hypotheses", Json::array())},
       {"Preregistered Hypotheses of Task 2: *", set("/preregistration/tasks/task2", false),
        all({with, set("/preregistration/tasks/task2", true)})},
       {"Exploratory All else: tables and tests of Pilot, tables and tests of Task 1, tables and tests of "

@@ -99,7 +99,7 @@ TEST(LevelDifferences, AverageOverTheOtherFactorWithinEachParticipant) {
 TEST(LevelDifferences, OfOneParticipantAreRefusedWithTheReason) {
   const auto found = level_differences(table_of({{3, 5, 4, 5}}), places, 2, {});
   EXPECT_FALSE(found[0].p());
-  EXPECT_THAT(found[0].difference.reason(), HasSubstr("two"));
+  EXPECT_THAT(found[0].difference.reason(), HasSubstr("not enough values"));
 }
 
 }  // namespace
