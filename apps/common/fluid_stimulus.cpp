@@ -11,10 +11,16 @@ namespace apps {
 
 namespace {
 
+std::string words_of(const std::vector<sim::Effect>& effects) {
+  const std::string words = sim::effects_in_words(effects);
+  return words.empty() ? "none" : words;
+}
+
 std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
-         ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256;
+         ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256 +
+         (h.effects ? ", effects " + words_of(sim::baked_scene(h).effects) : "");
 }
 
 /// Where the axis of an eye meets its picture, px from the lower left: a headset's frusta are off-centre.
@@ -103,7 +109,7 @@ void BakedPictures::draw(const study::Canvas& canvas) {
 BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing,
                                const sim::RenderOptions& options)
     : bake_(std::move(bake)),
-      scene_(sim::parse_scene(bake_->header().scene_text, bake_->header().scene_name)),
+      scene_(sim::baked_scene(bake_->header())),
       viewing_(std::move(viewing)),
       options_(options) {}
 
@@ -118,7 +124,10 @@ void BakedParticles::draw(const study::Canvas& canvas) {
   particles_.upload(frame_.particles);
   if (!renderer_) renderer_ = std::make_unique<sim::FluidRenderer>(scene_, options_);
   renderer_->place_obstacles(frame_.facts.time_s);
-  renderer_->draw(particles_, views_on(scene_.view, viewing_, canvas), canvas.framebuffer);
+  const bool foams = bake_->header().max_foam > 0;
+  if (foams) foam_.upload(frame_.foam);
+  renderer_->draw(particles_, views_on(scene_.view, viewing_, canvas), canvas.framebuffer,
+                  foams ? &foam_ : nullptr);
 }
 
 LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/framing.hpp"
@@ -46,7 +47,7 @@ class BakedPictures final : public study::Stimulus {
   unsigned texture_ = 0, source_ = 0;  ///< the picture, and a framebuffer to copy it from
 };
 
-/// The particle frames of a bake, drawn by the renderer.
+/// The particle frames of a bake with their foam, drawn by the renderer.
 class BakedParticles final : public study::Stimulus {
  public:
   explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
@@ -65,7 +66,7 @@ class BakedParticles final : public study::Stimulus {
   sim::RenderOptions options_;
   sim::BakeFrame frame_;
   std::unique_ptr<sim::FluidRenderer> renderer_;
-  sim::ParticleBuffer particles_;
+  sim::ParticleBuffer particles_, foam_;
 };
 
 /// A simulation that advances one frame a content step, and sees what its viewer saw in the picture before.
@@ -130,6 +131,8 @@ struct StimulusChoice {
   /// frame rate. None = the usual ones.
   std::optional<SolverSetting> setting = {};
   stats::PtpeModel model;
+  /// Live fluid only: instead of the scene's own. None = those of its file.
+  std::optional<std::vector<sim::Effect>> effects = {};
   Viewing viewing;                 ///< of a bake with pictures: nothing
   bool overview = false;           ///< live fluid is watched by the scene's camera for figures
   sim::RenderOptions render = {};  ///< of live fluid

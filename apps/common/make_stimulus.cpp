@@ -22,12 +22,20 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
   return std::make_unique<BakedParticles>(std::move(bake), choice.viewing);
 }
 
+/// Where there are any, or the choice says that there are none.
+std::string effects_told(const StimulusChoice& choice, const sim::Scene& scene) {
+  const std::string words = sim::effects_in_words(scene.effects);
+  if (words.empty()) return choice.effects ? ", effects none" : "";
+  return ", effects " + words;
+}
+
 }  // namespace
 
 std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
                                            const std::function<void(int, int)>& settling) {
   sim::Scene scene = sim::read_scene(choice.scene);
   if (choice.overview) scene.view = scene.overview;
+  if (choice.effects) scene.effects = *choice.effects;
   sim::SimulationOptions options;
   const auto backend = sim::choose_backend(choice.backend);
   if (choice.setting) {
@@ -43,10 +51,10 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   if (choice.content_step_s > 0) options.frame_dt_s = choice.content_step_s;
   options.settling = settling;
   const double dt = options.frame_dt_s > 0 ? options.frame_dt_s : scene.frame_dt_s;
-  const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
-                                  std::to_string(options.n_star) + ", on " +
-                                  sim::backend_name(options.backend) + ", scene " + scene.sha256 +
-                                  (choice.setting ? ", at " + to_text(*choice.setting) : "");
+  const std::string description =
+      "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
+      std::to_string(options.n_star) + ", on " + sim::backend_name(options.backend) + ", scene " +
+      scene.sha256 + effects_told(choice, scene) + (choice.setting ? ", at " + to_text(*choice.setting) : "");
   // Settled once; each rewind starts from that state.
   const auto make = [scene, options]() mutable {
     auto simulation = sim::make_simulation(scene, options);

@@ -60,6 +60,9 @@ void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
   std::printf("%s: %lld frames of %s%lld particles, %.0f bytes a frame for particles", out.c_str(),
               static_cast<long long>(h.frame_count), h.radius_by_level_m.size() > 1 ? "up to " : "",
               static_cast<long long>(h.max_particles), static_cast<double>(sizes.particle_bytes) / frames);
+  if (h.max_foam > 0)
+    std::printf(", %.0f for up to %lld of foam", static_cast<double>(sizes.foam_bytes) / frames,
+                static_cast<long long>(h.max_foam));
   if (h.has_pictures()) {
     std::printf(" and %.0f for the picture", static_cast<double>(sizes.picture_bytes) / frames);
   }
@@ -119,6 +122,8 @@ void verify(const std::string& path) {
   std::printf("  %s%lld particles a frame read, checked and decoded at %.0f frames/s\n",
               h.radius_by_level_m.size() > 1 ? "up to " : "", static_cast<long long>(h.max_particles),
               speed.particles);
+  if (h.max_foam > 0)
+    std::printf("  with the foam of each, up to %lld particles\n", static_cast<long long>(h.max_foam));
   if (!h.has_pictures()) return;
   std::printf("  %dx%d pictures (%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
               h.picture_height_px, h.camera.c_str(), speed.pictures);

@@ -98,7 +98,8 @@ std::optional<study::PictureFeatures> read_features(const std::filesystem::path&
 }  // namespace
 
 std::string stimulus_words(const study::StimulusSpec& stimulus) {
-  return stimulus.scene + ", " + stimulus.method + ", " + stimulus.n_star;
+  return stimulus.scene + ", " + stimulus.method + ", " + stimulus.n_star +
+         (stimulus.effects.empty() ? "" : ", effects " + stimulus.effects);
 }
 
 study::PictureFeatures CellFeatures::read_or_measure(const study::Cell& cell,

@@ -34,7 +34,7 @@ class CellFeatures final : public study::FeatureSource {
   std::map<std::string, study::PictureFeatures> known_;
 };
 
-/// "scene, method, n_*": names a cell's stimulus.
+/// "scene, method, n_*", and where they are a factor ", effects foam": names a cell's stimulus.
 std::string stimulus_words(const study::StimulusSpec& stimulus);
 
 }  // namespace apps

@@ -1,5 +1,7 @@
 #include "apps/study/cell_stimuli.hpp"
 
+#include "apps/study/bakes/cell_effects.hpp"
+
 #include <set>
 
 #include "libstudy/display/null.hpp"
@@ -16,6 +18,7 @@ void check_words(const study::Protocol& protocol) {
     sim::parse_method(cell.stimulus.method);
     sim::parse_n_star(cell.stimulus.n_star);
   }
+  check_cell_effects(protocol);
 }
 
 std::string describe_live(const study::Protocol& protocol, const std::string& backend) {
@@ -25,6 +28,7 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
     if (!scenes.insert(cell.stimulus.scene).second) continue;
     const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
     text += (scenes.size() > 1 ? "; " : ", scene ") + scene.name + " " + scene.sha256;
+    if (!protocol.design.effects.empty()) text += ", effects " + levels_in_words(protocol, scene);
   }
   return text;
 }
@@ -34,7 +38,10 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
 CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& protocol,
                          const stats::PtpeModel& model, Viewing viewing, SessionBakes bakes,
                          SessionSettings settings)
-    : bakes_(std::move(bakes)), settings_(std::move(settings)), shown_(options.display != "none") {
+    : protocol_(protocol),
+      bakes_(std::move(bakes)),
+      settings_(std::move(settings)),
+      shown_(options.display != "none") {
   choice_.content_step_s = protocol.content.content_step_s;
   choice_.backend = options.backend;
   choice_.model = model;
@@ -75,6 +82,7 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   choice.scene = base::find_input(cell.stimulus.scene);
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
+  choice.effects = cell_effects(protocol_, cell.stimulus);
   const SettingFile* setting = settings_.of(cell.stimulus);
   if (setting) choice.setting = setting->setting;
   const bool paced = cell.setting.mean > 0 && !setting;

@@ -44,6 +44,7 @@ class CellStimuli final : public study::StimulusSource {
   void check_settings_live(const study::Protocol& protocol) const;
   std::string describe(const study::Protocol& protocol);
 
+  study::Protocol protocol_;
   StimulusChoice choice_;
   SessionBakes bakes_;
   SessionSettings settings_;

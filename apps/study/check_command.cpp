@@ -7,6 +7,7 @@
 #include "apps/common/headless_display.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
+#include "apps/study/bakes/cell_effects.hpp"
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/live_rates.hpp"
@@ -34,7 +35,7 @@ struct CheckOptions {
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
-/// libstudy only passes scenes, methods and n_* on; here they are looked at.
+/// libstudy only passes scenes, methods, n_* and effects on; here they are looked at.
 void check_stimuli(const study::Protocol& protocol, const std::string& file) {
   for (const auto& what : stimuli_of(protocol)) {
     try {
@@ -45,6 +46,7 @@ void check_stimuli(const study::Protocol& protocol, const std::string& file) {
       throw base::Error(file + ": design", error.what(), "");
     }
   }
+  check_cell_effects(protocol);
 }
 
 std::vector<RefreshCheck> check_common(const study::Protocol& protocol) {
@@ -91,6 +93,21 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
   return report;
 }
 
+/// Each scene once for each level of effects, which its name then tells.
+std::vector<FramedScene> with_levels(const study::Protocol& protocol,
+                                     const std::vector<FramedScene>& scenes) {
+  if (protocol.design.effects.empty()) return scenes;
+  std::vector<FramedScene> out;
+  for (const FramedScene& scene : scenes) {
+    for (const study::EffectSet& level : protocol.design.effects) {
+      out.push_back(scene);
+      out.back().scene.effects = effects_of(protocol, level.name, scene.scene);
+      out.back().scene.name += ", effects " + level.name;
+    }
+  }
+  return out;
+}
+
 void check_protocol(const CheckOptions& options) {
   if (options.measure && options.refresh_hz <= 0) {
     throw base::Error("--measure", "needs the refresh of the display, which no method exceeds",
@@ -101,7 +118,7 @@ void check_protocol(const CheckOptions& options) {
   check_stimuli(protocol, path.string());
   const CheckReport report = make_report(options, protocol);
   print_report(report);
-  if (!options.preview.empty()) write_preview(options.preview, report.scenes);
+  if (!options.preview.empty()) write_preview(options.preview, with_levels(protocol, report.scenes));
   if (!options.json.empty()) base::write_file_atomically(options.json, report_json(report).dump(2) + "\n");
   if (report.measured && !report.measured->collapse.empty()) {
     throw base::Error(path.string() + ": timing = \"native\"",

@@ -25,6 +25,11 @@ nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::
   return json;
 }
 
+/// The level; null where the design does not vary effects.
+nlohmann::ordered_json effects_json(const study::StimulusSpec& what) {
+  return what.effects.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(what.effects);
+}
+
 void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
   if (!report.refresh) return;
   const RefreshCheck& check = *report.refresh;
@@ -76,6 +81,7 @@ void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) 
   for (const auto& one : measured.cells) {
     json["measured"].push_back({{"scene", one.what.scene},
                                 {"method", one.what.method},
+                                {"effects", effects_json(one.what)},
                                 {"n_star", one.what.n_star},
                                 {"asked_mean_fps", one.setting.mean},
                                 {"asked_sd_fps", one.setting.sd},
@@ -127,6 +133,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
   for (const auto& one : plan_bakes(protocol)) {
     json["stimuli"].push_back({{"scene", one.what.scene},
                                {"method", one.what.method},
+                               {"effects", effects_json(one.what)},
                                {"n_star", one.what.n_star},
                                {"live", !one.live.empty()},
                                {"why_live", one.live},

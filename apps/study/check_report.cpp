@@ -95,6 +95,9 @@ void print_speed(const CheckReport& report) {
 
 void print_stimuli(const CheckReport& report) {
   bool bakes = false;
+  for (const auto& level : report.protocol.design.effects)
+    std::printf("%seffects \"%s\": %s\n", &level == &report.protocol.design.effects.front() ? "\n" : "",
+                level.name.c_str(), level.words.c_str());
   std::printf("\nstimuli:\n");
   for (const auto& one : plan_bakes(report.protocol)) {
     const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";

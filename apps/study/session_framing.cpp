@@ -74,7 +74,7 @@ FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake,
 
 FramedScene frame_bake(const sim::BakeHeader& bake, const Viewing& viewing, PictureSize display,
                        const std::string& renderer) {
-  const sim::Scene scene = sim::parse_scene(bake.scene_text, bake.scene_name);
+  const sim::Scene scene = sim::baked_scene(bake);
   FramedScene out = bake.has_pictures() ? frame_pictures(scene, bake, viewing, display)
                                         : frame_live(scene, viewing, display);
   if (!bake.has_pictures()) out.renderer = renderer;

@@ -4,14 +4,15 @@
 ///
 /// Layout, little-endian:
 ///   magic "VIPBAKE\n", u32 format version, u32 header bytes, u64 XXH3 of the header, header,
-///   chunks (a particle frame each, and after it that frame's picture when there are pictures),
+///   chunks (a particle frame each, and after it that frame's foam when foam is kept, and its picture when
+///   there are pictures),
 ///   index (kind, offset, size and XXH3 of every chunk),
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer comes last, so a file that was cut short is known as such. Positions are 16 bit per axis over
 /// each frame's bounding box: off by at most extent / 131070, which the writer holds under a twentieth of the
-/// finest radius. All else is kept exactly, the solver's account of each frame too (not in format 1). Since
-/// format 3 the header says how the fluid was watched and what tau followed from. Equal content gives equal
-/// bytes (no date is stored).
+/// finest radius; foam's radii likewise. All else is exact, each frame's account too (not in format 1). Since
+/// format 3 the header tells how the fluid was watched and what tau followed from, since format 4 the effects
+/// that were computed, and foam is kept. Equal content gives equal bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -70,6 +71,10 @@ struct BakeHeader {
   std::string camera;  ///< "view" or "overview"; empty without pictures
   BakedView view;
   std::optional<BakedTolerance> tolerance;  ///< none = a method that solves every particle, or not known
+  /// The effects that were computed: format_effects(). None = those of scene_text (formats before 4).
+  std::optional<std::string> effects = {};
+  /// No frame holds more diffuse particles of the effect foam; 0 = none are kept, or a format before 4.
+  std::int64_t max_foam = 0;
 
   bool has_pictures() const { return picture_width_px > 0; }
 };
@@ -78,6 +83,7 @@ struct BakeHeader {
 struct BakeSizes {
   std::uint64_t file_bytes = 0;
   std::uint64_t particle_bytes = 0;
+  std::uint64_t foam_bytes = 0;
   std::uint64_t picture_bytes = 0;
 };
 
@@ -95,6 +101,8 @@ class BakeWriter {
 
   /// The next frame's particles, and the solver's account of it (Simulation::account).
   void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account);
+  /// The foam of the frame just added, before its picture; due where the header states max_foam.
+  void add_foam(const std::vector<RenderParticle>& foam);
   /// The picture of the frame just added: 4 x width x height bytes, bottom row first; alpha is dropped.
   void add_picture(ByteSpan rgba);
   /// Writes index and footer, syncs, renames. Every frame that the header states must be there.
@@ -147,6 +155,9 @@ class PictureReader {
   std::int64_t have_ = -1;
   Bytes chunk_, scratch_;
 };
+
+/// The scene that was baked, with the effects that were computed. base::Error: a scene that cannot be read.
+Scene baked_scene(const BakeHeader& header);
 
 /// Header bytes as they stand in a file of the present format.
 Bytes format_bake_header(const BakeHeader& header);

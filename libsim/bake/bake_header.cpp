@@ -2,12 +2,14 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/bake/layout.hpp"
+#include "stats/base/toml.hpp"
 
 namespace sim {
 
 namespace {
 
 constexpr std::size_t max_text = 4096;
+constexpr std::size_t max_effects_text = 1 << 16;
 constexpr std::uint32_t max_gaze_keys = 1000;
 
 bool is_size(int width, int height) {
@@ -97,10 +99,19 @@ void check(const BakeHeader& header, const ByteReader& in) {
     within(std::isfinite(radius) && radius > 0, "radius");
   }
   within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
+  within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "count of foam");
   check(header.view, in);
 }
 
 }  // namespace
+
+Scene baked_scene(const BakeHeader& header) {
+  Scene scene = parse_scene(header.scene_text, header.scene_name);
+  if (header.effects)
+    scene.effects =
+        read_effects(base::parse_toml(*header.effects, header.scene_name + ", its effects").tables("effect"));
+  return scene;
+}
 
 Bytes format_bake_header(const BakeHeader& header) {
   Bytes bytes;
@@ -121,6 +132,9 @@ Bytes format_bake_header(const BakeHeader& header) {
   out.put(static_cast<std::int32_t>(header.picture_height_px));
   put_view(out, header.view);
   put_tolerance(out, header.tolerance);
+  out.put(static_cast<std::uint8_t>(header.effects ? 1 : 0));
+  if (header.effects) out.string(*header.effects);
+  out.put(header.max_foam);
   return bytes;
 }
 
@@ -145,6 +159,12 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
   if (format >= 3) {
     header.view = get_view(in);
     header.tolerance = get_tolerance(in);
+  }
+  if (format >= 4) {
+    const auto there = in.get<std::uint8_t>();
+    if (there > 1) in.fail("has a header with unknown effects");
+    if (there) header.effects = in.string(max_effects_text);
+    header.max_foam = in.get<std::int64_t>();
   }
   if (!in.rest().empty()) in.fail("has a header of the wrong length");
   check(header, in);

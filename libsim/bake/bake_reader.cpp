@@ -79,7 +79,7 @@ bool is(ByteSpan bytes, const std::array<char, 8>& text) {
 struct BakeReader::State {
   Source source;
   BakeHeader header;
-  std::vector<bake::IndexEntry> particles, pictures;
+  std::vector<bake::IndexEntry> particles, foam, pictures;
   std::uint64_t content_hash = 0;
   std::uint64_t body_begin = 0;  ///< first byte after the header
   std::uint32_t format = 0;
@@ -133,13 +133,21 @@ struct BakeReader::State {
     const auto checksum = in.get<std::uint64_t>();
     content_hash = in.get<std::uint64_t>();
     const std::uint64_t end = source.size() - bake::footer_bytes;
-    if (chunks > 2 * bake::max_frames || offset < body_begin || offset > end ||
+    if (chunks > 3 * bake::max_frames || offset < body_begin || offset > end ||
         end - offset != chunks * bake::entry_bytes) {
       fail(source.name(), "has a damaged footer");
     }
     source.read(offset, static_cast<std::size_t>(end - offset), bytes);
     if (XXH3_64bits(bytes.data(), bytes.size()) != checksum) fail(source.name(), "has a damaged index");
     sort_index(bytes, chunks, offset);
+  }
+
+  /// Of the chunk that follows those so far.
+  bake::ChunkKind next_kind() const {
+    if (header.max_foam > 0 && foam.size() < particles.size()) return bake::ChunkKind::Foam;
+    if (!header.has_pictures() || pictures.size() == particles.size()) return bake::ChunkKind::Particles;
+    const bool key = pictures.size() % static_cast<std::size_t>(bake::key_interval) == 0;
+    return key ? bake::ChunkKind::KeyPicture : bake::ChunkKind::Picture;
   }
 
   /// Chunks lie one after the other from the header to the index, frame by frame.
@@ -154,16 +162,15 @@ struct BakeReader::State {
       entry.checksum = in.get<std::uint64_t>();
       if (entry.offset != next || entry.size > end - next) fail(source.name(), "has an index with gaps");
       next += entry.size;
-      const bool picture = header.has_pictures() && i % 2 == 1;
-      const bool key = pictures.size() % static_cast<std::size_t>(bake::key_interval) == 0;
-      const auto wanted = !picture ? bake::ChunkKind::Particles
-                          : key    ? bake::ChunkKind::KeyPicture
-                                   : bake::ChunkKind::Picture;
+      const bake::ChunkKind wanted = next_kind();
       if (entry.kind != wanted) fail(source.name(), "has chunks in an unknown order");
-      (picture ? pictures : particles).push_back(entry);
+      (wanted == bake::ChunkKind::Particles ? particles
+       : wanted == bake::ChunkKind::Foam    ? foam
+                                            : pictures)
+          .push_back(entry);
     }
     const auto frames = static_cast<std::size_t>(header.frame_count);
-    if (next != end || particles.size() != frames ||
+    if (next != end || particles.size() != frames || foam.size() != (header.max_foam > 0 ? frames : 0) ||
         pictures.size() != (header.has_pictures() ? frames : 0)) {
       fail(source.name(), "has another number of frames than its header says");
     }
@@ -198,6 +205,11 @@ void BakeReader::read_frame(std::int64_t frame, BakeFrame& out) const {
   const std::string place = bake::frame_place(s.source.name(), "frame", frame);
   s.read_chunk(s.at(s.particles, frame), place, chunk);
   decode_particles(chunk, s.format, s.header.radius_by_level_m, s.header.max_particles, place, scratch, out);
+  out.foam.clear();
+  if (s.header.max_foam == 0) return;
+  const std::string foam_place = bake::frame_place(s.source.name(), "foam", frame);
+  s.read_chunk(s.at(s.foam, frame), foam_place, chunk);
+  decode_foam(chunk, s.header.max_foam, foam_place, scratch, out.foam);
 }
 
 const BakePicture& PictureReader::read(std::int64_t frame) {

@@ -21,12 +21,17 @@ struct BakeWriter::State {
   std::uint64_t offset = 0;
   std::vector<bake::IndexEntry> index;
   XXH3_state_t* content = nullptr;
-  std::int64_t frames = 0, pictures = 0;
+  std::int64_t frames = 0, foams = 0, pictures = 0;
   BakeFacts facts;
   Bytes chunk, previous;
   BakeSizes sizes;
 
   ~State() { XXH3_freeState(content); }
+
+  /// Whether every frame so far has all that goes with it.
+  bool complete() const {
+    return (header.max_foam == 0 || foams == frames) && (!header.has_pictures() || pictures == frames);
+  }
 
   void open(bool overwrite) {
     check_target(path, overwrite);
@@ -104,9 +109,8 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
                            const FrameAccount& account) {
   State& s = *state_;
   const std::string place = bake::frame_place(s.path.string(), "frame", s.frames);
-  if (s.frames == s.header.frame_count || (s.header.has_pictures() && s.pictures != s.frames)) {
-    throw std::logic_error("BakeWriter: a frame too many, or the last frame's picture is missing");
-  }
+  if (s.frames == s.header.frame_count || !s.complete())
+    throw std::logic_error("BakeWriter: a frame too many, or the last frame's foam or picture is missing");
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
     throw base::Error(place, "holds more particles than the header states", "state the largest count");
   }
@@ -119,11 +123,25 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   ++s.frames;
 }
 
+void BakeWriter::add_foam(const std::vector<RenderParticle>& foam) {
+  State& s = *state_;
+  if (s.header.max_foam == 0 || s.foams + 1 != s.frames || s.pictures == s.frames)
+    throw std::logic_error("BakeWriter: foam without its frame, or that the header does not state");
+  const std::string place = bake::frame_place(s.path.string(), "foam", s.foams);
+  if (foam.size() > static_cast<std::size_t>(s.header.max_foam))
+    throw base::Error(place, "holds more foam than the header states", "state the largest count");
+  encode_foam(foam, particle_zstd_level, place, s.chunk);
+  s.write_chunk(bake::ChunkKind::Foam);
+  s.sizes.foam_bytes += s.chunk.size();
+  ++s.foams;
+}
+
 void BakeWriter::add_picture(ByteSpan rgba) {
   State& s = *state_;
   const auto bytes = static_cast<std::size_t>(s.header.picture_width_px) *
                      static_cast<std::size_t>(s.header.picture_height_px) * 4;
-  if (!s.header.has_pictures() || s.pictures + 1 != s.frames || rgba.size() != bytes) {
+  const bool foam_missing = s.header.max_foam > 0 && s.foams != s.frames;
+  if (!s.header.has_pictures() || s.pictures + 1 != s.frames || foam_missing || rgba.size() != bytes) {
     throw std::logic_error("BakeWriter: a picture without its frame, or of another size");
   }
   const bool key = s.pictures % bake::key_interval == 0;
@@ -137,9 +155,8 @@ void BakeWriter::add_picture(ByteSpan rgba) {
 
 BakeSizes BakeWriter::finish() {
   State& s = *state_;
-  if (s.frames != s.header.frame_count || (s.header.has_pictures() && s.pictures != s.frames)) {
+  if (s.frames != s.header.frame_count || !s.complete())
     throw std::logic_error("BakeWriter: frames are missing");
-  }
   s.write_index();
   s.file->put_in_place();
   s.sizes.file_bytes = s.offset;

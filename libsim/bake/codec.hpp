@@ -22,6 +22,7 @@ struct BakeFacts {
 struct BakeFrame {
   BakeFacts facts;
   std::vector<RenderParticle> particles;
+  std::vector<RenderParticle> foam;  ///< Simulation::read_foam; empty where the bake keeps none
 };
 
 /// One picture, bottom row first as OpenGL reads it, 4 bytes a pixel (R, G, B, 255).
@@ -32,6 +33,8 @@ struct BakePicture {
 
 /// Most particles that a frame of a bake may hold: HiRes at the largest n_*.
 inline constexpr std::int64_t max_bake_particles = std::int64_t{32} << 20;
+/// Most diffuse particles of the effect foam.
+inline constexpr std::int64_t max_bake_foam = std::int64_t{1} << 20;
 /// Most levels, and longest side of a picture, px.
 inline constexpr std::size_t max_bake_levels = 16;
 inline constexpr int max_picture_side = 8192;
@@ -51,6 +54,13 @@ void encode_particles(double time_s, const FrameAccount& account,
 void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<float>& radius_by_level_m,
                       std::int64_t max_particles, const std::string& place, Bytes& scratch, BakeFrame& out);
 
+/// Foam: place and radius of each, 16 bit over the frame's own range of each.
+void encode_foam(const std::vector<RenderParticle>& foam, int zstd_level, const std::string& place,
+                 Bytes& out);
+/// The inverse. Refuses (base::Error at `place`) counts beyond `max_foam` before it allocates.
+void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& place, Bytes& scratch,
+                 std::vector<RenderParticle>& out);
+
 /// Pictures: colour planes G, R - G, B - G; each row the residual of one of five predictors (none, left,
 /// above, gradient, previous picture), then zstd. `previous` is the picture before, or empty for a key
 /// picture. Alpha is dropped.
@@ -61,8 +71,8 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
 void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
                     int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
-/// Format of what is written; 1 and 2 are still read.
-inline constexpr std::uint32_t bake_format = 3;
+/// Format of what is written; 1 to 3 are still read.
+inline constexpr std::uint32_t bake_format = 4;
 
 /// Facts as they stand at the front of both kinds of chunk: time and counts, since format 2 then one byte
 /// that says what was measured (FactBits), and that: tau, mu and delta, beta and the number of active

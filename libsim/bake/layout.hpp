@@ -20,7 +20,7 @@ inline constexpr std::int64_t max_frames = 1 << 20;
 /// Every 30th picture builds on none before, so that a jump costs at most 30 pictures.
 inline constexpr std::int64_t key_interval = 30;
 
-enum class ChunkKind : std::uint32_t { Particles = 1, KeyPicture = 2, Picture = 3 };
+enum class ChunkKind : std::uint32_t { Particles = 1, KeyPicture = 2, Picture = 3, Foam = 4 };
 
 struct IndexEntry {
   ChunkKind kind = ChunkKind::Particles;

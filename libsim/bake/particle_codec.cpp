@@ -3,17 +3,13 @@
 #include <cmath>
 
 #include "libsim/bake/codec.hpp"
+#include "libsim/bake/quantise.hpp"
 
 namespace sim {
 
 namespace {
 
-constexpr float steps = 65535;
-
-/// One axis of a frame's box.
-struct Axis {
-  float min = 0, max = 0;
-};
+using bake::Axis;
 using Box = std::array<Axis, 3>;
 
 float coordinate(const RenderParticle& particle, std::size_t axis) {
@@ -41,7 +37,7 @@ Box bounding_box(const std::vector<RenderParticle>& particles, const std::string
 void check_error(const Box& box, const std::vector<float>& radii, const std::string& place) {
   const float finest = *std::min_element(radii.begin(), radii.end());
   for (const Axis& axis : box) {
-    const float error = (axis.max - axis.min) / (2 * steps);
+    const float error = (axis.max - axis.min) / (2 * bake::axis_steps);
     if (error < finest / 20) continue;
     throw base::Error(place,
                       fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
@@ -76,55 +72,6 @@ std::vector<std::uint32_t> order_by_level(const std::vector<RenderParticle>& par
   return order;
 }
 
-/// Small differences of either sign become small numbers.
-std::uint16_t zigzag(std::uint16_t difference) {
-  return static_cast<std::uint16_t>((difference << 1) ^ ((difference & 0x8000) ? 0xffff : 0));
-}
-std::uint16_t unzigzag(std::uint16_t value) {
-  return static_cast<std::uint16_t>((value >> 1) ^ ((value & 1) ? 0xffff : 0));
-}
-
-/// Planes of one axis: n high bytes, then n low bytes, of the differences along the order.
-void encode_axis(const std::vector<RenderParticle>& particles, const std::vector<std::uint32_t>& order,
-                 std::size_t axis, const Axis& range, std::uint8_t* planes) {
-  const std::size_t n = order.size();
-  const double scale = range.max > range.min ? 65535.0 / (double(range.max) - double(range.min)) : 0;
-  std::uint16_t before = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double offset = double(coordinate(particles[order[i]], axis)) - double(range.min);
-    const auto q = static_cast<std::uint16_t>(std::clamp(std::lround(offset * scale), 0L, 65535L));
-    const std::uint16_t code = zigzag(static_cast<std::uint16_t>(q - before));
-    planes[i] = static_cast<std::uint8_t>(code >> 8);
-    planes[n + i] = static_cast<std::uint8_t>(code & 0xff);
-    before = q;
-  }
-}
-
-/// Adds up the differences of one axis and hands each coordinate to `set`.
-template <typename Set>
-void decode_axis(const std::uint8_t* planes, std::size_t n, const Axis& range, Set set) {
-  const float scale = (range.max - range.min) / steps;
-  std::uint16_t q = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto code = static_cast<std::uint16_t>(planes[i] << 8 | planes[n + i]);
-    q = static_cast<std::uint16_t>(q + unzigzag(code));
-    set(i, range.min + scale * static_cast<float>(q));
-  }
-}
-
-Box get_box(ByteReader& in) {
-  Box box{};
-  for (Axis& axis : box) {
-    axis.min = in.get<float>();
-    axis.max = in.get<float>();
-    if (!std::isfinite(axis.min) || !std::isfinite(axis.max) || axis.max < axis.min ||
-        !std::isfinite(axis.max - axis.min)) {
-      in.fail("has a box that is none");
-    }
-  }
-  return box;
-}
-
 }  // namespace
 
 void encode_particles(double time_s, const FrameAccount& account,
@@ -142,13 +89,12 @@ void encode_particles(double time_s, const FrameAccount& account,
   out.clear();
   ByteWriter writer(out);
   put_facts(writer, facts);
-  for (const Axis& axis : box) {
-    writer.put(axis.min);
-    writer.put(axis.max);
-  }
+  bake::put_axes(writer, box);
   Bytes planes(6 * particles.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    encode_axis(particles, order, axis, box[axis], planes.data() + 2 * axis * particles.size());
+    bake::encode_axis(
+        order.size(), [&](std::size_t i) { return coordinate(particles[order[i]], axis); }, box[axis],
+        planes.data() + 2 * axis * particles.size());
   }
   pack(planes, zstd_level, out);
 }
@@ -159,16 +105,16 @@ void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<
   out.facts = get_facts(in, format, radius_by_level_m.size());
   const std::int64_t total = out.facts.account.particles();
   if (total > max_particles) in.fail("states " + std::to_string(total) + " particles");
-  const Box box = get_box(in);
+  const Box box = bake::get_axes<3>(in);
   const auto n = static_cast<std::size_t>(total);
   unpack(in, 6 * n, scratch);
 
   out.particles.resize(n);
   RenderParticle* particles = out.particles.data();
   const std::uint8_t* planes = scratch.data();
-  decode_axis(planes, n, box[0], [=](std::size_t i, float x) { particles[i].x_m = x; });
-  decode_axis(planes + 2 * n, n, box[1], [=](std::size_t i, float y) { particles[i].y_m = y; });
-  decode_axis(planes + 4 * n, n, box[2], [=](std::size_t i, float z) { particles[i].z_m = z; });
+  bake::decode_axis(planes, n, box[0], [=](std::size_t i, float x) { particles[i].x_m = x; });
+  bake::decode_axis(planes + 2 * n, n, box[1], [=](std::size_t i, float y) { particles[i].y_m = y; });
+  bake::decode_axis(planes + 4 * n, n, box[2], [=](std::size_t i, float z) { particles[i].z_m = z; });
   std::size_t begin = 0;
   for (std::size_t level = 0; level < radius_by_level_m.size(); ++level) {
     const std::size_t end = begin + static_cast<std::size_t>(out.facts.account.particles_by_level[level]);

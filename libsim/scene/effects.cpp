@@ -108,16 +108,46 @@ EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
   return out;
 }
 
-std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables) {
+std::optional<EffectKind> effect_named(const std::string& word) {
   const auto words = all_words();
-  auto known = words;
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end()) return {};
+  return static_cast<EffectKind>(found - words.begin());
+}
+
+std::string format_effects(const std::vector<Effect>& effects) {
+  std::string out;
+  for (const Effect& effect : effects) {
+    if (effect.coefficient == 0) continue;
+    out += std::string("[[effect]]\nkind = \"") + traits_of(effect.kind).word + "\"\n" +
+           traits_of(effect.kind).key + " = " + base::shortest(effect.coefficient) + "\n";
+    for (std::size_t k = 0; k < option_count; ++k)
+      if (option_traits[k].of == effect.kind)
+        out += std::string(option_traits[k].key) + " = " + base::shortest(effect.options[k]) + "\n";
+  }
+  return out;
+}
+
+std::string effects_in_words(const std::vector<Effect>& effects) {
+  std::ostringstream out;
+  for (const Effect& effect : effects) {
+    if (effect.coefficient == 0) continue;
+    out << (out.tellp() > 0 ? "; " : "") << traits_of(effect.kind).word << ' ' << traits_of(effect.kind).key
+        << " = " << effect.coefficient << options_in_words(effect);
+  }
+  return out.str();
+}
+
+std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
+                                 const std::vector<Effect>& kept) {
+  auto known = all_words();
   for (const std::string& word : picture_effect_words()) known.push_back(word);
   std::vector<base::TomlTable> read;
-  std::vector<Effect> out;
+  std::vector<Effect> out = kept;
   for (const auto& table : tables) {
-    const auto word = std::find(words.begin(), words.end(), table.choice("kind", known));
-    if (word == words.end()) continue;  // the picture's
-    const auto kind = static_cast<EffectKind>(word - words.begin());
+    const auto named = effect_named(table.choice("kind", known));
+    if (!named) continue;  // the picture's
+    const EffectKind kind = *named;
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");
     Effect effect{kind, table.number(traits_of(kind).key, {0, largest})};
@@ -131,8 +161,10 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables) {
     out.push_back(effect);
     read.push_back(table);
   }
-  for (std::size_t i = 0; i < out.size(); ++i)
-    if (!stands(out, out[i])) read[i].fail("kind", needs_text(out[i]), needs_mend(out[i]));
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const Effect& effect = out[kept.size() + i];
+    if (!stands(out, effect)) read[i].fail("kind", needs_text(effect), needs_mend(effect));
+  }
   return out;
 }
 

@@ -139,8 +139,15 @@ EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
 /// The tables [[effect]] of a scene file of format 2, but for the picture's (picture_effects.hpp). Errors are
 /// base::Error at file:line:column: unknown, listed twice, without the effect that it needs, out of range, or
-/// a program built without effects.
-std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables);
+/// a program built without effects. kept: effects that stand beside them already.
+std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
+                                 const std::vector<Effect>& kept = {});
+/// The kind that a scene file's word names; none for another word.
+std::optional<EffectKind> effect_named(const std::string& word);
+/// The tables that read_effects() reads back as the same effects; of those that are not dropped.
+std::string format_effects(const std::vector<Effect>& effects);
+/// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
+std::string effects_in_words(const std::vector<Effect>& effects);
 /// The same of a scene that no file described; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 

@@ -23,6 +23,7 @@ bool share_level(const Design& design, const Cell& a, const Cell& b) {
   return std::any_of(
       design.never_adjacent.begin(), design.never_adjacent.end(), [&](const std::string& factor) {
         if (factor == "method") return a.stimulus.method == b.stimulus.method;
+        if (factor == "effects") return a.stimulus.effects == b.stimulus.effects;
         return factor == "mean_fps" ? a.setting.mean == b.setting.mean : a.setting.sd == b.setting.sd;
       });
 }

@@ -15,7 +15,7 @@ const std::string mend = "write frames, or frames:grain=4,bias=0.3 and the like"
 constexpr double neutral_granularity_px = 8.5, neutral_flicker = 0.02, tau_scale = 15;
 constexpr double symptom_level = 0.6, symptom_scale = 3;
 
-std::array<ObserverKey, 8> keys_of(FramesObserverParameters& p) {
+std::array<ObserverKey, 9> keys_of(FramesObserverParameters& p) {
   constexpr double most = 100;
   return {{{"grain", &p.grain, 0, most},
            {"flicker", &p.flicker, 0, most},
@@ -24,7 +24,8 @@ std::array<ObserverKey, 8> keys_of(FramesObserverParameters& p) {
            {"participant_sd", &p.participant_sd, 0, most},
            {"bias", &p.bias, -most, most},
            {"sickness", &p.sickness, 0, most},
-           {"fatigue", &p.fatigue, 0, most}}};
+           {"fatigue", &p.fatigue, 0, most},
+           {"effects", &p.effects, -most, most}}};
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ FramesObserverParameters parse_frames_observer(std::string_view specification) {
 
 std::optional<std::string> FramesObserver::simulated() const {
   FramesObserverParameters copy = parameters_;
-  return std::string(kind) + ":" + write_observer_keys(keys_of(copy));
+  return std::string(kind) + ":" + write_observer_keys(written(keys_of(copy)));
 }
 
 double FramesObserver::quality(const ShownStimulus& shown) const {
@@ -48,7 +49,8 @@ double FramesObserver::quality(const ShownStimulus& shown) const {
   const double tau = stats::ptpe_tolerance({}, shown.realised.mean, shown.realised.sd);
   return parameters_.timing * std::tanh(tau / tau_scale) -
          parameters_.grain * std::log2(features.granularity_px / neutral_granularity_px) -
-         parameters_.flicker * std::log2(features.flicker / neutral_flicker);
+         parameters_.flicker * std::log2(features.flicker / neutral_flicker) +
+         (has_effects(shown.what.stimulus) ? parameters_.effects : 0);
 }
 
 int FramesObserver::symptom(const Question& question, const Occasion& occasion) const {

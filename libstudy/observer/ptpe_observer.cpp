@@ -13,13 +13,14 @@ namespace {
 constexpr std::string_view kind = "ptpe:";
 const std::string mend = "write ptpe:a=31,b=0.035 with slope, noise and participant_sd as you like";
 
-std::array<ObserverKey, 5> keys_of(PtpeObserverParameters& p) {
+std::array<ObserverKey, 6> keys_of(PtpeObserverParameters& p) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return {{{"a", &p.a, 0, infinity, true, true},
            {"b", &p.b, -1, 1, false, true},
            {"slope", &p.slope, 0, infinity, true},
            {"noise", &p.noise, 0, infinity},
-           {"participant_sd", &p.participant_sd, 0, infinity}}};
+           {"participant_sd", &p.participant_sd, 0, infinity},
+           {"effects", &p.effects, -infinity, infinity}}};
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ PtpeObserverParameters parse_ptpe_observer(std::string_view specification) {
 
 std::optional<std::string> PtpeObserver::simulated() const {
   PtpeObserverParameters copy = parameters_;
-  return std::string(kind) + write_observer_keys(keys_of(copy));
+  return std::string(kind) + write_observer_keys(written(keys_of(copy)));
 }
 
 /// x - m of one stimulus.
@@ -42,7 +43,8 @@ double PtpeObserver::latent(const Occasion& occasion, std::size_t interval) cons
   const stats::FpsMoments& seen = occasion.shown[interval].realised;
   const double tau = stats::ptpe_tolerance({parameters_.a, parameters_.b}, seen.mean, seen.sd);
   const auto draw = (interval << 32) + 1 + static_cast<std::uint64_t>(occasion.position);
-  return parameters_.slope * tau + parameters_.participant_sd * normal_of(key, 0) +
+  const double effects = has_effects(occasion.shown[interval].what.stimulus) ? parameters_.effects : 0;
+  return parameters_.slope * tau + effects + parameters_.participant_sd * normal_of(key, 0) +
          parameters_.noise * normal_of(key, draw);
 }
 

@@ -10,10 +10,11 @@ namespace study {
 
 /// Latent satisfaction on a scale of K categories with midpoint m:
 ///
-///   x = m + slope tau + participant + noise,   tau = mu - a exp(b delta)   (paper Eq. 11)
+///   x = m + slope tau + effects + participant + noise,   tau = mu - a exp(b delta)   (paper Eq. 11)
 ///
 /// with mu the harmonic mean and delta the standard deviation of the frames shown, participant ~ N(0,
-/// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial. The score is
+/// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial; effects counts
+/// where they are a factor and the level is another than "none". The score is
 /// the category whose thresholds, m +- 1/2, 3/2, ..., hold x: symmetric about m, so that E[score] = m (4 on a
 /// 7-point scale) exactly on the contour tau = 0.
 ///
@@ -26,10 +27,12 @@ struct PtpeObserverParameters {
   double slope = 0.14;          ///< scores per frame/s, > 0
   double noise = 1.0;           ///< scores, >= 0
   double participant_sd = 0.5;  ///< scores, >= 0
+  double effects = 0;           ///< scores that effects are worth over none; written where it is not 0
 };
 
-/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..]". base::Error naming the place for
-/// anything else: another kind, a key unknown, repeated or missing, a bad number or one out of range.
+/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error naming the
+/// place for anything else: another kind, a key unknown, repeated or missing, a bad number or one out of
+/// range.
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
 
 /// The first question about a stimulus is answered by the model; of two stimuli the one with the larger x of

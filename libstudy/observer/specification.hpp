@@ -1,6 +1,7 @@
 #pragma once
 /// "kind:key=number,key=number": how a simulated observer is named on the command line and in the record.
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -29,6 +30,12 @@ void read_observer_keys(std::string_view specification, std::size_t at, std::spa
 /// One number without a key, such as "4" in "constant:4".
 double read_observer_number(std::string_view specification, std::size_t at, std::string_view text, double min,
                             double max, const std::string& mend);
+
+/// The keys that a record holds: the last one is left out where it is 0, as before there was such a key.
+template <std::size_t count>
+std::span<const ObserverKey> written(const std::array<ObserverKey, count>& keys) {
+  return std::span<const ObserverKey>(keys).first(*keys.back().value == 0 ? count - 1 : count);
+}
 
 /// "a=31,b=0.035": every key with its value, as short as reads back exactly.
 std::string write_observer_keys(std::span<const ObserverKey> keys);

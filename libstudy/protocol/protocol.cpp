@@ -61,11 +61,16 @@ std::string text_of(const base::TomlTable& table, std::string_view key) {
 
 std::string shown(double value) { return fmt::format("{:g}", value); }
 
-std::string id_of(const base::TomlTable& table, std::string_view key) {
-  const std::string id = text_of(table, key);
+bool is_id(std::string_view word) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto good = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  if (!letter(id.front()) || id.size() > 64 || !std::all_of(id.begin(), id.end(), good)) {
+  return !word.empty() && letter(word.front()) && word.size() <= 64 &&
+         std::all_of(word.begin(), word.end(), good);
+}
+
+std::string id_of(const base::TomlTable& table, std::string_view key) {
+  const std::string id = text_of(table, key);
+  if (!is_id(id)) {
     table.fail(key, "= " + base::toml_quoted(id) + " is no id",
                "write a letter, then letters, digits and '_', 64 at most");
   }
@@ -97,6 +102,7 @@ Protocol parse_protocol(std::string_view text, const std::string& name, Protocol
   const auto root = base::parse_toml(text, name);
   Protocol protocol = read_protocol_table(root, use);
   root.finish();
+  protocol.place = name;
   protocol.text = text;
   protocol.sha256 = base::sha256_hex(text);
   return protocol;

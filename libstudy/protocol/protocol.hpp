@@ -45,6 +45,7 @@ struct Protocol {
   /// together rebuild the protocol.
   std::optional<double> trial_seconds;
 
+  std::string place;   ///< stands for the file in messages; empty: rebuilt from tables
   std::string text;    ///< the file as read, kept in every database
   std::string sha256;  ///< of `text`, or of text + overrides when there are any
 };

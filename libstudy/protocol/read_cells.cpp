@@ -65,7 +65,7 @@ void check_level(const base::TomlTable& row, std::string_view key, const std::st
   }
 }
 
-/// [[design.moments]]: one for each cell.
+/// [[design.moments]]: one for each cell, whatever its effects.
 class PublishedMoments {
  public:
   PublishedMoments(const base::TomlTable& design, const Factors& factors) : design_(design) {
@@ -130,7 +130,8 @@ std::vector<std::string> distinct_words(const base::TomlTable& table, std::strin
   return words;
 }
 
-std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing) {
+std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing,
+                             const std::vector<EffectSet>& effects) {
   const Factors factors{distinct_words(table, "scene"), distinct_words(table, "n_star"),
                         distinct_words(table, "method")};
   const double duration_s = table.number("duration_s", duration_range);
@@ -140,7 +141,11 @@ std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing) 
   if (timing == TimingSource::Settings || timing == TimingSource::Equal) moments = read_moments(table);
   if (timing == TimingSource::Equal && moments.size() != 1)
     table.fail("mean_fps", "and sd_fps make more than one setting", "give one value of each with equal");
-  if (factors.scenes.size() * factors.sizes.size() * factors.methods.size() * moments.size() > most_cells) {
+  std::vector<std::string> levels;
+  for (const EffectSet& set : effects) levels.push_back(set.name);
+  if (levels.empty()) levels.emplace_back();
+  if (factors.scenes.size() * factors.sizes.size() * factors.methods.size() * levels.size() * moments.size() >
+      most_cells) {
     table.fail("method", "and the other factors make more than " + std::to_string(most_cells) + " cells",
                "name fewer values");
   }
@@ -148,10 +153,12 @@ std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing) 
   for (const auto& scene : factors.scenes) {
     for (const auto& size : factors.sizes) {
       for (const auto& method : factors.methods) {
-        const StimulusSpec what{scene, method, size};
-        for (const auto& wished : moments) {
-          const auto [mean, sd] = timing == TimingSource::Table2 ? published.of(what) : wished;
-          out.push_back({what, {mean, sd, duration_s}});
+        for (const auto& level : levels) {
+          const StimulusSpec what{scene, method, size, level};
+          for (const auto& wished : moments) {
+            const auto [mean, sd] = timing == TimingSource::Table2 ? published.of(what) : wished;
+            out.push_back({what, {mean, sd, duration_s}});
+          }
         }
       }
     }

@@ -61,7 +61,7 @@ void check_groups(const base::TomlTable& table, const Design& design) {
 void check_trials(const base::TomlTable& table, const Design& design) {
   const auto cells = static_cast<int>(cell_groups(design).front().size());
   if (design.pairs && cells < 2)
-    table.fail("pairs", "need two cells of one scene and n_*", "name more methods, or remove pairs");
+    table.fail("pairs", "need two cells of one scene and n_*", "name more methods or effects, or remove pairs");
   const int trials = design.groups * trials_of_group(design);
   if (trials > most_trials) {
     table.fail(design.pairs ? "pairs" : "method",
@@ -84,6 +84,7 @@ void check_places(const base::TomlTable& table, const Design& design) {
 /// The level of a factor as text.
 std::string level_of(const Cell& cell, const std::string& factor) {
   if (factor == "method") return cell.stimulus.method;
+  if (factor == "effects") return cell.stimulus.effects;
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
 }
 
@@ -120,15 +121,23 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
   design.never_adjacent = distinct_words(table, "never_adjacent");
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
     const std::string& factor = design.never_adjacent[i];
-    if (factor != "method" && factor != "mean_fps" && factor != "sd_fps") {
+    if (factor != "method" && factor != "effects" && factor != "mean_fps" && factor != "sd_fps") {
       table.fail_at("never_adjacent", i, "= " + base::toml_quoted(factor) + " is no factor",
-                    "use method, mean_fps or sd_fps");
+                    "use method, effects, mean_fps or sd_fps");
+    }
+    if (factor == "effects" && design.effects.empty()) {
+      table.fail_at("never_adjacent", i, "= \"effects\" is no factor of this design",
+                    "write effects = [...], or remove it here");
     }
   }
   check_never_adjacent(table, design);
 }
 
 }  // namespace
+
+std::string treatment_name(const StimulusSpec& what) {
+  return what.effects.empty() ? what.method : what.method + ", " + what.effects;
+}
 
 std::vector<std::vector<int>> cell_groups(const Design& design) {
   std::vector<std::vector<int>> out;
@@ -150,7 +159,8 @@ int trials_of_group(const Design& design) {
 Design read_design(const base::TomlTable& table) {
   Design design;
   design.timing = read_timing_source(table);
-  design.cells = read_cells(table, design.timing);
+  design.effects = read_effect_sets(table);
+  design.cells = read_cells(table, design.timing, design.effects);
   design.pairs = table.boolean_or("pairs", false);
   design.groups = static_cast<int>(table.integer_or("groups", 1, {1, 100}));
   check_groups(table, design);

@@ -18,6 +18,8 @@ inline constexpr base::Range pause_range{0, 3600};
 std::string text_of(const base::TomlTable& table, std::string_view key);
 /// A name that steps and tables of data can hold: a letter, then letters, digits and '_', 64 at most.
 std::string id_of(const base::TomlTable& table, std::string_view key);
+/// Whether it is such a name.
+bool is_id(std::string_view word);
 /// A number as messages show it.
 std::string shown(double value);
 
@@ -25,8 +27,11 @@ std::string shown(double value);
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 Design read_design(const base::TomlTable& table);
-/// Every combination of the factors, by scene, n_*, method and moments.
-std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing);
+/// Levels of the factor effects; none where the design does not vary them.
+std::vector<EffectSet> read_effect_sets(const base::TomlTable& design);
+/// Every combination of the factors, by scene, n_*, method, effects and moments.
+std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
+                             const std::vector<EffectSet>& effects);
 /// A list of words, none empty or twice.
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
 HeadsetRules read_headset(const base::TomlTable& table);

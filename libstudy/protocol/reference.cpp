@@ -18,11 +18,16 @@ struct TableText {
 const std::vector<TableText>& table_texts() {
   static const std::vector<TableText> texts{
       {"", "The file itself", "Stands before the first table."},
-      {"design", "[design]", R"(What is shown. Every scene, n_* and method, and under `settings` every pair of
-moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a participant
+      {"design", "[design]", R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
+every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a participant
 meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
+      {"design.effect_set", "[[design.effect_set]]",
+       R"(What a level of `effects` holds: these effects and no others, whatever the scene lists besides.)"},
+      {"design.effect_set.effect", "[[design.effect_set.effect]]",
+       R"(An effect with its coefficient and options, as `[[effect]]` in a scene file
+([methods.md](methods.md#effects)).)"},
       {"pacing", "[pacing]", "How a mean and a standard deviation become the intervals of frames."},
       {"content", "[content]", "How the process elapses with the frames."},
       {"timing", "[timing]", "What a trial must meet to pass. The table may be left out."},
@@ -110,12 +115,16 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design", "scene", "list of texts", "", "", "scene files"},
       {"design", "method", "list of texts", "", "", "LoRes, HiRes, FovFluid, Ours, Ours-TSp"},
       {"design", "n_star", "list of texts", "", "", "particles when all are coarsest; \"32k\" = 32,768"},
+      {"design", "effects", "list of texts", "", "not varied",
+       "levels of the factor effects, 20 at most. none: no effects. scene: those of the scene's file. Another "
+       "level has a table `effect_set`. Without this key each scene has its own"},
+      {"design", "effect_set", "tables", "", where_needed, "needed by each level but none and scene"},
       {"design", "duration_s", "number", "[0.1, 3600]", "", "of each stimulus, s"},
       {"design", "mean_fps", "list of numbers", "[0.1, 1000]", where_needed,
        "means of the frame rate, frames/s; needed under settings and equal, refused otherwise"},
       {"design", "sd_fps", "list of numbers", "[0, 1000]", where_needed,
        "standard deviations, frames/s; as mean_fps"},
-      {"design", "moments", "tables", "", where_needed, "needed under table2, one for each cell"},
+      {"design", "moments", "tables", "", where_needed, "needed under table2, one for each cell whatever its effects"},
       {"design", "pairs", "true or false", "", "false",
        "each trial shows two cells of a group: all unordered pairs"},
       {"design", "groups", "whole number", "[1, 100]", "1",
@@ -125,7 +134,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "each place. williams: and directly after each other one. constrained: shuffled until "
        "`never_adjacent` holds; not for pairs"},
       {"design", "never_adjacent", "list of texts", "", where_needed,
-       "needed under constrained: method, mean_fps, sd_fps; neighbours share none of them"},
+       "needed under constrained: method, effects, mean_fps, sd_fps; neighbours share none of them"},
       {"design", "assignment", "text", "\"balanced\", \"paper_random\"", "\"balanced\"",
        "balanced: sequences of groups, rows and the order within pairs are dealt by quota over all who "
        "count. paper_random: drawn for each participant"},
@@ -135,6 +144,15 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design.moments", "n_star", "text", "", "", "as in design.n_star"},
       {"design.moments", "mean_fps", "number", "[0.1, 1000]", "", "frames/s"},
       {"design.moments", "sd_fps", "number", "[0, 1000]", "", "below mean_fps, frames/s"},
+
+      {"design.effect_set", "name", "text", "", "", "the level"},
+      {"design.effect_set", "keep", "list of texts", "", "none",
+       "kinds of effects that stay as the scene's file lists them, such as \"foam\""},
+      {"design.effect_set", "effect", "tables", "", where_needed, "further effects, of other kinds"},
+
+      {"design.effect_set.effect", "kind", "text", "", "", "as in a scene file, such as \"foam\""},
+      {"design.effect_set.effect", "KEY", "number", "[0, inf]", where_needed,
+       "the coefficient, and options, as in a scene file: `emission_per_s = 0.3`"},
 
       {"pacing", "mean", "text", "\"harmonic\", \"arithmetic\"", "\"harmonic\"",
        "harmonic: frames over time. arithmetic: mean of 1/dt. Both are stored"},

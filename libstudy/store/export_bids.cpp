@@ -34,7 +34,7 @@ constexpr const char* events_sql =
     "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, w.counts, w.why_not, "
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), p.gaze_source, u.unit_id, "
-    "t.second_cell IS NOT NULL "
+    "t.second_cell IS NOT NULL, c.effects "
     "FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
     "JOIN showing w USING (presentation_id) JOIN session s ON s.session_id = t.session_id "
     "JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
@@ -71,7 +71,9 @@ Json event_columns() {
       {"tau_fps", described(showing_tau_meaning, "frames/s")},
       {"gaze_source",
        described("what the fluid followed: tracked, head (straight ahead of it), mouse, fixed, "
-                 "fixation or none; n/a: not known")}};
+                 "fixation or none; n/a: not known")},
+      {"effects", described("level of the factor effects: none, scene (those of its file) or a name in the "
+                            "protocol; n/a: the design does not vary them")}};
 }
 
 Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
@@ -88,6 +90,7 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
     std::vector<std::string> line{bids::seconds(onset_ns),
                                   end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
     for (int i = 2; i <= 25; ++i) line.push_back(field(row, i));
+    line.push_back(field(row, 28));
     const bool judged = row.integer(5) == row.integer(27);
     for (const Item& item : asked) {
       auto [score, seconds] = judged ? answer_of(database, row.integer(26), item.id, row.integer(4))

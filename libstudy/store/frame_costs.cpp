@@ -9,12 +9,14 @@ namespace study {
 
 std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
   auto json = nlohmann::ordered_json::array();
-  for (const FrameCosts& one : costs)
+  for (const FrameCosts& one : costs) {
     json.push_back({{"scene", one.what.scene},
                     {"method", one.what.method},
                     {"n_star", one.what.n_star},
                     {"mean_ms", one.mean_ms},
                     {"p95_ms", one.p95_ms}});
+    if (!one.what.effects.empty()) json.back()["effects"] = one.what.effects;
+  }
   return json.dump();
 }
 
@@ -26,8 +28,9 @@ std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::st
   try {
     std::vector<FrameCosts> out;
     for (const auto& one : nlohmann::json::parse(text)) {
-      out.push_back(
-          {{one.at("scene"), one.at("method"), one.at("n_star")}, one.at("mean_ms"), one.at("p95_ms")});
+      out.push_back({{one.at("scene"), one.at("method"), one.at("n_star"), one.value("effects", "")},
+                     one.at("mean_ms"),
+                     one.at("p95_ms")});
       if (!(out.back().mean_ms >= 0) || !(out.back().p95_ms >= 0)) throw unreadable();
     }
     return out;

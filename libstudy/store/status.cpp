@@ -34,7 +34,7 @@ std::string certificate_sql(FpsMean mean) {
          " - c.mean_fps)), avg(p.sd_fps), max(abs(p.sd_fps - c.sd_fps)), "
          "sum(p.frames), sum(p.late_frames), max(p.worst_late_ms), "
          "count(*) FILTER (WHERE p.verdict = 'pass'), count(*) FILTER (WHERE p.verdict = 'degraded'), "
-         "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade) "
+         "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade), coalesce(c.effects, '') "
          "FROM presentation p JOIN trial t USING (trial_id) "
          "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
          "JOIN showing w USING (presentation_id) WHERE s.run_id = ? AND w.judged "
@@ -108,7 +108,7 @@ std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, 
   std::vector<CertificateRow> rows;
   while (row.step()) {
     CertificateRow line;
-    line.what = {row.text(0), row.text(1), row.text(2)};
+    line.what = {row.text(0), row.text(1), row.text(2), row.text(18)};
     line.nominal = {row.real(3), row.real(4), row.real(5)};
     line.trials = row.integer(6);
     line.mean = row.real(7);

@@ -58,8 +58,11 @@ constexpr const char* catches_sql =
     "LEFT JOIN response r ON r.unit_id = u.unit_id AND r.question_id = q.question_id "
     "WHERE u.session_id = ?1 AND u.kind = 'catch' ORDER BY u.position, k.place";
 
-void add_once(std::vector<std::string>& list, const std::string& item) {
-  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+/// True when it is new.
+bool add_once(std::vector<std::string>& list, const std::string& item) {
+  if (std::find(list.begin(), list.end(), item) != list.end()) return false;
+  list.push_back(item);
+  return true;
 }
 
 /// Reads the sessions of one protocol.
@@ -218,9 +221,11 @@ TaskProtocol describe(const Protocol& protocol) {
   out.participants = protocol.participants;
   out.content_step_s = protocol.content.content_step_s;
   out.questions = trial_questions(protocol);
+  out.effects = protocol.design.effects;
   for (const Cell& cell : protocol.design.cells) {
     add_once(out.scenes, cell.stimulus.scene);
-    add_once(out.methods, cell.stimulus.method);
+    if (add_once(out.methods, treatment_name(cell.stimulus)) && !out.effects.empty())
+      out.treatments.push_back({"", cell.stimulus.method, "", cell.stimulus.effects});
     add_once(out.n_stars, cell.stimulus.n_star);
   }
   return out;

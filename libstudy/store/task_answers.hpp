@@ -87,14 +87,19 @@ struct TaskSession {
 /// A protocol with all its sessions by participant and visit.
 struct TaskProtocol {
   std::string name, version, sha256;
-  bool pairs = false;                                 ///< a trial shows two methods (Task 2)
-  int participants = 0;                               ///< planned
-  std::vector<std::string> scenes, methods, n_stars;  ///< in the order of the file
-  std::vector<Question> questions;                    ///< on scales and choices, asked about trials
+  bool pairs = false;    ///< a trial shows two methods (Task 2)
+  int participants = 0;  ///< planned
+  /// In the order of the file. Where effects are a factor, a method is one with a level of effects: "Ours,
+  /// foam" (treatment_name()).
+  std::vector<std::string> scenes, methods, n_stars;
+  std::vector<Question> questions;  ///< on scales and choices, asked about trials
   std::vector<TaskSession> sessions;
   double content_step_s = 1.0 / 60;
+  std::vector<EffectSet> effects = {};  ///< levels of the factor; empty: effects are none
+  std::vector<StimulusSpec> treatments =
+      {};  ///< of `methods`, method and effects alone; empty without levels
 
-  /// One method under several frame rates, shown one by one.
+  /// One method (with one level of effects) under several frame rates, shown one by one.
   bool pilot() const { return methods.size() < 2; }
 };
 

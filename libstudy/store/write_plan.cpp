@@ -74,12 +74,15 @@ void add_asks(sqlite::Connection& database, std::int64_t protocol_id, const Prot
 }
 
 void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
-  Statement insert(database, "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?)");
+  Statement insert(database, "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?,nullif(?,''),nullif(?,''))");
   int index = 0;
   for (const Cell& cell : protocol.design.cells) {
+    std::string set;
+    for (const EffectSet& one : protocol.design.effects)
+      if (one.name == cell.stimulus.effects) set = one.words;
     insert
         .bind_all(protocol_id, index++, cell.stimulus.scene, cell.stimulus.method, cell.stimulus.n_star,
-                  cell.setting.mean, cell.setting.sd, cell.setting.duration_s)
+                  cell.setting.mean, cell.setting.sd, cell.setting.duration_s, cell.stimulus.effects, set)
         .run();
   }
 }

@@ -34,6 +34,9 @@ inline std::vector<Case> head_and_methods() {
        in_each("/study/protocols", "mixed_pictures", Json::object()),
        in_each("/study/protocols", "mixed_pictures",
                {{"a.toml: 640x360 px at 75 degrees by R and 64x36", 2}})},
+      {"Effects were a factor of # with the levels *#*.",
+       in_each("/study/protocols", "effects", Json::object()),
+       in_each("/study/protocols", "effects", {{"none", "no effects"}, {"foam", "keeps foam"}})},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",
@@ -269,6 +272,7 @@ inline std::vector<Case> bundle_and_provenance() {
        "exclusions.",
        set("/preregistration/tasks/task2", true), with},
       {"Exploratory Hypotheses of Task 1: *", with},
+      {"Exploratory Hypotheses of Task [12]: *", set("/hypotheses", Json::array())},
       {"Preregistered Hypotheses of Task 2: *", set("/preregistration/tasks/task2", false),
        all({with, set("/preregistration/tasks/task2", true)})},
       {"Exploratory All else: tables and tests of Pilot, tables and tests of Task 1, tables and tests of "

@@ -5,6 +5,31 @@
 
 namespace report_sentences {
 
+/// What foam is worth over none, as the results tell it where effects are a factor.
+inline Json preference_factor() {
+  return {{"factor", "effects"}, {"a", "none"},      {"b", "foam"},
+          {"participants", 16},  {"n", 32},          {"k", 10},
+          {"share", 0.3125},     {"test", "t test"}, {"mean", 0.3125},
+          {"ci", {0.2, 0.4}},    {"t", -2.5},        {"df", 15},
+          {"p", 0.024},          {"p_holm", 0.024},  {"reason", ""}};
+}
+inline Json score_factor() {
+  return {{"score", "realism"},
+          {"n_star", "16k"},
+          {"factor", "effects"},
+          {"a", "none"},
+          {"b", "foam"},
+          {"participants", 16},
+          {"test", "exact sign test"},
+          {"mean", -1},
+          {"ci", nullptr},
+          {"t", nullptr},
+          {"df", nullptr},
+          {"p", 0.0001},
+          {"p_holm", 0.0001},
+          {"reason", ""}};
+}
+
 inline std::vector<Case> pilot() {
   const Change failed = all({set("/pilot/status", "failed"), set("/pilot/reason", "no contour")});
   return {
@@ -88,6 +113,8 @@ inline std::vector<Case> task1() {
       {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
       {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
        set("/task1/ordinal", Json::array())},
+      {"# What each level is worth over another, all else alike: participants' differences against nought",
+       set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},
       {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
       {"# Repeated showings", set("/task1/retest", Json::array()),
        set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
@@ -144,6 +171,10 @@ inline std::vector<Case> task2() {
        "or "
        "fewer by chance: p *.",
        refused("/task2/triads")},
+      {"Effects are a factor: what is called a method here is one with a level of effects.",
+       set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
+      {"# What each level is worth over another, all else alike: participants' shares against one half",
+       set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
       {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
       {"Of # pairs shown again, # were answered alike.", set("/task2/retest", nullptr),
        set("/task2/retest", {{"pairs", 4}, {"same", 0.5}})},

@@ -28,11 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sim::BakeFrame frame;
   sim::BakePicture picture;
   attempt([&] { read_file(bytes); });
-  for (const std::uint32_t format : {1u, 2u, 3u}) {
+  for (const std::uint32_t format : {1u, 2u, 3u, 4u}) {
     attempt([&] { sim::parse_bake_header(bytes, format, "fuzz"); });
     attempt([&] { sim::decode_particles(bytes, format, {0.05F, 0.1F}, 1 << 20, "fuzz", scratch, frame); });
     attempt([&] { sim::decode_picture(bytes, format, 2, {}, 32, 18, "fuzz", scratch, picture); });
     attempt([&] { sim::decode_picture(bytes, format, 2, previous, 32, 18, "fuzz", scratch, picture); });
   }
+  attempt([&] { sim::decode_foam(bytes, 1 << 20, "fuzz", scratch, frame.foam); });
   return 0;
 }

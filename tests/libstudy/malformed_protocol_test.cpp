@@ -67,6 +67,7 @@ TEST_P(MalformedProtocol, IsRefusedWithPlaceAndMend) {
 constexpr const char* pilot = "ptpe_pilot";
 constexpr const char* task1 = "task1";
 constexpr const char* task2 = "task2";
+constexpr const char* foam = "foam";
 constexpr const char* demo = "demo";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -155,6 +156,34 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{pilot, "mean_fps = [10, 20, 30, 40, 50]\nsd_fps = [0, 5, 10, 15, 20]",
                               "pairs = true\nmean_fps = [10]\nsd_fps = [0]", "pairs = |true",
                               "need two cells of one scene", "remove pairs"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Effects, MalformedProtocol,
+    testing::Values(
+        Malformed{foam, "\"none\", \"foam\"", "\"none\", \"spray\", \"foam\"", "\"none\", |\"spray",
+                  "has no table", "[[design.effect_set]]"},
+        Malformed{foam, "\"none\", \"foam\"", "\"none\", \"none\", \"foam\"", "effects = |[", "a value twice",
+                  "once"},
+        Malformed{foam, "\"none\", \"foam\"", "\"none\", \"much foam\"", ", |\"much foam", "is no id",
+                  "a letter"},
+        Malformed{foam, "name = \"foam\"\nkeep", "name = \"none\"\nkeep", "name = |\"none\"",
+                  "needs no table", "remove the table"},
+        Malformed{foam, "name = \"foam\"\nkeep", "name = \"spray\"\nkeep", "name = |\"spray\"", "is no level",
+                  "design.effects"},
+        Malformed{foam, "keep = [\"foam\"] ", "keep = [] ", "keep = |[]", "is empty", "at least one"},
+        Malformed{foam, "keep = [\"foam\"] ", "", "no table\nname = |\"foam\"", "holds no effect",
+                  "level \"none\""},
+        Malformed{foam, "keep = [\"foam\"] ",
+                  "keep = [\"foam\"]\neffect = [{kind = \"foam\", emission_per_s = 1}] ",
+                  "kind = |\"foam\", emi", "stands in this set twice", "keep the scene's"},
+        Malformed{foam, "keep = [\"foam\"] ", "effect = [{kind = \"foam\", emission_per_s = -1}] ",
+                  "emission_per_s = |-1", "out of range", "[0, inf]"},
+        Malformed{foam, "keep = [\"foam\"] ", "effect = [{kind = \"foam\", emission_per_s = \"much\"}] ",
+                  "emission_per_s = |\"much", "number", "write"},
+        Malformed{foam, "effects = [\"none\", \"foam\"]\n", "", "|[[design.effect_set]]",
+                  "level of no factor", "effects = [...]"},
+        Malformed{pilot, "order = \"shuffle\"", "order = \"constrained\"\nnever_adjacent = [\"effects\"]",
+                  "|\"effects\"]", "is no factor of this design", "effects = [...]"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Pacing, MalformedProtocol,

@@ -1,3 +1,4 @@
+#include "libstudy/observer/frames_observer.hpp"
 #include "libstudy/observer/observer.hpp"
 
 #include <gmock/gmock.h>
@@ -100,6 +101,19 @@ TEST(PtpeObserver, SpecificationIsReadAndWrittenBack) {
   EXPECT_EQ(*PtpeObserver(parse_ptpe_observer(*observer.simulated())).simulated(), *observer.simulated());
 }
 
+TEST(PtpeObserver, PrefersEffectsByTheScoresThatItStates) {
+  const PtpeObserver observer(parse_ptpe_observer("ptpe:a=30,b=0,noise=0,participant_sd=0,effects=1.6"));
+  Occasion occasion = shown(30, 0, 1, 0);
+  for (const auto& [level, wanted] : {std::pair{"", 4}, {"none", 4}, {"foam", 6}, {"scene", 6}}) {
+    occasion.shown[0].what.stimulus.effects = level;
+    EXPECT_EQ(score(observer, occasion), wanted) << level;
+  }
+  EXPECT_EQ(*observer.simulated(), "ptpe:a=30,b=0,slope=0.14,noise=0,participant_sd=0,effects=1.6");
+  EXPECT_EQ(*PtpeObserver(parse_ptpe_observer("ptpe:a=30,b=0,effects=0")).simulated(),
+            "ptpe:a=30,b=0,slope=0.14,noise=1,participant_sd=0.5")
+      << "as records were before there was such a key";
+}
+
 struct Bad {
   const char* specification;
   const char* place_and_problem;
@@ -140,6 +154,18 @@ class TwoFeatures final : public FeatureSource {
     return {stimulus.method == "HiRes" ? 8.0 : 11.0, 0.02};
   }
 };
+
+TEST(FramesObserver, PrefersEffectsByTheScoresThatItStates) {
+  TwoFeatures features;
+  const FramesObserver observer(parse_frames_observer("frames:effects=1.25"), features);
+  Occasion none = shown(30, 0, 1, 0), foam = none;
+  none.shown[0].what.stimulus.effects = "none";
+  foam.shown[0].what.stimulus.effects = "foam";
+  EXPECT_DOUBLE_EQ(observer.quality(foam.shown[0]) - observer.quality(none.shown[0]), 1.25);
+  EXPECT_THAT(*observer.simulated(), ::testing::EndsWith(",fatigue=0.02,effects=1.25"));
+  EXPECT_THAT(*FramesObserver(FramesObserverParameters(), features).simulated(),
+              ::testing::EndsWith(",fatigue=0.02"));
+}
 
 Question choice_of_two() {
   Question question;

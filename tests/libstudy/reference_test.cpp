@@ -32,9 +32,11 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   return out;
 }
 
-/// Scores are keys of `anchors`.
+/// Scores are keys of `anchors`, and a kind of effect has keys of its own.
 std::string without_scores(const std::string& name) {
-  return std::regex_replace(name, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
+  const std::string effect =
+      std::regex_replace(name, std::regex(R"((effect_set\.effect)\.(?!kind$)\w+$)"), "$1.KEY");
+  return std::regex_replace(effect, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
 }
 
 /// Everything that reading all protocols of this tree asks for.

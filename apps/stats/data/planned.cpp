@@ -32,7 +32,7 @@ std::vector<Report> planned_of(const study::TaskSession& session, const TaskData
                    trial.position,
                    index_in(data.protocol.scenes, what.scene),
                    index_in(data.protocol.n_stars, what.n_star),
-                   index_in(data.protocol.methods, what.method),
+                   index_in(data.protocol.methods, treatment_name(what)),
                    0,
                    {}});
     blocks.push_back(out.back().scene * static_cast<int>(data.protocol.n_stars.size()) + out.back().n_star);

@@ -128,7 +128,7 @@ class Collector {
     Report report{person(session), session.visit, trial.position, 0, 0, 0, 0, {}};
     report.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
     report.n_star = index_of(data_.protocol.n_stars, trial.first.what.n_star);
-    report.method = index_of(data_.protocol.methods, trial.first.what.method);
+    report.method = index_of(data_.protocol.methods, treatment_name(trial.first.what));
     for (const study::TaskAnswer& answer : trial.answers) {
       if (answer.score) report.answers[answer.question] = *answer.score;
     }
@@ -140,8 +140,8 @@ class Collector {
     stats::PairChoice choice;
     choice.participant = person(session);
     choice.scene = index_of(data_.protocol.scenes, trial.first.what.scene);
-    choice.first = index_of(data_.protocol.methods, trial.first.what.method);
-    choice.second = index_of(data_.protocol.methods, trial.second->what.method);
+    choice.first = index_of(data_.protocol.methods, treatment_name(trial.first.what));
+    choice.second = index_of(data_.protocol.methods, treatment_name(trial.second->what));
     choice.first_chosen = interval == 1;
     choice.position = trial.position;
     data_.choices.push_back(choice);

@@ -44,6 +44,12 @@ const char* power_kind_name(PowerKind kind) {
 }
 
 PowerKind power_kind(const study::Protocol& protocol) {
+  if (!protocol.design.effects.empty()) {
+    throw base::Error("protocol " + protocol.name,
+                      "varies effects, and the worlds of power are about methods and frame rates alone",
+                      "simulate it: vip-study run with --observer frames:foam=... for several numbers of "
+                      "participants, then vip-stats report");
+  }
   if (protocol.design.pairs) return PowerKind::Task2;
   if (protocol.design.timing == study::TimingSource::Settings) return PowerKind::Pilot;
   for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"}) {

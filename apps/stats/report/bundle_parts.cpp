@@ -33,7 +33,8 @@ std::string hypothesis_text(const Json& hypothesis) {
 
 std::vector<stats::Hypothesis> hypotheses_of(const study::Protocol& protocol,
                                              const stats::AnalysisPlan& plan) {
-  if (protocol.design.timing == study::TimingSource::Settings) return {};
+  // The paper's claims are about methods alone.
+  if (protocol.design.timing == study::TimingSource::Settings || !protocol.design.effects.empty()) return {};
   std::vector<std::string> methods, n_stars;
   for (const auto& cell : protocol.design.cells) {
     add_once(methods, cell.stimulus.method);

@@ -5,6 +5,14 @@ namespace apps::report {
 
 namespace {
 
+std::string effects_text(const Field& protocol, const std::string& title) {
+  std::string levels;
+  for (const auto& [name, held] : protocol["effects"].members())
+    levels += (levels.empty() ? "" : ", ") + svg::escaped(name) + " (" + words(held) + ")";
+  if (levels.empty()) return "";
+  return "Effects were a factor of " + title + " with the levels " + levels + ". ";
+}
+
 std::string protocols_text(const Field& study) {
   std::string out;
   for (const Field& protocol : study["protocols"].entries()) {
@@ -30,6 +38,7 @@ std::string protocols_text(const Field& study) {
     if (!protocol["unblinded"].members().empty())
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
+    out += effects_text(protocol, title);
     if (!protocol["mixed_pictures"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers in which pictures of one scene were compared though they differ in "

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
 
@@ -51,7 +53,10 @@ std::string preregistration_section(const Field& root) {
                                words(plan["source"]) + ".");
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts) {
-    if (root[key].there() && std::string(key) != "pilot")
+    const std::string task = key;
+    const auto hypotheses = root["hypotheses"].entries();
+    if (root[key].there() && std::any_of(hypotheses.begin(), hypotheses.end(),
+                                         [&](const Field& one) { return one["task"].words() == task; }))
       parts.push_back(badge(preregistered(root, key)) + " Hypotheses of " + title +
                       ": the tests of each family with their margins, corrections and exclusions.");
   }

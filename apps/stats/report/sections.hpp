@@ -36,6 +36,10 @@ std::string task1_section(const Field& root);
 /// Of the section of Task 1: on whom pairs rest, the mixed model, tipping points.
 std::string missing_answers(const Field& root);
 std::string task2_section(const Field& root);
+/// Of the sections of the tasks, where effects are a factor: what a method is, and what each level is worth.
+std::string treatment_note(const Field& task);
+std::string score_factors(const Field& task1);
+std::string preference_factors(const Field& task2);
 std::string sickness_section(const Field& root);
 std::string hypotheses_section(const Field& root);
 std::string sensitivity_section(const Field& root);

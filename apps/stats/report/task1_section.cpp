@@ -234,10 +234,11 @@ std::string task1_section(const Field& root) {
       (root["hypotheses"].entries().empty() ? "." : "; the decisions stand under Hypotheses."));
   std::vector<std::string> rules;
   for (const auto& [name, rule] : task1["rules"].members()) rules.push_back(words(rule));
-  body += list(rules);
+  body += treatment_note(task1) + list(rules);
   for (const Field& score : task1["scores"].entries()) body += one_score(task1, score);
   return section("task1", "Task 1: realism and cybersickness",
-                 body + omnibus(task1) + missing_answers(root) + ordinal(task1) + by_scene(task1) + retest(task1));
+                 body + score_factors(task1) + omnibus(task1) + missing_answers(root) + ordinal(task1) +
+                     by_scene(task1) + retest(task1));
 }
 
 }  // namespace apps::report

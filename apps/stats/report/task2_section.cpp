@@ -142,13 +142,13 @@ std::string task2_section(const Field& root) {
       paragraph(badge(false) + " " + count(task2["participants"]) + " participants, " +
                 count(task2["answers"]) + " answers. The tests of all pairs describe the data" +
                 (root["hypotheses"].entries().empty() ? "." : "; the decisions stand under Hypotheses.")) +
-          list(rules) +
+          treatment_note(task2) + list(rules) +
           figure(preference_bars(pairs),
                  "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10; line: Wilson "
                  "interval. Stars: exact binomial test, uncorrected / after Holm over all pairs.") +
-          pairs_table(pairs) + apa_lines(pairs) + interval_bias(task2["interval_bias"]) +
-          bradley_terry(task2["bradley_terry"]) + triads(task2["triads"]) + by_scene(task2) +
-          retest(task2["retest"]));
+          pairs_table(pairs) + apa_lines(pairs) + preference_factors(task2) +
+          interval_bias(task2["interval_bias"]) + bradley_terry(task2["bradley_terry"]) +
+          triads(task2["triads"]) + by_scene(task2) + retest(task2["retest"]));
 }
 
 }  // namespace apps::report

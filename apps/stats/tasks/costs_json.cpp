@@ -28,6 +28,7 @@ struct Mean {
 
 /// What the sessions hold of one stimulus.
 struct Shown {
+  study::StimulusSpec what;
   int sessions = 0, measured = 0;
   Mean made_ms, made_p95_ms;            ///< as the stations measured it
   Mean interval_ms;                     ///< of showings without a schedule
@@ -43,7 +44,7 @@ int place(const std::vector<std::string>& list, const std::string& item) {
 
 std::array<int, 3> key_of(const study::TaskProtocol& protocol, const study::StimulusSpec& what) {
   return {place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
-          place(protocol.methods, what.method)};
+          place(protocol.methods, treatment_name(what))};
 }
 
 /// The text of the session's setting for this method and n_*; empty: the usual.
@@ -67,6 +68,7 @@ void add_session(const study::TaskProtocol& protocol, const study::TaskSession& 
       shown.interval_ms.add(1000 / showing.realised.mean);
     if (!seen.insert(key).second) return;
     ++shown.sessions;
+    shown.what = showing.what;
     ++shown.settings[setting_text(session, showing.what)];
     shown.stimuli.insert(session.stimulus);
     Mean mean, p95;
@@ -103,7 +105,11 @@ void add_answers(const TaskData& data, Stimuli& out) {
 }
 
 /// The scene's file as it is now, where the sessions say that they showed it.
-stats::Result<sim::Scene> scene_of(const std::string& path, const Shown& shown) {
+stats::Result<sim::Scene> scene_of(const study::StimulusSpec& what, const Shown& shown) {
+  if (!what.effects.empty() && what.effects != study::scene_effects_level)
+    return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +
+                          what.effects + " of them"};
+  const std::string& path = what.scene;
   sim::Scene scene;
   try {
     scene = sim::read_scene(base::find_input(path));
@@ -193,7 +199,7 @@ void add_errors(Json& json, const TaskData& data, const study::StimulusSpec& wha
                 const SweepTables* sweep) {
   const std::string& text = shown.settings.begin()->first;
   const bool mixed = shown.settings.size() > 1, usual = text.empty();
-  const auto scene = scene_of(what.scene, shown);
+  const auto scene = scene_of(what, shown);
   json["setting"] = mixed ? "several" : "usual";
   json["setting_sha256"] = Json();
   json["error"] =
@@ -224,14 +230,11 @@ Json costs_json(const TaskData& data, const SweepTables* sweep) {
   Json list = Json::array();
   for (const auto& [key, shown] : stimuli) {
     if (shown.sessions == 0) continue;
-    const auto& protocol = data.protocol;
-    const study::StimulusSpec what{protocol.scenes[static_cast<std::size_t>(key[0])],
-                                   protocol.methods[static_cast<std::size_t>(key[2])],
-                                   protocol.n_stars[static_cast<std::size_t>(key[1])]};
+    const study::StimulusSpec& what = shown.what;
     Json json{{"task", task_name(data.task)},
               {"scene", data.scenes[static_cast<std::size_t>(key[0])]},
               {"n_star", what.n_star},
-              {"method", what.method},
+              {"method", treatment_name(what)},
               {"sessions", shown.sessions}};
     add_made(json, shown);
     add_errors(json, data, what, shown, sweep);

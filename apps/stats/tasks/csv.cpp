@@ -193,6 +193,7 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
       lists.emplace_back(std::string("task1_") + name, task.at(name));
     lists.emplace_back("task1_ordinal", entries_of(task.at("ordinal"), "effects"));
     lists.emplace_back("task1_mixed", entries_of(task.at("mixed"), "terms"));
+    lists.emplace_back("task1_factors", task.value("factors", Json::array()));
   }
   if (results.contains("task2") && !results.at("task2").contains("refused")) {
     const Json& task = results.at("task2");
@@ -201,6 +202,7 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
     if (task.at("bradley_terry").contains("abilities"))
       lists.emplace_back("task2_bradley_terry", task.at("bradley_terry").at("abilities"));
     lists.emplace_back("task2_triads", task.at("triads").at("participants"));
+    lists.emplace_back("task2_factors", task.value("factors", Json::array()));
   }
   if (results.contains("sickness")) {
     const Json& parts = results.at("sickness");

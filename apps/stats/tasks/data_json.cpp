@@ -14,6 +14,13 @@ std::string counted(std::size_t n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
+/// Levels of the factor and what each holds; empty: effects are none.
+Json effects_json(const TaskData& data) {
+  Json json = Json::object();
+  for (const auto& level : data.protocol.effects) json[level.name] = level.words;
+  return json;
+}
+
 Json protocol_json(const TaskData& data) {
   return {
       {"task", task_name(data.task)},
@@ -32,7 +39,8 @@ Json protocol_json(const TaskData& data) {
       {"angles", data.angles},
       {"settings", data.settings},
       {"unblinded", data.unblinded},
-      {"mixed_pictures", data.mixed_pictures}};
+      {"mixed_pictures", data.mixed_pictures},
+      {"effects", effects_json(data)}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {
@@ -53,6 +61,10 @@ std::vector<std::string> notes_of(const TaskData& data) {
   // The pilot shows one method, which refines nothing by gaze.
   const std::string gaze = data.task == TaskKind::Pilot ? "" : data.gaze_problem();
   if (!gaze.empty()) notes.push_back(task + gaze + ".");
+  if (!data.protocol.effects.empty() && data.task != TaskKind::Pilot)
+    notes.push_back(task + "effects are a factor, so that " +
+                    (data.task == TaskKind::Task1 ? "H1 to H3" : "H4 to H6") +
+                    ", which are about methods alone, are not tested.");
   return notes;
 }
 
@@ -194,7 +206,7 @@ Json timing_json(const TaskData& data) {
   for (const TimedShowing& one : data.showings) {
     const auto& what = one.shown.what;
     cells[{place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
-           place(protocol.methods, what.method), one.shown.nominal.mean, one.shown.nominal.sd}]
+           place(protocol.methods, treatment_name(what)), one.shown.nominal.mean, one.shown.nominal.sd}]
         .add(one.shown);
   }
   Json list = Json::array();

@@ -38,12 +38,15 @@ stats::Result<Json> results_of(TaskPart& part, const stats::AnalysisPlan& plan) 
   if (data.task == TaskKind::Task1) {
     const auto results = analyse_task1(data, plan);
     if (!results) return stats::Refusal{results.reason()};
-    part.hypotheses = results->hypotheses;
+    if (data.protocol.effects.empty()) part.hypotheses = results->hypotheses;
     return task1_json(data, *results, plan);
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
-  part.hypotheses = stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem());
+  // The paper's claims are about methods alone.
+  if (data.protocol.effects.empty())
+    part.hypotheses =
+        stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem());
   return task2_json(data, analysis, plan);
 }
 
@@ -56,7 +59,7 @@ stats::Result<TaskPart> analyse(const study::TaskStudy& study, const TaskSelecti
   const auto results = results_of(part, selection.plan);
   part.results = results ? *results : json_refused(results.reason());
   if (!results) missing.push_back({selection.task, results.reason()});
-  if (results && selection.task != TaskKind::Pilot)
+  if (results && !part.hypotheses.empty())
     part.sensitivity = sensitivity_json(study, selection, *data, part.hypotheses);
   return part;
 }

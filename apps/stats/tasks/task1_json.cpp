@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "apps/stats/tasks/factors_json.hpp"
 #include "apps/stats/tasks/missing_json.hpp"
 #include "apps/stats/tasks/retest.hpp"
 
@@ -284,6 +285,8 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
   for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_json(data, model));
   json["participant_means"] = participant_means_json(data, results.tables);
   json["retest"] = rating_retest_json(data);
+  if (Json factors = score_factors_json(data, results.tables, plan); !factors.empty())
+    json["factors"] = factors;
   return json;
 }
 

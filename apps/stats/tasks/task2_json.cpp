@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "apps/stats/tasks/factors_json.hpp"
 #include "apps/stats/tasks/retest.hpp"
 #include "stats/analysis/hypotheses.hpp"
 
@@ -231,20 +232,22 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
   const Names& methods = data.protocol.methods;
   Json pairs = Json::array();
   for (const auto& pair : analysis.pairs) pairs.push_back(pair_json(pair, methods));
-  return {{"participants", data.participants.size()},
-          {"answers", data.choices.size()},
-          {"question", data.question.id},
-          {"methods", methods},
-          {"n_stars", data.protocol.n_stars},
-          {"scenes", data.scenes},
-          {"rules", rules_json(plan)},
-          {"pairs", pairs},
-          {"interval_bias", interval_json(analysis.interval)},
-          {"bradley_terry", bradley_terry_json(analysis, methods)},
-          {"triads", triads_json(data, analysis)},
-          {"by_scene", by_scene_json(data)},
-          {"choices", choices_json(data)},
-          {"retest", choice_retest_json(data)}};
+  Json json{{"participants", data.participants.size()},
+            {"answers", data.choices.size()},
+            {"question", data.question.id},
+            {"methods", methods},
+            {"n_stars", data.protocol.n_stars},
+            {"scenes", data.scenes},
+            {"rules", rules_json(plan)},
+            {"pairs", pairs},
+            {"interval_bias", interval_json(analysis.interval)},
+            {"bradley_terry", bradley_terry_json(analysis, methods)},
+            {"triads", triads_json(data, analysis)},
+            {"by_scene", by_scene_json(data)},
+            {"choices", choices_json(data)},
+            {"retest", choice_retest_json(data)}};
+  if (Json factors = preference_factors_json(data, plan); !factors.empty()) json["factors"] = factors;
+  return json;
 }
 
 }  // namespace apps

@@ -1,6 +1,7 @@
 #include "apps/study/bakes/bake_order.hpp"
 
 #include <fmt/core.h>
+#include <algorithm>
 #include <cmath>
 
 #include "stats/base/error.hpp"
@@ -60,12 +61,27 @@ sim::BakedView view_of(const BakeOrder& order, const sim::Scene& scene, bool fol
   return view;
 }
 
+/// The most that the scene's foam can be.
+std::int64_t foam_of(const sim::Scene& scene) {
+  const auto effects = sim::coefficients_of(scene.effects);
+  if (effects[sim::EffectKind::Foam] == 0) return 0;
+  return static_cast<std::int64_t>(effects.options[static_cast<std::size_t>(sim::EffectOption::FoamMost)]);
+}
+
+std::string effects_words(const sim::BakeHeader& header) {
+  auto effects = sim::baked_scene(header).effects;
+  std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
+  const std::string words = sim::effects_in_words(effects);
+  return words.empty() ? "no effects" : words;
+}
+
 }  // namespace
 
 sim::BakeHeader header_of(const BakeOrder& order) {
   sim::BakeHeader header;
   header.scene_text = base::read_file(order.fluid.scene, 1 << 20);
-  const sim::Scene scene = sim::parse_scene(header.scene_text, order.fluid.scene.string());
+  sim::Scene scene = sim::parse_scene(header.scene_text, order.fluid.scene.string());
+  if (order.fluid.effects) scene.effects = *order.fluid.effects;
   const sim::MethodTraits& traits = sim::traits_of(sim::parse_method(order.fluid.method));
   header.scene_name = scene.name;
   header.scene_sha256 = scene.sha256;
@@ -75,6 +91,8 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.frame_count = order.frames;
   header.frame_dt_s = order.fluid.content_step_s > 0 ? order.fluid.content_step_s : scene.frame_dt_s;
   header.tank_size_m = scene.tank_size_m;
+  header.effects = sim::format_effects(scene.effects);
+  header.max_foam = foam_of(scene);
   header.view = view_of(order, scene, traits.adaptive());
   if (order.pictures) {
     header.picture_width_px = order.size.width;
@@ -96,6 +114,12 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
           wanted.scene_name + " " + wanted.scene_sha256.substr(0, 12));
   out.add("method", found.method, wanted.method);
   out.add("n_*", std::to_string(found.n_star), std::to_string(wanted.n_star));
+  if (found.scene_sha256 == wanted.scene_sha256) {
+    out.add("", effects_words(found), effects_words(wanted));
+    const bool drawn = found.has_pictures();  // they show foam whether its particles are kept or not
+    if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
+      out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");
+  }
   // A file rounds the step of a protocol.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
     out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),

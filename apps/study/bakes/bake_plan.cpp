@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/study/bakes/cell_effects.hpp"
 #include "apps/study/check/rehearsal.hpp"
 #include "libsim/bake/layout.hpp"
 #include "libsim/methods/method.hpp"
@@ -29,10 +30,12 @@ std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one
   return "";
 }
 
-/// "single_dam_32k_HiRes.bake"; with the frame rate that tau follows from, where one does.
+/// "single_dam_32k_HiRes.bake"; with the level of effects and the frame rate that tau follows from, where
+/// there is one.
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
+  if (!one.what.effects.empty()) out += "_" + one.what.effects;
   if (one.rate) out += fmt::format("_{:.6g}_{:.6g}", one.rate->mean, one.rate->sd);
   return out + ".bake";
 }
@@ -85,6 +88,7 @@ BakeOrder order_of(const study::Protocol& protocol, const PlannedStimulus& one, 
   order.fluid.scene = base::find_input(one.what.scene);
   order.fluid.method = one.what.method;
   order.fluid.n_star = one.what.n_star;
+  order.fluid.effects = cell_effects(protocol, one.what);
   order.fluid.content_step_s = protocol.content.content_step_s;
   if (one.rate) order.fluid.fixed_rate = sim::FrameRate{one.rate->mean, one.rate->sd};
   order.frames = one.frames;

@@ -21,6 +21,8 @@ namespace {
 
 /// Positions of 16 bit an axis, which no frame packs worse than that.
 constexpr std::uint64_t bytes_of_particle = 6;
+/// Place and radius.
+constexpr std::uint64_t bytes_of_foam = 8;
 /// Pictures of the scenes take about 0.6 a pixel.
 constexpr std::uint64_t bytes_of_pixel = 1;
 
@@ -170,6 +172,7 @@ std::uint64_t most_bytes(const sim::BakeHeader& header) {
   const auto pixels = std::int64_t{header.picture_width_px} * header.picture_height_px;
   return static_cast<std::uint64_t>(header.frame_count) *
          (bytes_of_particle * static_cast<std::uint64_t>(particles) +
+          bytes_of_foam * static_cast<std::uint64_t>(header.max_foam) +
           bytes_of_pixel * static_cast<std::uint64_t>(pixels));
 }
 

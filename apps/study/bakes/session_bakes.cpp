@@ -18,7 +18,8 @@ std::shared_ptr<const FoundBake> open_bake(const fs::path& path) {
 }
 
 std::string words_of(const study::StimulusSpec& what) {
-  return fs::path(what.scene).stem().string() + " " + what.n_star + " " + what.method;
+  return fs::path(what.scene).stem().string() + " " + what.n_star + " " + what.method +
+         (what.effects.empty() ? "" : " " + what.effects);
 }
 
 bool shows(const PlannedStimulus& planned, const study::Cell& cell) {
@@ -37,7 +38,8 @@ void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path
   for (const PlannedStimulus& one : plan) {
     if (one.what == plan.front().what) continue;
     throw base::Error(
-        "--stimulus " + bake.string(), "shows one scene, method and n_*, but the protocol names several",
+        "--stimulus " + bake.string(),
+        "shows one scene, method, n_* and set of effects, but the protocol names several",
         "bake them all: vip-study bake --protocol FILE --out FOLDER, then --stimulus FOLDER; or "
         "run the protocol live");
   }

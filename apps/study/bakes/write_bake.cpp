@@ -55,12 +55,16 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
   header.radius_by_level_m = fluid->simulation().radii_m();
 
   sim::BakeWriter writer(out, header, overwrite);
-  std::vector<sim::RenderParticle> particles;
+  std::vector<sim::RenderParticle> particles, foam;
   for (frame = 0; frame < header.frame_count; ++frame) {
     hooks.stop();
     const study::FrameFacts facts = fluid->prepare(frame);
     fluid->simulation().read_particles(particles);
     writer.add_frame(facts.simulation_time_s, particles, fluid->simulation().account());
+    if (header.max_foam > 0) {
+      fluid->simulation().read_foam(foam);
+      writer.add_foam(foam);
+    }
     if (target) fluid->draw({target->framebuffer(), target->width(), target->height()});
     if (header.has_pictures()) writer.add_picture(read_upwards(*target));
     if (hooks.frames) hooks.frames(frame + 1);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "stats/ptpe/ptpe.hpp"
 
@@ -79,13 +80,18 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
 /// temporal: by cell of the report.
 std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<int, bool>& temporal,
                         double refresh_hz) {
+  std::set<std::string> methods, levels;
   bool all_reach = true, any_temporal = false, accelerates = false;
   for (const MeasuredCell& one : cells) {
+    methods.insert(one.what.method);
+    levels.insert(one.what.effects);
     all_reach = all_reach && one.fps.mean >= at_refresh * refresh_hz;
     any_temporal = any_temporal || temporal.at(one.cell);
     accelerates = accelerates || (temporal.at(one.cell) && one.tau_min < 0);
   }
-  if (all_reach) return fmt::format("every method reaches the {:g} Hz of the display", refresh_hz);
+  // Where one method is shown with several levels of effects, its cells differ at any rate.
+  if (all_reach && !(methods.size() == 1 && levels.size() > 1))
+    return fmt::format("every method reaches the {:g} Hz of the display", refresh_hz);
   if (any_temporal && !accelerates) return "tau of the accelerated methods never falls below zero";
   return {};
 }
@@ -119,7 +125,8 @@ MeasuredReport judge_measured(const study::Protocol& protocol, const std::vector
 }
 
 std::string stimulus_name(const study::StimulusSpec& what) {
-  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star;
+  return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star +
+         (what.effects.empty() ? "" : " " + what.effects);
 }
 
 std::string measured_table(const MeasuredReport& report) {

@@ -60,6 +60,7 @@ std::string Console::describe_cells(const study::PlannedTrial& trial) const {
     const study::Cell& cell = protocol_.design.cells.at(static_cast<std::size_t>(*index));
     if (!all.empty()) all += ", then ";
     all += cell.stimulus.method + " " + cell.stimulus.n_star + " " + cell.stimulus.scene;
+    if (!cell.stimulus.effects.empty()) all += ", effects " + cell.stimulus.effects;
     if (cell.setting.mean > 0) all += " at " + study::setting_name(cell.setting) + " frames/s";
   }
   return all;

@@ -15,18 +15,10 @@
 
 namespace {
 
+using bake_test::error_of;
 using bake_test::Folder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-std::string error_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// Reads everything that a bake holds.
 void read_everything(const sim::BakeReader& bake) {
@@ -143,6 +135,9 @@ TEST(BakeFile, HeadersThatCannotBeAreRefused) {
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path[1].frame = -1; }), HasSubstr("gaze"));
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path.resize(2000); }), HasSubstr("2000 gaze keys"));
   EXPECT_THAT(error_with([](Header& h) { h.tolerance->model.b = NAN; }), HasSubstr("tolerance"));
+  EXPECT_THAT(error_with([](Header& h) { h.max_foam = -1; }), HasSubstr("count of foam"));
+  EXPECT_THAT(error_with([](Header& h) { h.effects = std::string(70000, ' '); }),
+              HasSubstr("70000 characters"));
 }
 
 TEST(BakeFile, AccountsThatCannotBeAreRefused) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <string>
@@ -103,5 +104,14 @@ inline sim::Bytes read_all(const std::filesystem::path& path) {
 }
 
 using Folder = ::test::TemporaryFolder;
+
+inline std::string error_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
 
 }  // namespace bake_test

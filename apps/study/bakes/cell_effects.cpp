@@ -1,0 +1,143 @@
+#include "apps/study/bakes/cell_effects.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
+#include "stats/base/toml.hpp"
+
+namespace apps {
+
+namespace {
+
+using sim::Effect;
+using sim::EffectKind;
+
+bool lists(const std::vector<Effect>& effects, EffectKind kind) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [&](const Effect& one) { return one.kind == kind && one.coefficient > 0; });
+}
+
+std::vector<std::string> all_kinds() {
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < sim::effect_count; ++k)
+    out.emplace_back(sim::traits_of(static_cast<EffectKind>(k)).word);
+  return out;
+}
+
+/// keep: kinds that stay as the scene lists them.
+std::vector<Effect> kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
+  std::vector<Effect> out;
+  const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = "= " + base::toml_quoted(words[i]);
+    const auto kind = sim::effect_named(words[i]);
+    if (!kind) set.fail_at("keep", i, word + " is no effect", "use one of " + base::joined(all_kinds()));
+    if (!lists(scene.effects, *kind)) {
+      set.fail_at("keep", i, word + " is no effect of scene " + scene.name,
+                  "list it there, or give it here as [[design.effect_set.effect]]");
+    }
+    out.push_back(*std::find_if(scene.effects.begin(), scene.effects.end(),
+                                [&](const Effect& one) { return one.kind == *kind; }));
+  }
+  return out;
+}
+
+/// Keys that a kind of effect lacks.
+void check_keys(const base::TomlTable& set) {
+  for (const auto& table : set.tables("effect")) {
+    const auto kind = sim::effect_named(table.choice("kind", all_kinds()));
+    std::vector<std::string> known{sim::traits_of(*kind).key};
+    for (std::size_t k = 0; k < sim::option_count; ++k) {
+      const auto& option = sim::traits_of(static_cast<sim::EffectOption>(k));
+      if (option.of == *kind) known.emplace_back(option.key);
+    }
+    for (const std::string& key : table.keys()) {
+      if (key == "kind" || std::find(known.begin(), known.end(), key) != known.end()) continue;
+      table.fail(key, std::string("is no key of ") + sim::traits_of(*kind).word,
+                 "use " + base::joined(known));
+    }
+  }
+}
+
+void check_needs(const base::TomlTable& set, const std::vector<Effect>& kept,
+                 const std::vector<Effect>& all) {
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const EffectKind needs = sim::traits_of(kept[i].kind).needs;
+    if (needs == sim::no_effect || lists(all, needs)) continue;
+    const std::string other = sim::traits_of(needs).word;
+    set.fail_at("keep", i, "needs " + other + ", of which there is none",
+                "keep " + other + " too, or leave it out");
+  }
+}
+
+std::vector<Effect> read_set(const base::TomlTable& set, const sim::Scene& scene) {
+  check_keys(set);
+  const auto kept = kept_effects(set, scene);
+  const auto all = sim::read_effects(set.tables("effect"), kept);
+  check_needs(set, kept, all);
+  return all;
+}
+
+base::TomlTable design_of(const study::Protocol& protocol) {
+  return base::parse_toml(protocol.text, protocol.place).table("design");
+}
+
+std::string words_of(const std::vector<Effect>& effects) {
+  const std::string words = sim::effects_in_words(effects);
+  return words.empty() ? "no effects" : words;
+}
+
+}  // namespace
+
+std::vector<Effect> effects_of(const study::Protocol& protocol, const std::string& level,
+                               const sim::Scene& scene) {
+  std::vector<Effect> out;
+  if (level == study::scene_effects_level) out = scene.effects;
+  if (level != study::scene_effects_level && level != study::no_effects_level) {
+    for (const auto& set : design_of(protocol).tables("effect_set"))
+      if (set.string("name") == level) out = read_set(set, scene);
+  }
+  std::sort(out.begin(), out.end(), [](const Effect& a, const Effect& b) { return a.kind < b.kind; });
+  return out;
+}
+
+std::optional<std::vector<Effect>> cell_effects(const study::Protocol& protocol,
+                                                const study::StimulusSpec& what) {
+  if (what.effects.empty()) return {};
+  return effects_of(protocol, what.effects, sim::read_scene(base::find_input(what.scene)));
+}
+
+void check_cell_effects(const study::Protocol& protocol) {
+  const auto& levels = protocol.design.effects;
+  if (levels.empty()) return;
+  std::set<std::string> scenes;
+  for (const study::Cell& cell : protocol.design.cells) {
+    if (!scenes.insert(cell.stimulus.scene).second) continue;
+    const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
+    std::vector<std::string> held;
+    for (const study::EffectSet& level : levels) {
+      const std::string effects = sim::format_effects(effects_of(protocol, level.name, scene));
+      const auto same = std::find(held.begin(), held.end(), effects);
+      if (same != held.end()) {
+        design_of(protocol).fail_at("effects", held.size(),
+                                    "= \"" + level.name + "\" is the same water as \"" +
+                                        levels[static_cast<std::size_t>(same - held.begin())].name +
+                                        "\" in scene " + scene.name,
+                                    "remove one of the two, or give them different effects");
+      }
+      held.push_back(effects);
+    }
+  }
+}
+
+std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene) {
+  std::string out;
+  for (const study::EffectSet& level : protocol.design.effects) {
+    out += (out.empty() ? "" : ", ") + level.name + ": " + words_of(effects_of(protocol, level.name, scene));
+  }
+  return out;
+}
+
+}  // namespace apps

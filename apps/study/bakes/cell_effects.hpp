@@ -1,0 +1,30 @@
+#pragma once
+/// The levels of a protocol's factor effects as effects of a scene.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libsim/scene/scene.hpp"
+#include "libstudy/protocol/protocol.hpp"
+
+namespace apps {
+
+/// What a level's fluid has in this scene, by kind. base::Error at file:line:column of the protocol: a kind
+/// that there is not, that the scene does not list (keep), that needs another one, a key that the kind lacks,
+/// a number out of range.
+std::vector<sim::Effect> effects_of(const study::Protocol& protocol, const std::string& level,
+                                    const sim::Scene& scene);
+
+/// Of a cell; none where the design does not vary effects, so that the scene has its own. Reads the scene.
+std::optional<std::vector<sim::Effect>> cell_effects(const study::Protocol& protocol,
+                                                     const study::StimulusSpec& what);
+
+/// The errors of every level in every scene, and two levels that are the same water in one.
+void check_cell_effects(const study::Protocol& protocol);
+
+/// "none: no effects; foam: foam emission_per_s = 0.3 ...": each level in this scene; empty without the
+/// factor.
+std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene);
+
+}  // namespace apps

@@ -1,0 +1,151 @@
+/// Levels of the factor effects as effects of a scene.
+
+#include "apps/study/bakes/cell_effects.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/study/bakes/bake_plan.hpp"
+#include "apps/study/cell_stimuli.hpp"
+#include "apps/study/check/measured_check.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// protocols/foam.toml with another factor, and a scene of another name.
+study::Protocol protocol_with(const std::string& effects, const std::string& sets,
+                              const std::string& scene = "sea_spray") {
+  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
+  text = test::replaced(text, "effects = [\"none\", \"foam\"]", effects);
+  text = test::replaced(text, "sea_spray", scene);
+  const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");
+  return study::parse_protocol(text.replace(begin, end - begin, sets), "p.toml");
+}
+
+std::string error_of(const study::Protocol& protocol) {
+  try {
+    check_cell_effects(protocol);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// "p.toml:LINE:COLUMN" of `marked` without its '|', where that stands.
+std::string place_in(const study::Protocol& protocol, std::string marked) {
+  const auto mark = marked.find('|');
+  const auto found = protocol.text.find(marked.erase(mark, 1));
+  if (found == std::string::npos) return "(not in the text)";
+  const auto at = found + mark, start = protocol.text.rfind('\n', at - 1) + 1;
+  const auto line =
+      1 + std::count(protocol.text.begin(), protocol.text.begin() + static_cast<long>(start), '\n');
+  return "p.toml:" + std::to_string(line) + ":" + std::to_string(at - start + 1) + ":";
+}
+
+std::string set_of(const std::string& body) {
+  return "[[design.effect_set]]\nname = \"foam\"\n" + body + "\n";
+}
+
+const char* const two_levels = "effects = [\"none\", \"foam\"]";
+
+TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
+  const auto protocol =
+      protocol_with("effects = [\"none\", \"scene\", \"foam\"]",
+                    set_of("keep = [\"foam\"]\neffect = [{kind = \"air_drag\", rate_per_s = 2}]"));
+  const auto scene = sim::read_scene(base::find_input("data/scenes/sea_spray.toml"));
+  EXPECT_EQ(error_of(protocol), "");
+  EXPECT_THAT(effects_of(protocol, "none", scene), IsEmpty());
+  EXPECT_EQ(sim::format_effects(effects_of(protocol, "scene", scene)), sim::format_effects(scene.effects));
+  const auto both = effects_of(protocol, "foam", scene);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].kind, sim::EffectKind::AirDrag);
+  EXPECT_EQ(both[0].coefficient, 2);
+  EXPECT_EQ(both[1].kind, sim::EffectKind::Foam);
+  EXPECT_EQ(both[1].coefficient, 0.3);
+  EXPECT_THAT(levels_in_words(protocol, scene),
+              AllOf(HasSubstr("none: no effects, scene: foam emission_per_s = 0.3 "),
+                    HasSubstr("foam: air_drag rate_per_s = 2 ")));
+}
+
+TEST(CellEffects, WithoutTheFactorAreTheScenesOwn) {
+  const auto protocol = study::read_protocol(base::resource("protocols/task1.toml"));
+  EXPECT_FALSE(cell_effects(protocol, protocol.design.cells.front().stimulus));
+  EXPECT_EQ(error_of(protocol), "");
+}
+
+TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
+  const auto expect = [](const study::Protocol& protocol, const std::string& marked, const char* problem,
+                         const char* mend) {
+    EXPECT_THAT(error_of(protocol),
+                AllOf(HasSubstr(place_in(protocol, marked)), HasSubstr(problem), HasSubstr(mend)));
+  };
+  expect(protocol_with(two_levels, set_of("keep = [\"foam\", \"froth\"]")), "\"foam\", |\"froth\"",
+         "is no effect", "use one of viscosity");
+  expect(protocol_with(two_levels, set_of("keep = [\"heat\"]")), "keep = [|\"heat\"",
+         "is no effect of scene SeaSpray", "design.effect_set.effect");
+  expect(protocol_with(two_levels, set_of("effect = [{kind = \"froth\", rate_per_s = 1}]")),
+         "kind = |\"froth\"", "not a known choice", "foam");
+  expect(protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\"}]")), "effect = [|{kind",
+         "rate_per_s' is missing", "add");
+  expect(
+      protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 1, lifetime_s = 2}]")),
+      "lifetime_s = |2", "is no key of air_drag", "rate_per_s, coarsest_level");
+  expect(protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 2e6}]")),
+         "rate_per_s = |2e6", "out of range", "[0, 1000000]");
+  expect(protocol_with(two_levels, set_of("effect = [{kind = \"adhesion\", work_n_m = 0.01}]")),
+         "kind = |\"adhesion\"", "needs cohesion", "list cohesion too");
+}
+
+TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
+  const auto same = protocol_with("effects = [\"foam\", \"scene\"]", set_of("keep = [\"foam\"]"));
+  EXPECT_THAT(error_of(same),
+              AllOf(HasSubstr(place_in(same, "\"foam\", |\"scene\"]")),
+                    HasSubstr("is the same water as \"foam\" in scene SeaSpray"), HasSubstr("remove one")));
+  const auto bare = protocol_with("effects = [\"none\", \"scene\"]", "", "single_dam");
+  EXPECT_THAT(error_of(bare), HasSubstr("is the same water as \"none\" in scene SingleDam"));
+}
+
+TEST(CellEffects, ReachTheFluidOfTheirCells) {
+  const auto protocol = study::read_protocol(base::resource("protocols/foam.toml"));
+  RunOptions options;
+  options.display = "headless";
+  options.backend = "cpu";
+  const CellStimuli stimuli(options, protocol, {}, {});
+  const auto live = [&](std::size_t cell) { return stimuli.choice_of(protocol.design.cells[cell]).effects; };
+  const auto baked = [&](std::size_t cell) {
+    return order_of(protocol, plan_bakes(protocol)[cell], {}).fluid.effects;
+  };
+  for (const auto& effects : {live(0), baked(0)}) {
+    ASSERT_TRUE(effects) << "none, not the scene's own";
+    EXPECT_THAT(*effects, IsEmpty());
+  }
+  for (const auto& effects : {live(1), baked(1)}) {
+    ASSERT_TRUE(effects);
+    ASSERT_EQ(effects->size(), 1u);
+    EXPECT_EQ(effects->front().coefficient, 0.3) << "as the scene's file lists it";
+  }
+}
+
+TEST(CellEffects, NameTheirBakesAndStimuli) {
+  const auto plan = plan_bakes(study::read_protocol(base::resource("protocols/foam.toml")));
+  std::vector<std::string> files, names;
+  for (const auto& one : plan) {
+    files.push_back(one.file);
+    names.push_back(stimulus_name(one.what));
+  }
+  EXPECT_THAT(files, ElementsAre("sea_spray_16k_LoRes_none.bake", "sea_spray_16k_LoRes_foam.bake",
+                                 "sea_spray_16k_HiRes_none.bake", "sea_spray_16k_HiRes_foam.bake"));
+  EXPECT_THAT(names, ElementsAre("LoRes sea_spray 16k none", "LoRes sea_spray 16k foam",
+                                 "HiRes sea_spray 16k none", "HiRes sea_spray 16k foam"));
+}
+
+}  // namespace
+}  // namespace apps

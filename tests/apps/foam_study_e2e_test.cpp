@@ -1,0 +1,189 @@
+/// A study with foam as a factor, from plan to report, with simulated participants.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "libsim/bake/bake_file.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
+
+std::string foam_protocol() { return base::resource("protocols/foam.toml").string(); }
+
+/// The list's entry with these words.
+json entry(const json& list, const std::map<std::string, std::string>& words) {
+  for (const auto& one : list) {
+    bool same = true;
+    for (const auto& [key, word] : words) same = same && one.at(key) == word;
+    if (same) return one;
+  }
+  return {};
+}
+
+class FoamStudyE2e : public ::testing::Test {
+ protected:
+  /// The report's numbers about `participants` of an observer to whom foam is worth so many scores.
+  json report_of(const std::string& effects, const std::string& participants) {
+    const std::string database = folder_ / ("study_" + effects + ".db"),
+                      results = folder_ / ("results_" + effects + ".json");
+    const Ended ran =
+        run_program({vip_study, "run", foam_protocol(), "--db", database, "--participants", participants,
+                     "--seed", "5", "--observer", "ptpe:a=24,b=0.02,effects=" + effects});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    const Ended told = run_program({vip_stats, "report", database, "--json", results, "--html", page_});
+    EXPECT_EQ(told.exit_code, 0) << told.err;
+    return json::parse(base::read_file(results, 1 << 24));
+  }
+
+  TemporaryFolder folder_;
+  const std::string page_ = folder_ / "report.html";
+};
+
+// P(foam chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
+TEST_F(FoamStudyE2e, TheReportFindsWhatFoamIsWorth) {
+  const json results = report_of("1", "40"), task2 = results.at("task2");
+  EXPECT_EQ(task2.at("methods"), (json{"LoRes, none", "LoRes, foam", "HiRes, none", "HiRes, foam"}));
+  const json foam = entry(task2.at("factors"), {{"factor", "effects"}, {"a", "none"}, {"b", "foam"}});
+  EXPECT_EQ(foam.at("n"), 80) << "of each person the pair of LoRes and that of HiRes";
+  EXPECT_NEAR(foam.at("share").get<double>(), 0.24, 0.11);
+  EXPECT_LT(foam.at("p").get<double>(), 1e-4);
+  EXPECT_LT(foam.at("ci")[1].get<double>(), 0.5);
+  const json method = entry(task2.at("factors"), {{"factor", "method"}, {"a", "LoRes"}, {"b", "HiRes"}});
+  EXPECT_EQ(method.at("n"), 80);
+  EXPECT_GT(method.at("p").get<double>(), 0.01) << "nothing of the particles reaches this observer";
+}
+
+// Both pairs are LoRes over HiRes: a report that ignored the factor would print one number for them, near .5.
+TEST_F(FoamStudyE2e, TwoPairsOfTheSameMethodsDifferByTheirFoam) {
+  const json pairs = report_of("1.5", "40").at("task2").at("pairs");
+  ASSERT_EQ(pairs.size(), 6u);
+  const json gained = entry(pairs, {{"a", "LoRes, foam"}, {"b", "HiRes, none"}}),
+             lost = entry(pairs, {{"a", "LoRes, none"}, {"b", "HiRes, foam"}});
+  EXPECT_GT(gained.at("share").get<double>(), 0.7);
+  EXPECT_LT(gained.at("p").get<double>(), 0.01);
+  EXPECT_LT(lost.at("share").get<double>(), 0.3);
+  EXPECT_LT(lost.at("p").get<double>(), 0.01);
+}
+
+TEST_F(FoamStudyE2e, NoPreferenceIsReportedAsNone) {
+  const json factors = report_of("0", "40").at("task2").at("factors");
+  EXPECT_GT(entry(factors, {{"factor", "effects"}}).at("p").get<double>(), 0.01);
+}
+
+TEST_F(FoamStudyE2e, ThePageTellsTheLevelsAndTestsNoClaimAboutMethods) {
+  const json results = report_of("1", "4");
+  EXPECT_THAT(results.at("hypotheses"), IsEmpty());
+  EXPECT_EQ(results.at("study").at("protocols")[0].at("effects"),
+            (json{{"none", "no effects"}, {"foam", "keeps foam"}}));
+  const std::string page = std::regex_replace(base::read_file(page_, 1 << 24), std::regex("<[^>]*>"), "");
+  EXPECT_THAT(page, AllOf(HasSubstr("Effects were a factor of"), HasSubstr("effects: none over foam"),
+                          HasSubstr("LoRes, foam over HiRes, none"),
+                          HasSubstr("H4 to H6, which are about methods alone, are not tested")));
+}
+
+TEST_F(FoamStudyE2e, PowerSaysThatItKnowsNoEffects) {
+  const Ended power = run_program({vip_stats, "power", foam_protocol(), "--n", "4"});
+  EXPECT_EQ(power.exit_code, 1);
+  EXPECT_THAT(power.err, AllOf(HasSubstr("varies effects"), HasSubstr("mend: ")));
+}
+
+TEST_F(FoamStudyE2e, ABundleFreezesTheProtocolWithoutClaimsAboutMethods) {
+  const fs::path bundle = folder_ / "bundle";
+  const Ended frozen = run_program({vip_stats, "preregister", foam_protocol(), "--out", bundle});
+  ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
+  EXPECT_EQ(json::parse(base::read_file(bundle / "hypotheses.json", 1 << 20)), json::array());
+  EXPECT_THAT(base::read_file(bundle / "plan.toml", 1 << 20),
+              HasSubstr(study::read_protocol(foam_protocol()).sha256));
+}
+
+TEST_F(FoamStudyE2e, CheckNamesLevelsAndStimuli) {
+  const std::string found = folder_ / "check.json";
+  const Ended ended = run_program({vip_study, "check", foam_protocol(), "--json", found});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("effects \"none\": no effects\n"), HasSubstr("effects \"foam\": keeps foam\n"),
+                    HasSubstr("HiRes sea_spray 16k foam"), HasSubstr("6 trials of the design")));
+  EXPECT_EQ(json::parse(base::read_file(found, 1 << 20)).at("stimuli")[1].at("effects"), "foam");
+}
+
+TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
+  const std::string text = base::read_file(foam_protocol(), 1 << 20), path = folder_ / "wrong.toml";
+  base::write_file_atomically(path, replaced(text, "keep = [\"foam\"]", "keep = [\"heat\"]"));
+  const Ended ended = run_program({vip_study, "check", path});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("wrong.toml:25:9: "), HasSubstr("is no effect of scene SeaSpray")));
+}
+
+/// Of the study's scene, coarse and short: 0.5 s about the first foam.
+class FoamShownE2e : public ::testing::Test {
+ protected:
+  FoamShownE2e() {
+    std::string text = base::read_file(foam_protocol(), 1 << 20);
+    text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
+    text = replaced(text, "[\"16k\"]", "[\"256\"]");
+    text = replaced(text, "duration_s = 8", "duration_s = 0.5");
+    text = replaced(text, "keep = [\"foam\"]", "effect = [{kind = \"foam\", emission_per_s = 3}]");
+    base::write_file_atomically(protocol_, text);
+  }
+  Ended run(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{vip_study, "run",       protocol_, "--db",      database_,
+                                       "--size",  "64x36",     "--clock", "virtual",   "--observer",
+                                       "random",  "--backend", "cpu",     "--display", "headless"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+  std::string stimulus() const {
+    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
+        .text("SELECT stimulus FROM session ORDER BY session_id DESC LIMIT 1");
+  }
+
+  TemporaryFolder folder_;
+  const std::string protocol_ = folder_ / "foam.toml", database_ = folder_ / "study.db",
+                    bakes_ = folder_ / "bakes";
+};
+
+TEST_F(FoamShownE2e, LiveCellsHaveTheEffectsOfTheirLevel) {
+  const Ended ended = run({"--participant", "P01"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(stimulus(), AllOf(HasSubstr("live on cpu"), HasSubstr("effects none: no effects, foam: foam "
+                                                                    "emission_per_s = 3 ")));
+}
+
+TEST_F(FoamShownE2e, BakesHoldTheFoamOfTheirLevelAndArePlayed) {
+  const Ended baked = run_program(
+      {vip_study, "bake", "--protocol", protocol_, "--out", bakes_, "--size", "64x36", "--backend", "cpu"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const sim::BakeReader with(fs::path(bakes_) / "sea_spray_256_LoRes_foam.bake"),
+      without(fs::path(bakes_) / "sea_spray_256_LoRes_none.bake");
+  sim::BakeFrame frame;
+  with.read_frame(with.header().frame_count - 1, frame);
+  EXPECT_FALSE(frame.foam.empty());
+  EXPECT_EQ(without.header().max_foam, 0);
+  const Ended ended = run({"--participant", "P01", "--stimulus", bakes_});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(stimulus(), AllOf(HasSubstr("sea_spray 256 LoRes none bake"),
+                                HasSubstr("sea_spray 256 LoRes foam bake"), Not(HasSubstr("live"))));
+  // Numbers changed since: the bakes are of other water.
+  base::write_file_atomically(
+      protocol_, replaced(base::read_file(protocol_, 1 << 20), "emission_per_s = 3", "emission_per_s = 4"));
+  fs::remove(database_);
+  const Ended other = run({"--participant", "P01", "--stimulus", bakes_});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("holds foam emission_per_s = 3"));
+}
+
+}  // namespace
+}  // namespace apps::test
