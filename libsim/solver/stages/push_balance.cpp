@@ -191,7 +191,8 @@ void balance_push(FluidState& state, ClampView p) {
   coarse.balance.resize(1);
   coarse.balance.zero();
   // Where those who are not solved are not pressed, their share of the walls' push reaches nobody.
-  if (state.all_active || state.activation.rules.pressed) {
+  const bool pressed = state.all_active || state.activation.rules.pressed;
+  if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,
                   SumPush{.predicted = p.predicted(),
                           .next = p.predicted_next(),
@@ -199,8 +200,8 @@ void balance_push(FluidState& state, ClampView p) {
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
     state.obstacles.there() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
-    if (state.obstacles.there()) sum_bodies(state);
   }
+  if (state.obstacles.there() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
   state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
   clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }
