@@ -52,6 +52,7 @@ struct Move {
 /// followed by a share of m / (m + m_a); what is left is followed later.
 struct Push {
   FreeBody* free;
+  const Body* bodies;
   const BodySum* sums;
   float per_dt2;   ///< of the sums' ways
   int held_steps;  ///< while a body is held, steps over which its force is the mean; 0: it is not
@@ -60,11 +61,18 @@ struct Push {
     FreeBody& it = free[b];
     if (it.mass == 0) return;
     const Vec3 push = -per_dt2 * (sums[b].push - it.counted.push).value();
-    const Vec3 moment = -per_dt2 * (sums[b].moment - it.counted.moment).value();
+    const Vec3 moment = turning(bodies[b], -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
     const float share = held_steps > 0 ? 1.0f / static_cast<float>(held_steps) : it.follows;
     it.force += share * (push - it.force);
     it.torque += share * (moment - it.torque);
+  }
+  /// Pressure turns no body about an axis round which it is round; cells alone would.
+  SIM_FN static Vec3 turning(const Body& body, Vec3 moment) {
+    if (body.radius == 0) return moment;
+    if (body.half.y == 0) return {0, 0, 0};
+    const Vec3 axis = turned(body.turn, {0, 1, 0});
+    return moment - dot(moment, axis) * axis;
   }
 };
 
@@ -90,6 +98,7 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   const float dt = state.parameters.dt;
   for_each("push bodies", o.count(),
            Push{.free = o.free.data(),
+                .bodies = o.bodies.data(),
                 .sums = o.sums.data(),
                 .per_dt2 = 1 / (dt * dt),
                 .held_steps = held(state) ? state.substep + 1 : 0});

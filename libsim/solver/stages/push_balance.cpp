@@ -2,6 +2,7 @@
 /// gave. What it gave is measured against what the walls gave (Gauss' theorem on the cells), and the
 /// difference is taken from all whom it pushed, alike.
 
+#include "libsim/pressure/coarse_slope.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -125,6 +126,45 @@ struct SumBodies {
   }
 };
 
+/// What bodies that may float give: the displaced water's weight in the field, up to the level beside them.
+struct SumAfloat {
+  static constexpr int samples = 4;
+  CoarseSlope slope;
+  Waterline waterline;
+  BodyListener to;
+  float unit_volume;
+  PushBalance* out;
+
+  SIM_FN void operator()(int i) const {
+    const CellBlock& block = waterline.block;
+    const int x = i % block.nx;
+    const int y = i / block.nx % block.ny;
+    const int z = i / (block.nx * block.ny);
+    const Vec3 e = slope.frame.edge;
+    const Vec3 centre = middle_of(slope.frame, x, y, z);
+    const Solids& solids = waterline.solids;
+    if (solids.nearest_body(centre) > 0.5f * length(e)) return;
+    const float level = waterline.beside(x, y, z);
+    if (level <= 0) return;
+    const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
+    for (int k = 0; k < samples * samples * samples; ++k) {
+      const float up = SumBodies::offset(k / samples % samples);
+      const Vec3 at = centre + Vec3{e.x * SumBodies::offset(k % samples), e.y * up,
+                                    e.z * SumBodies::offset(k / (samples * samples))};
+      int body;
+      if (solids.nearest_body(at, body) >= 0) continue;
+      // A sample is a layer of its own height, which the level may cut.
+      const float wet = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
+      if (wet == 0) continue;
+      const Vec3 push = -(wet * share) * slope.down(at);
+      MassWay sum{};
+      sum.add(1, push);
+      out->walls.add_at_once(sum);
+      if (to.sums) to.add(body, at, push);
+    }
+  }
+};
+
 template <class Boundary>
 struct Balance {
   Vec4* predicted;
@@ -163,6 +203,15 @@ void sum_walls(FluidState& state, Boundary boundary) {
 void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
+  if (state.obstacles.free.size() > 0) {
+    for_each("sum obstacles", grid.block.size(),
+             SumAfloat{.slope = {coarse.frame, grid, state.walls},
+                       .waterline = state.waterline(),
+                       .to = state.body_listener(1),
+                       .unit_volume = mass_of(state.finest_support, 1),
+                       .out = coarse.balance.data()});
+    return;
+  }
   for_each("sum obstacles", grid.block.size(),
            SumBodies{.frame = coarse.frame,
                      .grid = grid,
