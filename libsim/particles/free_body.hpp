@@ -8,14 +8,15 @@ namespace sim::SIM_BACKEND {
 /// What moves a body, beside its place (Body).
 struct FreeBody {
   float mass;     ///< m_*; 0: the body is not free
+  float volume;   ///< in that of m_*
   Vec3 inertia;   ///< about its own axes, m_* m2
-  float follows;  ///< share of a new push of the water that it follows at once
   Vec3 momentum;  ///< m_* m/s
   Vec3 spin;      ///< angular momentum about the centre, m_* m2/s
-  /// Of the water, as far as the body follows it: m_* m/s2 and m_* m2/s2.
+  /// Of the water, as the body follows it in the next substep: m_* m/s2 and m_* m2/s2.
   Vec3 force, torque;
-  Vec3 by_walls;    ///< what walls gave it in this frame, m_* m/s
-  BodySum counted;  ///< of this frame's sums, by the substeps before
+  Vec3 force_left, torque_left;  ///< what it has yet to follow
+  Vec3 by_walls;                 ///< what walls gave it in this frame, m_* m/s
+  BodySum counted;               ///< of this frame's sums, by the substeps before
 };
 
 /// q turned by the way of a turn about the world's axes, rad.

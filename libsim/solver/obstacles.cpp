@@ -6,10 +6,6 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Added mass over the mass of the displaced water, at least: 0.5 of a sphere far from walls, 0.64 of a cube;
-/// walls raise it.
-constexpr double added_mass = 1;
-
 Vec3d vector(Vec3 v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
@@ -25,11 +21,11 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
   if (o.motion != ObstacleMotion::Free) return out;
   const double mass = o.density_kg_m3 * volume_m3(o) / mass_unit(state);
   const Vec3d moments = inertia_m2(o);
-  const double ratio = o.density_kg_m3 / static_cast<double>(state.parameters.rest_density);
   out.mass = static_cast<float>(mass);
+  out.volume = static_cast<float>(volume_m3(o) * static_cast<double>(state.parameters.rest_density) /
+                                  mass_unit(state));
   const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
   out.inertia = {moment(0), moment(1), moment(2)};
-  out.follows = static_cast<float>(ratio / (ratio + added_mass));
   return out;
 }
 
@@ -53,6 +49,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);
+    o.wet.resize(free.size());
+    o.wet.zero();
     told = true;
   }
   if (!told) return;
@@ -93,11 +91,10 @@ std::vector<BodyMotion> motions_of(const FluidState& state, double time_s) {
                    {static_cast<double>(body.turn.x), static_cast<double>(body.turn.y),
                     static_cast<double>(body.turn.z), static_cast<double>(body.turn.w)}};
     const double mass = unit * static_cast<double>(free[k].mass);
-    const double owed =
-        unit * static_cast<double>(state.parameters.dt) / static_cast<double>(free[k].follows);
+    const double owed = unit * static_cast<double>(state.parameters.dt);
     for (std::size_t a = 0; a < 3; ++a) {
       out[k].velocity_m_s[a] = unit * vector(free[k].momentum)[a] / mass;
-      out[k].owed_n_s[a] = owed * vector(free[k].force)[a];
+      out[k].owed_n_s[a] = owed * vector(free[k].force + free[k].force_left)[a];
       out[k].walls_n_s[a] = unit * vector(free[k].by_walls)[a];
     }
   }

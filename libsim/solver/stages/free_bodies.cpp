@@ -47,15 +47,21 @@ struct Move {
 };
 
 /// What the water gave in the substep. A body that is lighter than the water that goes along with it would
-/// swing: the water answers its last acceleration, with the force of its added mass. Counted as inertia of
-/// the body on both sides of Newton's law, m a' + m_a a' = F + m_a a, that force no longer matters. This is F
-/// followed by a share of m / (m + m_a); what is left is followed later.
+/// swing: the water answers its last acceleration a, with the force -m_a a of its added mass. Counted as
+/// inertia of the body on both sides of Newton's law, m a' + m_a a' = F + m_a a, it no longer matters. The
+/// same is to follow the share m / (m + m_a) of all that was given and not yet followed: what is left is owed
+/// and not lost.
 struct Push {
   FreeBody* free;
   const Body* bodies;
   const BodySum* sums;
-  float per_dt2;   ///< of the sums' ways
-  int held_steps;  ///< while a body is held, steps over which its force is the mean; 0: it is not
+  const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
+  float per_dt2;             ///< of the sums' ways
+  int held_steps;            ///< while a body is held, steps over which its force is the mean; 0: it is not
+
+  /// Added mass over the mass of the displaced water: 0.5 of a sphere far from walls, 0.64 of a cube; walls
+  /// raise it. Too little by half would swing, too much only makes bodies slow to follow.
+  static constexpr float added_mass = 0.7f;
 
   SIM_FN void operator()(int b) const {
     FreeBody& it = free[b];
@@ -63,9 +69,25 @@ struct Push {
     const Vec3 push = -per_dt2 * (sums[b].push - it.counted.push).value();
     const Vec3 moment = turning(bodies[b], -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
-    const float share = held_steps > 0 ? 1.0f / static_cast<float>(held_steps) : it.follows;
-    it.force += share * (push - it.force);
-    it.torque += share * (moment - it.torque);
+    const float water = wet ? static_cast<float>(wet[b]) / CellWater::fixed_point : it.volume;
+    const float share = it.mass / (it.mass + added_mass * at_most(water, it.volume));
+    if (held_steps > 0) {
+      mean(it.force, it.force_left, push, share);
+      mean(it.torque, it.torque_left, moment, share);
+    } else {
+      follow(it.force, it.force_left, push, share);
+      follow(it.torque, it.torque_left, moment, share);
+    }
+  }
+  SIM_FN static void follow(Vec3& force, Vec3& left, Vec3 given, float share) {
+    const Vec3 all = left + given;
+    force = share * all;
+    left = all - force;
+  }
+  /// As if the body had followed the mean for long.
+  SIM_FN void mean(Vec3& force, Vec3& left, Vec3 given, float share) const {
+    force += (1 / static_cast<float>(held_steps)) * (given - force);
+    left = ((1 - share) / share) * force;
   }
   /// Pressure turns no body about an axis round which it is round; cells alone would.
   SIM_FN static Vec3 turning(const Body& body, Vec3 moment) {
@@ -100,6 +122,7 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
            Push{.free = o.free.data(),
                 .bodies = o.bodies.data(),
                 .sums = o.sums.data(),
+                .wet = state.parameters.coarse_cycles > 0 ? o.wet.data() : nullptr,
                 .per_dt2 = 1 / (dt * dt),
                 .held_steps = held(state) ? state.substep + 1 : 0});
 }

@@ -132,6 +132,7 @@ struct SumAfloat {
   CoarseSlope slope;
   Waterline waterline;
   BodyListener to;
+  std::uint64_t* wet;  ///< ObstacleState::wet
   float unit_volume;
   PushBalance* out;
 
@@ -154,9 +155,10 @@ struct SumAfloat {
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
       // A sample is a layer of its own height, which the level may cut.
-      const float wet = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
-      if (wet == 0) continue;
-      const Vec3 push = -(wet * share) * slope.down(at);
+      const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
+      if (below == 0) continue;
+      atomic_add(&wet[body], static_cast<std::uint64_t>(below * share * CellWater::fixed_point));
+      const Vec3 push = -(below * share) * slope.down(at);
       MassWay sum{};
       sum.add(1, push);
       out->walls.add_at_once(sum);
@@ -204,10 +206,12 @@ void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
   if (state.obstacles.free.size() > 0) {
+    state.obstacles.wet.zero();
     for_each("sum obstacles", grid.block.size(),
              SumAfloat{.slope = {coarse.frame, grid, state.walls},
                        .waterline = state.waterline(),
                        .to = state.body_listener(1),
+                       .wet = state.obstacles.wet.data(),
                        .unit_volume = mass_of(state.finest_support, 1),
                        .out = coarse.balance.data()});
     return;
