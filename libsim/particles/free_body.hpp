@@ -38,6 +38,13 @@ SIM_FN Vec3 spin_of(const FreeBody& free, Vec4 turn, Vec3 momentum) {
   return turned(turn, {own.x / free.inertia.x, own.y / free.inertia.y, own.z / free.inertia.z});
 }
 
+/// Turns a body for dt as nothing holds it, with the spin of the middle of the way.
+SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
+  const Vec4 halfway = turned_by(body.turn, (0.5f * dt) * spin_of(free, body.turn, free.spin));
+  body.spin = spin_of(free, halfway, free.spin);
+  body.turn = turned_by(body.turn, dt * body.spin);
+}
+
 /// Takes from a free body's momentum what would carry it through the tank's walls in dt. Contacts are those
 /// of the corners of the box round which the body lies, each a ball of its radius; they are inelastic and
 /// without friction. Outlets let no body through.

@@ -152,6 +152,12 @@ Pose pose_at(const Obstacle& o, double time_s) {
   return out;
 }
 
+std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s) {
+  std::vector<BodyMotion> out;
+  for (const Obstacle& o : obstacles) out.push_back({pose_at(o, time_s), {}, {}, {}, {}});
+  return out;
+}
+
 Vector half_sides_m(const Obstacle& o) {
   if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
   return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};

@@ -32,10 +32,11 @@ struct Pose {
 /// A body on its way.
 struct BodyMotion {
   Pose pose;
+  // 0 unless it is free:
   std::array<double, 3> velocity_m_s{};  ///< of its centre
   std::array<double, 3> spin_rad_s{};
-  /// Push that the water has given and the body has not followed yet, N s; 0 unless it is free. Light bodies
-  /// follow with a delay, as the water that goes along has a share in it.
+  /// Push that the water has given and the body has not followed yet. Light bodies follow with a delay, as
+  /// the water that goes along has a share in it.
   std::array<double, 3> owed_n_s{};
   std::array<double, 3> walls_n_s{};  ///< what walls gave it in the last frame
 };
@@ -61,6 +62,8 @@ const char* shape_name(ObstacleShape shape);
 
 /// Where the obstacle is at this time since frame 0, s; of a free one, where it began.
 Pose pose_at(const Obstacle& obstacle, double time_s);
+/// All of them so, at rest.
+std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half the sides of the box round which the shape lies within radius_m, along its own axes: of a box half

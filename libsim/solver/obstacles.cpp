@@ -76,17 +76,15 @@ void count_obstacles(const FluidState& state, MomentumAccount& account) {
 
 std::vector<BodyMotion> motions_of(const FluidState& state, double time_s) {
   const ObstacleState& o = state.obstacles;
-  std::vector<BodyMotion> out;
-  for (const Obstacle& obstacle : o.obstacles) out.push_back({pose_at(obstacle, time_s), {}, {}, {}, {}});
-  if (!o.there()) return out;
+  std::vector<BodyMotion> out = motions_at(o.obstacles, time_s);
+  if (o.free.size() == 0) return out;
   const std::vector<Body> bodies = o.bodies.to_host();
   const std::vector<FreeBody> free = o.free.to_host();
   const double unit = mass_unit(state);
   for (std::size_t k = 0; k < out.size(); ++k) {
+    if (free[k].mass == 0) continue;
     const Body& body = bodies[k];
-    out[k].velocity_m_s = vector(body.velocity);
     out[k].spin_rad_s = vector(body.spin);
-    if (free.empty() || free[k].mass == 0) continue;
     out[k].pose = {vector(body.centre),
                    {static_cast<double>(body.turn.x), static_cast<double>(body.turn.y),
                     static_cast<double>(body.turn.z), static_cast<double>(body.turn.w)}};

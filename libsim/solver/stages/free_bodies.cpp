@@ -31,10 +31,7 @@ struct Move {
     WallContact{walls, body, it, dt}.stop();
     const Vec3 from = body.centre;
     body.centre = fused(from, dt / it.mass, it.momentum);
-    // The spin of the middle of the way.
-    const Vec4 halfway = turned_by(body.turn, (0.5f * dt) * spin_of(it, body.turn, it.spin));
-    body.spin = spin_of(it, halfway, it.spin);
-    body.turn = turned_by(body.turn, dt * body.spin);
+    turn_on(body, it, dt);
     body.centre += WallContact{walls, body, it, dt}.way_back();
     body.velocity = (1 / dt) * (body.centre - from);
   }
