@@ -38,10 +38,6 @@ class FluidSimulation final : public Simulation {
           "use 1 to 4 levels");
     }
     check_effects(scene.effects);
-    if (options.start_frame > 0 && any_free(scene.obstacles)) {
-      throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
-                        "start at frame 0, or resume from a saved state");
-    }
     state_.parameters = solver_parameters(scene, options);
     if (options.time_parts) state_.clock.switch_on();
     state_.saliency.readings = options.readings;
@@ -198,9 +194,7 @@ class FluidSimulation final : public Simulation {
   void read_particles(std::vector<RenderParticle>& out) const override {
     render_particles_of(state_.particles, out);
   }
-
   std::vector<BodyMotion> read_obstacles() const override { return motions_of(state_, time_s()); }
-
   std::int64_t foam_capacity() const override { return state_.foam.capacity(); }
   void read_foam(std::vector<RenderParticle>& out) const override { render_foam_of(state_, out); }
   bool copy_foam_to_gl(const GlBufferRef& buffer) override {

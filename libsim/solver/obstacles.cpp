@@ -26,6 +26,9 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
                                   mass_unit(state));
   const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
   out.inertia = {moment(0), moment(1), moment(2)};
+  // It begins at rest, as if its weight had been borne.
+  out.force = {0, out.mass * state.parameters.gravity, 0};
+  out.force_left = -1.0f * out.force;
   return out;
 }
 
@@ -46,6 +49,9 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));
   if (any_free(o.obstacles)) {
+    if (time_s > 0)
+      throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
+                        "start at frame 0, or resume from a saved state");
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);

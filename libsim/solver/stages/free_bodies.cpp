@@ -15,14 +15,12 @@ struct Move {
   Guards* guards;
   float gravity, dt, most_speed;
   bool first;  ///< of the frame
-  bool held;   ///< the water has only just been let go: what it gives is not known yet
 
   SIM_FN void operator()(int b) const {
     FreeBody& it = free[b];
     if (it.mass == 0) return;
     if (first) it.by_walls = {0, 0, 0};
     if (first) it.counted = {};
-    if (held) return;
     Body& body = bodies[b];
     it.momentum += dt * it.force;
     it.momentum.y -= it.mass * gravity * dt;
@@ -45,16 +43,14 @@ struct Move {
 
 /// What the water gave in the substep. A body that is lighter than the water that goes along with it would
 /// swing: the water answers its last acceleration a, with the force -m_a a of its added mass. Counted as
-/// inertia of the body on both sides of Newton's law, m a' + m_a a' = F + m_a a, it no longer matters. The
-/// same is to follow the share m / (m + m_a) of all that was given and not yet followed: what is left is owed
-/// and not lost.
+/// inertia of the body on both sides of Newton's law, m a' + m_a a' = F + m g + m_a a, it no longer matters.
+/// With f = m (a - g), the force that the body follows, that is f' = s F + (1 - s) f, s = m / (m + m_a).
 struct Push {
   FreeBody* free;
   const Body* bodies;
   const BodySum* sums;
   const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
   float per_dt2;             ///< of the sums' ways
-  int held_steps;            ///< while a body is held, steps over which its force is the mean; 0: it is not
 
   /// Added mass over the mass of the displaced water: 0.5 of a sphere far from walls, 0.64 of a cube; walls
   /// raise it. Too little by half would swing, too much only makes bodies slow to follow.
@@ -68,23 +64,12 @@ struct Push {
     it.counted = sums[b];
     const float water = wet ? static_cast<float>(wet[b]) / CellWater::fixed_point : it.volume;
     const float share = it.mass / (it.mass + added_mass * at_most(water, it.volume));
-    if (held_steps > 0) {
-      mean(it.force, it.force_left, push, share);
-      mean(it.torque, it.torque_left, moment, share);
-    } else {
-      follow(it.force, it.force_left, push, share);
-      follow(it.torque, it.torque_left, moment, share);
-    }
+    follow(it.force, it.force_left, push, share);
+    follow(it.torque, it.torque_left, moment, share);
   }
   SIM_FN static void follow(Vec3& force, Vec3& left, Vec3 given, float share) {
-    const Vec3 all = left + given;
-    force = share * all;
-    left = all - force;
-  }
-  /// As if the body had followed the mean for long.
-  SIM_FN void mean(Vec3& force, Vec3& left, Vec3 given, float share) const {
-    force += (1 / static_cast<float>(held_steps)) * (given - force);
-    left = ((1 - share) / share) * force;
+    force += share * (given - force);
+    left += given - force;
   }
   /// Pressure turns no body about an axis round which it is round; cells alone would.
   SIM_FN static Vec3 turning(const Body& body, Vec3 moment) {
@@ -94,8 +79,6 @@ struct Push {
     return moment - dot(moment, axis) * axis;
   }
 };
-
-bool held(const FluidState& state) { return state.obstacles.frame_begin_s <= 0; }
 
 void move(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   auto& o = state.obstacles;
@@ -108,8 +91,7 @@ void move(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
                 .gravity = k.gravity,
                 .dt = k.dt,
                 .most_speed = k.most_speed,
-                .first = state.substep == 0,
-                .held = held(state)});
+                .first = state.substep == 0});
 }
 
 void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
@@ -120,8 +102,7 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
                 .bodies = o.bodies.data(),
                 .sums = o.sums.data(),
                 .wet = state.parameters.coarse_cycles > 0 ? o.wet.data() : nullptr,
-                .per_dt2 = 1 / (dt * dt),
-                .held_steps = held(state) ? state.substep + 1 : 0});
+                .per_dt2 = 1 / (dt * dt)});
 }
 
 std::string if_free(const Demand& demand) { return demand.free_obstacles ? "an obstacle is free" : ""; }
