@@ -97,9 +97,15 @@ TEST(Float, ASphereFloatsHalfSunkWithTemporalAcceleration) { floats_half_sunk(wi
 void sinks_with_its_added_mass(const Afloat& afloat) {
   const auto fluid = pool_with(afloat, 2000, 0.65);
   constexpr int frames = 6;
-  for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
-  const double a = -fluid->read_obstacles().at(0).velocity_m_s[1] / (frames / 60.0);
-  EXPECT_NEAR(a / (9.81 / 2.5), 1, 0.15);
+  double time_s = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid->step_frame();
+    // In the first substep it rests.
+    if (frame == 0) time_s = frames / 60.0 - 1 / 60.0 / fluid->substeps().taken;
+  }
+  const double a = -fluid->read_obstacles().at(0).velocity_m_s[1] / time_s;
+  EXPECT_GT(a / (9.81 / 2.5), 0.8);
+  EXPECT_LT(a / (9.81 / 2.5), 1.1);
 }
 TEST(Float, AHeavySphereSinksWithItsAddedMass) {
   for (const Afloat& afloat : {finest, coarsest, both, with(finest, 0.67)}) {
