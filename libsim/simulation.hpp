@@ -299,6 +299,8 @@ class Simulation {
   /// False when this back end cannot (the CPU, or a context on another device) or the buffer is too small:
   /// read_particles and upload instead.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
+  /// The scene's obstacles between two frames, in its order, copied to the host.
+  virtual std::vector<BodyMotion> read_obstacles() const { return {}; }
   /// The most diffuse particles of the effect foam that there can be; 0 where the scene lists none.
   virtual std::int64_t foam_capacity() const { return 0; }
   /// Places and radii of those that are there, copied to the host.

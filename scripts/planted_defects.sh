@@ -51,7 +51,7 @@ defect speed-guard "the guard on speed stands at 0.5 h a substep" libsim/solver/
   'fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)' 'resolution.finest_spacing_m / static_cast<double>(parameters.dt)'
 defect cells-by-number "cells weigh particles by number, not by mass" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
   'float volume = mass_of(p.w, 1) / unit_volume;' 'float volume = unit_volume > 0 ? 1 : 0;'
-defect cells-leak "cells of a wall take part in the pressure" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
+defect cells-leak "cells of a wall take part in the pressure" libsim/pressure/coarse_slope.hpp sim_test 'CoarsePressure.*' \
   'if (!walls.opening_count ||' 'if (walls.opening_count < 0 &&'
 defect braked-way "the guard brakes a speed and not its way" $stages/velocity.cpp stability_test 'Divergence.AThousand*' \
   'length(after) > brake.most_speed' 'length(after) > 1e30f'

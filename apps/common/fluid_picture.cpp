@@ -13,7 +13,7 @@ void FluidPicture::take(sim::Simulation& fluid) {
   }
   take_foam(fluid);
   taken_frame_ = fluid.frame();
-  renderer_.place_obstacles(fluid.time_s());
+  renderer_.place_obstacles(fluid.read_obstacles());
 }
 
 void FluidPicture::take_foam(sim::Simulation& fluid) {

@@ -111,7 +111,11 @@ BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing vi
     : bake_(std::move(bake)),
       scene_(sim::baked_scene(bake_->header())),
       viewing_(std::move(viewing)),
-      options_(options) {}
+      options_(options) {
+  if (sim::any_free(scene_.obstacles))
+    throw base::Error(description(), "hold nothing of the free obstacles of their scene",
+                      "show a bake of pictures, or the live fluid");
+}
 
 std::string BakedParticles::description() const { return describe(*bake_, "particles"); }
 

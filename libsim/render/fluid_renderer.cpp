@@ -77,7 +77,12 @@ FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
 
 FluidRenderer::~FluidRenderer() = default;
 
-void FluidRenderer::place_obstacles(double time_s) { state_->place_obstacles(time_s); }
+void FluidRenderer::place_obstacles(double time_s) {
+  state_->place_obstacles(motions_at(state_->obstacles, time_s));
+}
+void FluidRenderer::place_obstacles(const std::vector<BodyMotion>& motions) {
+  state_->place_obstacles(motions);
+}
 
 void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
                          const ParticleBuffer* foam) {

@@ -113,6 +113,8 @@ class FluidRenderer {
 
   /// The scene's obstacles are drawn where they are at this time since frame 0; at first, where they begin.
   void place_obstacles(double time_s);
+  /// Where these say, in the scene's order: Simulation::read_obstacles.
+  void place_obstacles(const std::vector<BodyMotion>& motions);
 
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
   /// sRGB and nothing outside them. Returns without waiting for the device.

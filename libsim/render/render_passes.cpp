@@ -76,18 +76,19 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
   counters.fill(0);
   no_particles.reserve(16);
   glCreateVertexArrays(1, &vertex_array);
-  place_obstacles(0);
+  place_obstacles(motions_at(obstacles, 0));
 }
 
-void FluidRenderer::State::place_obstacles(double time_s) {
+void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motions) {
   if (obstacles.empty()) return;
   std::vector<std::array<float, 4>> rows;
   const auto row = [&](const auto& v, double last) {
     rows.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
                     static_cast<float>(last)});
   };
-  for (const Obstacle& o : obstacles) {
-    const Pose pose = pose_at(o, time_s);
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Obstacle& o = obstacles[k];
+    const Pose& pose = motions.at(k).pose;
     row(pose.centre_m, o.radius_m);
     row(half_sides_m(o), 0);
     row(pose.turn, pose.turn[3]);

@@ -68,7 +68,7 @@ struct FluidRenderer::State {
 
   /// A view of the last draw, ready to be read.
   const ViewTargets& drawn(std::size_t view) const;
-  void place_obstacles(double time_s);
+  void place_obstacles(const std::vector<BodyMotion>& motions);
   void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer,
                   const ParticleBuffer* foam_from);
 

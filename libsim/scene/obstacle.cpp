@@ -15,6 +15,7 @@ using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 constexpr double farthest_m = 1e4;
 constexpr double thinnest_m = 1e-3;
+constexpr double lightest_kg_m3 = 50;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
@@ -78,7 +79,7 @@ Vector place(const base::TomlTable& table, const char* key, const Vector& origin
 }
 
 void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle& out) {
-  const std::string word = table.choice_or("motion", "fixed", {"fixed", "turns", "swings"});
+  const std::string word = table.choice_or("motion", "fixed", {"fixed", "turns", "swings", "free"});
   if (word == "turns") {
     out.motion = ObstacleMotion::Turns;
     out.about_m = place(table, "about_m", origin_m);
@@ -89,6 +90,9 @@ void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle&
     const auto way = table.numbers("way_m", 3, {-farthest_m, farthest_m});
     out.way_m = {way[0], way[1], way[2]};
     out.period_s = table.number("period_s", {1e-3, 1e6});
+  } else if (word == "free") {
+    out.motion = ObstacleMotion::Free;
+    out.density_kg_m3 = table.number("density_kg_m3", {lightest_kg_m3, 1e5});
   }
 }
 
@@ -120,7 +124,8 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   const double whole = out.motion == ObstacleMotion::Swings
                            ? out.period_s
                            : 2 * std::numbers::pi / std::max(std::abs(out.rate_rad_s), 1e-9);
-  for (int k = 0; k < looks && out.motion != ObstacleMotion::Fixed; ++k) {
+  const bool goes_a_way = out.motion == ObstacleMotion::Turns || out.motion == ObstacleMotion::Swings;
+  for (int k = 0; k < looks && goes_a_way; ++k) {
     if (!in_tank(out, pose_at(out, whole * k / looks), tank_size_m))
       table.fail("motion", "takes a part of the obstacle out of the tank",
                  "move it less far, or put it farther from the walls");
@@ -144,6 +149,12 @@ Pose pose_at(const Obstacle& o, double time_s) {
     const double phase = 2 * std::numbers::pi * std::fmod(time_s / o.period_s, 1.0);
     out.centre_m = sum(o.start.centre_m, std::sin(phase), o.way_m);
   }
+  return out;
+}
+
+std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s) {
+  std::vector<BodyMotion> out;
+  for (const Obstacle& o : obstacles) out.push_back({pose_at(o, time_s), {}, {}, {}, {}});
   return out;
 }
 
@@ -171,6 +182,26 @@ double volume_m3(const Obstacle& o) {
   return disc * (4 * o.radius_m / 3 + (o.shape == ObstacleShape::Capsule ? o.length_m : 0));
 }
 
+Vector inertia_m2(const Obstacle& o) {
+  const double r2 = o.radius_m * o.radius_m;
+  if (o.shape == ObstacleShape::Sphere) return {0.4 * r2, 0.4 * r2, 0.4 * r2};
+  if (o.shape == ObstacleShape::Box) {
+    const auto [x, y, z] = o.size_m;
+    return {(y * y + z * z) / 12, (x * x + z * z) / 12, (x * x + y * y) / 12};
+  }
+  // A cylinder and two halves of a ball, whose middles lie 3/8 r beyond its ends.
+  const double l = o.length_m;
+  const double ball = 4 * o.radius_m / (4 * o.radius_m + 3 * l);
+  const double across =
+      (1 - ball) * (l * l / 12 + r2 / 4) + ball * (0.4 * r2 + l * l / 4 + 0.375 * l * o.radius_m);
+  return {across, (1 - ball) * r2 / 2 + ball * 0.4 * r2, across};
+}
+
+bool any_free(const std::vector<Obstacle>& obstacles) {
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const Obstacle& o) { return o.motion == ObstacleMotion::Free; });
+}
+
 double thickness_m(const Obstacle& o) {
   if (o.shape == ObstacleShape::Box) return *std::min_element(o.size_m.begin(), o.size_m.end());
   return 2 * o.radius_m;
@@ -178,7 +209,7 @@ double thickness_m(const Obstacle& o) {
 
 double top_speed(const Obstacle& o) {
   if (o.motion == ObstacleMotion::Swings) return 2 * std::numbers::pi * length(o.way_m) / o.period_s;
-  if (o.motion == ObstacleMotion::Fixed) return 0;
+  if (o.motion != ObstacleMotion::Turns) return 0;
   const Vector arm = sum(o.start.centre_m, -1, o.about_m);
   const double from_axis = length(sum(arm, -dot(arm, o.axis), o.axis));
   return std::abs(o.rate_rad_s) * (from_axis + length(half_sides_m(o)) + o.radius_m);
@@ -191,6 +222,9 @@ std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector&
     if (out.size() == most_obstacles)
       table.fail("", "is one obstacle too many", "use at most " + std::to_string(most_obstacles));
     out.push_back(read_obstacle(table, tank_size_m, origin_m));
+    if (out.back().motion == ObstacleMotion::Free && scene.has("central_force"))
+      table.fail("motion", "is free in a scene with a central force, which would not pull it",
+                 "leave central_force out, or keep the obstacle fixed");
     if (top_speed(out.back()) > most_speed_m_s)
       table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
                  "raise time.v_ref_m_s or slow the obstacle down");
@@ -216,6 +250,7 @@ std::string obstacles_in_words(const std::vector<Obstacle>& obstacles) {
              base::shortest(o.rate_rad_s) + " rad/s";
     if (o.motion == ObstacleMotion::Swings)
       out += ", swings by " + vector(o.way_m) + " m in " + base::shortest(o.period_s) + " s";
+    if (o.motion == ObstacleMotion::Free) out += ", free, " + base::shortest(o.density_kg_m3) + " kg/m3";
     out += "\n";
   }
   return out;

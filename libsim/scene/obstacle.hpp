@@ -17,8 +17,9 @@ enum class ObstacleShape { Sphere, Box, Capsule };
 /// How an obstacle moves once the water has settled.
 enum class ObstacleMotion {
   Fixed,
-  Turns,  ///< about an axis at a constant rate
-  Swings  ///< to and fro along a vector
+  Turns,   ///< about an axis at a constant rate
+  Swings,  ///< to and fro along a vector
+  Free     ///< the water and gravity move it
 };
 
 /// Place and attitude of a rigid body.
@@ -26,6 +27,18 @@ struct Pose {
   std::array<double, 3> centre_m{};
   std::array<double, 4> turn{0, 0, 0,
                              1};  ///< unit quaternion x, y, z, w: from the body's axes to the world's
+};
+
+/// A body on its way.
+struct BodyMotion {
+  Pose pose;
+  // 0 unless it is free:
+  std::array<double, 3> velocity_m_s{};  ///< of its centre
+  std::array<double, 3> spin_rad_s{};
+  /// Push that the water has given and the body has not followed yet. Light bodies follow with a delay, as
+  /// the water that goes along has a share in it.
+  std::array<double, 3> owed_n_s{};
+  std::array<double, 3> walls_n_s{};  ///< what walls gave it in the last frame
 };
 
 /// A rigid body. SI units.
@@ -41,22 +54,28 @@ struct Obstacle {
   double rate_rad_s = 0;                ///< right-handed about it
   std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
   double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
+  double density_kg_m3 = 0;             ///< of a free body, the same in all of it
 };
 
 inline constexpr std::size_t most_obstacles = 16;
 const char* shape_name(ObstacleShape shape);
 
-/// Where the obstacle is at this time since frame 0, s.
+/// Where the obstacle is at this time since frame 0, s; of a free one, where it began.
 Pose pose_at(const Obstacle& obstacle, double time_s);
+/// All of them so, at rest.
+std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half the sides of the box round which the shape lies within radius_m, along its own axes: of a box half
 /// its sides, of a capsule half its axis.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 double volume_m3(const Obstacle& obstacle);
+/// Moments of inertia about its own axes over its mass, of an even density, m2.
+std::array<double, 3> inertia_m2(const Obstacle& obstacle);
+bool any_free(const std::vector<Obstacle>& obstacles);
 /// The shortest way through the middle, m.
 double thickness_m(const Obstacle& obstacle);
-/// Speed that no point of it ever exceeds, m/s.
+/// Speed that no point of it ever exceeds, m/s; of a free one nobody knows: 0.
 double top_speed(const Obstacle& obstacle);
 
 /// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown

@@ -62,6 +62,16 @@ struct Gather {
   }
 };
 
+/// A free body counts like a particle of its speed.
+struct FastestBody {
+  const FreeBody* free;
+  Extremes* out;
+  SIM_FN void operator()(int b) const {
+    if (free[b].mass > 0)
+      atomic_max(&out->fastest_bits, Gather::bits_of(length(free[b].momentum) / free[b].mass));
+  }
+};
+
 /// Index `level` counts one level between its two borders, which halving finds; the first also takes the
 /// rest.
 struct Tally {
@@ -161,6 +171,9 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
                        .teams = teams,
                        .half = 2 * state.parameters.substeps,
                        .out = extremes_.data()});
+  if (state.obstacles.free.size() > 0)
+    for_each("fastest body", state.obstacles.count(),
+             FastestBody{state.obstacles.free.data(), extremes_.data()});
   for_each("frame tally", LevelSupports::most,
            Tally{.guards = state.guards.data(),
                  .lists = state.neighbours.need(),

@@ -125,6 +125,9 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start) 
 
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   double height = scene.fill_max_m[1];
+  for (const Obstacle& o : scene.obstacles) {
+    if (o.motion == ObstacleMotion::Free) height = std::max(height, o.start.centre_m[1]);
+  }
   for (const Nozzle& nozzle : scene.nozzles) height = std::max(height, nozzle.position_m[1]);
   for (const ParticleState& p : start) {
     const auto y = static_cast<double>(p.y_m);
@@ -170,8 +173,10 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.effects = scene.effects;
   out.nozzles = !scene.nozzles.empty();
   out.outlets = !scene.outlets.empty();
-  out.moving_obstacles = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                                     [](const Obstacle& o) { return o.motion != ObstacleMotion::Fixed; });
+  out.moving_obstacles = std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& o) {
+    return o.motion == ObstacleMotion::Turns || o.motion == ObstacleMotion::Swings;
+  });
+  out.free_obstacles = any_free(scene.obstacles);
   out.levels = method.adaptive();
   out.forced_targets = options.forced_targets.has_value();
   out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;

@@ -196,7 +196,7 @@ class FluidSimulation final : public Simulation {
   void read_particles(std::vector<RenderParticle>& out) const override {
     render_particles_of(state_.particles, out);
   }
-
+  std::vector<BodyMotion> read_obstacles() const override { return motions_of(state_, time_s()); }
   std::int64_t foam_capacity() const override { return state_.foam.capacity(); }
   void read_foam(std::vector<RenderParticle>& out) const override { render_foam_of(state_, out); }
   bool copy_foam_to_gl(const GlBufferRef& buffer) override {

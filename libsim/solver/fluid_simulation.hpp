@@ -52,6 +52,8 @@ Walls walls_of(const Scene& scene, bool settling);
 void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told);
 /// Adds what the obstacles gave in the frame.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
+/// The scene's obstacles at this time.
+std::vector<BodyMotion> motions_of(const FluidState& state, double time_s);
 
 /// Density and neighbour counts at the present positions, measured on a copy: the run goes on as if nobody
 /// had asked.

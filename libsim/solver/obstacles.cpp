@@ -4,6 +4,36 @@
 
 namespace sim::SIM_BACKEND {
 
+namespace {
+
+Vec3d vector(Vec3 v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// m_*, kg.
+double mass_unit(const FluidState& state) {
+  const auto edge = static_cast<double>(state.finest_support) / 2;
+  return static_cast<double>(state.parameters.rest_density) * edge * edge * edge;
+}
+
+FreeBody free_of(const Obstacle& o, const FluidState& state) {
+  FreeBody out{};
+  if (o.motion != ObstacleMotion::Free) return out;
+  const double mass = o.density_kg_m3 * volume_m3(o) / mass_unit(state);
+  const Vec3d moments = inertia_m2(o);
+  out.mass = static_cast<float>(mass);
+  out.volume = static_cast<float>(volume_m3(o) * static_cast<double>(state.parameters.rest_density) /
+                                  mass_unit(state));
+  const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
+  out.inertia = {moment(0), moment(1), moment(2)};
+  // It begins at rest, as if its weight had been borne.
+  out.force = {0, out.mass * state.parameters.gravity, 0};
+  out.force_left = -1.0f * out.force;
+  return out;
+}
+
+}  // namespace
+
 void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told) {
   auto& o = state.obstacles;
   // A substep takes a particle no farther than the finest spacing.
@@ -18,6 +48,17 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   o.obstacles = scene.obstacles;
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));
+  if (any_free(o.obstacles)) {
+    if (time_s > 0)
+      throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
+                        "start at frame 0, or resume from a saved state");
+    std::vector<FreeBody> free;
+    for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
+    o.free.from_host(free);
+    o.wet.resize(free.size());
+    o.wet.zero();
+    told = true;
+  }
   if (!told) return;
   o.sums.resize(o.bodies.size());
   o.sums.zero();
@@ -25,9 +66,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
 
 void count_obstacles(const FluidState& state, MomentumAccount& account) {
   if (!state.impulse.on() || !state.obstacles.told()) return;
-  const auto edge = static_cast<double>(state.finest_support) / 2;
-  const double unit = static_cast<double>(state.parameters.rest_density) * edge * edge * edge *
-                      static_cast<double>(MassWay::unit) / static_cast<double>(state.parameters.dt);
+  const double unit =
+      mass_unit(state) * static_cast<double>(MassWay::unit) / static_cast<double>(state.parameters.dt);
   const auto vector = [&](const MassWay& sum) {
     const auto part = [&](std::uint64_t fixed) {
       return unit * static_cast<double>(static_cast<std::int64_t>(fixed));
@@ -38,6 +78,31 @@ void count_obstacles(const FluidState& state, MomentumAccount& account) {
     account.obstacles.push_back({vector(sum.push), vector(sum.moment)});
     for (std::size_t k = 0; k < 3; ++k) account.unattributed[k] -= account.obstacles.back().push[k];
   }
+}
+
+std::vector<BodyMotion> motions_of(const FluidState& state, double time_s) {
+  const ObstacleState& o = state.obstacles;
+  std::vector<BodyMotion> out = motions_at(o.obstacles, time_s);
+  if (o.free.size() == 0) return out;
+  const std::vector<Body> bodies = o.bodies.to_host();
+  const std::vector<FreeBody> free = o.free.to_host();
+  const double unit = mass_unit(state);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (free[k].mass == 0) continue;
+    const Body& body = bodies[k];
+    out[k].spin_rad_s = vector(body.spin);
+    out[k].pose = {vector(body.centre),
+                   {static_cast<double>(body.turn.x), static_cast<double>(body.turn.y),
+                    static_cast<double>(body.turn.z), static_cast<double>(body.turn.w)}};
+    const double mass = unit * static_cast<double>(free[k].mass);
+    const double owed = unit * static_cast<double>(state.parameters.dt);
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[k].velocity_m_s[a] = unit * vector(free[k].momentum)[a] / mass;
+      out[k].owed_n_s[a] = owed * vector(free[k].force + free[k].force_left)[a];
+      out[k].walls_n_s[a] = unit * vector(free[k].by_walls)[a];
+    }
+  }
+  return out;
 }
 
 }  // namespace sim::SIM_BACKEND

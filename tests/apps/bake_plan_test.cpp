@@ -144,5 +144,18 @@ TEST(BakeOrder, TauWithoutAFrameRateIsRefused) {
   }
 }
 
+TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
+  BakeOrder other = order();
+  other.fluid.scene = base::resource("data/scenes/float.toml");
+  try {
+    header_of(other);
+    FAIL() << "accepted";
+  } catch (const base::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has free obstacles"));
+  }
+  other.pictures = true;
+  EXPECT_EQ(header_of(other).scene_name, "Float");
+}
+
 }  // namespace
 }  // namespace apps

@@ -38,6 +38,54 @@ TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
   }
 }
 
+/// The middle row of the obstacle's colour: red over blue, as neither water nor room is.
+double middle_row(const sim::Image& image) {
+  double sum = 0, count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* pixel = &image.rgba[static_cast<std::size_t>(4 * (y * image.width + x))];
+      if (pixel[0] < 2 * pixel[2] || pixel[0] < 60) continue;
+      sum += y;
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 20);
+  return sum / count;
+}
+
+TEST(FluidPictureGl, ShowsAFreeObstacleWhereItIs) {
+  const auto context = sim::GlContext::make_headless();
+  sim::Scene scene;
+  scene.tank_size_m = {2, 3, 2};
+  scene.fill_max_m = {0.5, 0.25, 0.5};
+  scene.settle_frames = 0;
+  scene.v_ref_m_s = 4;
+  scene.view.eye_m = {1, 1.5, 6};
+  scene.view.target_m = {1, 1.5, 1};
+  sim::Obstacle ball;
+  ball.radius_m = 0.4;
+  ball.start.centre_m = {1, 2, 1};
+  ball.motion = sim::ObstacleMotion::Free;
+  ball.density_kg_m3 = 500;
+  scene.obstacles = {ball};
+  sim::SimulationOptions options;
+  options.n_star = 64;
+  const auto fluid = sim::make_simulation(scene, options);
+  apps::FluidPicture picture(scene);
+  const sim::View view = sim::make_view(scene.view, 64, 96);
+  const sim::Offscreen target(64, 96);
+  picture.draw(*fluid, view, target.framebuffer());
+  const double before = middle_row(target.read());
+  for (int frame = 0; frame < 25; ++frame) fluid->step_frame();
+  picture.draw(*fluid, view, target.framebuffer());
+  const double fallen = middle_row(target.read()) - before;
+  const double way = 2 - fluid->read_obstacles().at(0).pose.centre_m[1];
+  EXPECT_GT(way, 0.5);
+  // Rows go downwards, 96 of them over the field of view at 5 m.
+  const double tall = 2 * 5 * std::tan(0.5 * scene.view.vertical_fov_deg * 3.14159265 / 180);
+  EXPECT_NEAR(fallen / 96 * tall, way, 0.1 * way);
+}
+
 TEST(Gaze, ThroughAPixelIsTheRayThatTheCameraDraws) {
   sim::Camera camera;
   camera.eye_m = {3, 2, 9};

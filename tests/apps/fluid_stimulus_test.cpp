@@ -220,6 +220,22 @@ TEST_F(FluidStimulusGl, PicturesOfAnotherShapeStandBetweenBlackBars) {
   EXPECT_EQ(blue(5, 50), 0);
 }
 
+TEST_F(FluidStimulusGl, ParticlesOfASceneWithFreeObstaclesAreNotShown) {
+  sim::BakeHeader header = bake_test::header(1);
+  header.scene_text = base::read_file(base::resource("data/scenes/float.toml"), 1 << 20);
+  {
+    sim::BakeWriter writer(folder_ / "a.bake", header);
+    writer.add_frame(0, bake_test::particles(0), bake_test::account(0));
+    writer.finish();
+  }
+  try {
+    apps::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+    FAIL() << "accepted";
+  } catch (const base::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("nothing of the free obstacles"), std::string::npos);
+  }
+}
+
 TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   sim::BakeHeader header = bake_test::header(3);
   header.scene_text = scene_text();

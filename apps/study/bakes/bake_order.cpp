@@ -82,6 +82,10 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.scene_text = base::read_file(order.fluid.scene, 1 << 20);
   sim::Scene scene = sim::parse_scene(header.scene_text, order.fluid.scene.string());
   if (order.fluid.effects) scene.effects = *order.fluid.effects;
+  if (sim::any_free(scene.obstacles) && !order.pictures)
+    throw base::Error(order.fluid.scene.string(),
+                      "has free obstacles, of which a bake of particles holds nothing",
+                      "bake pictures too, or keep the obstacles fixed");
   const sim::MethodTraits& traits = sim::traits_of(sim::parse_method(order.fluid.method));
   header.scene_name = scene.name;
   header.scene_sha256 = scene.sha256;

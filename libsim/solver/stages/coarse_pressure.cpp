@@ -1,10 +1,11 @@
+#include "libsim/pressure/coarse_slope.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr float fixed_point = 1 << 20;
+constexpr float fixed_point = CellWater::fixed_point;
 /// More than this is not compression but particles on top of each other, which the projections part.
 constexpr float most_excess = 0.5f;
 
@@ -45,9 +46,24 @@ struct Gather {
   }
 };
 
-/// A cell whose particles miss more than this share of the rest density on average holds a surface: q = 0
-/// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
-constexpr float surface_deficit = 0.05f;
+/// Adds all particles' volumes to their cells, whether they are solved or not.
+struct GatherVolume {
+  const Vec4* predicted;
+  PressureFrame frame;
+  CellBlock block;
+  std::uint64_t* volume;
+  float unit_volume;
+
+  SIM_FN void operator()(int i) const {
+    const Vec3 at = frame.in_cells(xyz(predicted[i]));
+    const int x = static_cast<int>(floorf(at.x));
+    const int y = static_cast<int>(floorf(at.y));
+    const int z = static_cast<int>(floorf(at.z));
+    if (!block.holds(x, y, z)) return;
+    const float own = mass_of(predicted[i].w, 1) / unit_volume;
+    atomic_add(&volume[block.index(x, y, z)], static_cast<std::uint64_t>(own * fixed_point));
+  }
+};
 
 /// Turns sums into the equation: the source is the mean C of a cell's particles times the cell's volume.
 struct Classify {
@@ -62,7 +78,7 @@ struct Classify {
     if (sum.volume > 0) {
       const auto excess =
           static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
-      if (excess > -surface_deficit) {
+      if (excess > -CellWater::surface_deficit) {
         grid.kind[i] = CellKind::Fluid;
         grid.source[i] = frame.floor_area() * excess;
         return;
@@ -107,29 +123,46 @@ struct ClassifyRound {
     const bool wet = block.holds(x, y, z) && is_water(sums[block.index(x, y, z)]);
     if (wet || away < 0) grid.kind[i] = wet ? CellKind::Fluid : CellKind::Solid;
   }
-  SIM_FN static float mean_excess(const CellSum& sum) {
-    return static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
-  }
-  SIM_FN static bool is_water(const CellSum& sum) {
-    return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
-  }
-  /// Share of the cell that its particles fill.
-  SIM_FN float filled(const CellSum& sum) const {
-    const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
-    return at_most(static_cast<float>(sum.volume) / fixed_point * unit_volume / cell, 1.0f);
+  SIM_FN static float mean_excess(const CellSum& sum) { return CellWater::mean_excess(sum); }
+  SIM_FN static bool is_water(const CellSum& sum) { return CellWater::is_water(sum); }
+  SIM_FN float filled(const CellSum& sum) const { return CellWater{frame, unit_volume}.filled(sum.volume); }
+};
+
+/// The same with bodies that may float: their cells count as water up to the level beside them and as air
+/// above, as if the water that they displace were there.
+struct ClassifyAfloat {
+  PressureFrame frame;
+  GridView grid;
+  Waterline waterline;
+  const CellSum* sums;
+
+  SIM_FN void operator()(int i) const {
+    const CellBlock& block = grid.block;
+    const int x = i % block.nx;
+    const int y = i / block.nx % block.ny;
+    const int z = i / (block.nx * block.ny);
+    const CellSum sum = sums[i];
+    grid.source[i] = 0;
+    if (CellWater::is_water(sum)) {
+      grid.kind[i] = CellKind::Fluid;
+      grid.source[i] = frame.floor_area() * waterline.water.filled(sum.volume) * CellWater::mean_excess(sum);
+      return;
+    }
+    const Vec3 at = middle_of(frame, x, y, z);
+    grid.kind[i] = waterline.solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
+    if (grid.kind[i] == CellKind::Solid || sum.volume > 0) return;
+    if (waterline.solids.nearest_body(at) > 0.5f * frame.edge.y) return;
+    if (waterline.beside(x, y, z) > 0.5f) grid.kind[i] = CellKind::Fluid;
   }
 };
 
-/// x_i -= grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be. Before an
-/// opening the outside is air, however small a part of the cell's face is open.
+/// x_i -= grad q.
 template <class Selection>
 struct Shift {
   Selection select;
   const Vec4* predicted;
   Vec4* next;  ///< holds the places of those who are neither solved nor pressed
-  PressureFrame frame;
-  GridView grid;
-  Walls walls;
+  CoarseSlope slope;
 
   SIM_FN void operator()(int slot) const {
     int i = select(slot);
@@ -138,55 +171,9 @@ struct Shift {
       if (i < 0) i = ~i;
     }
     const Vec4 p = predicted[i];
-    const Vec3 at = frame.in_cells(xyz(p));
     Vec3 x = xyz(p);
-    x += Vec3{along<1, 0, 0>(at, xyz(p)) / frame.edge.x, along<0, 1, 0>(at, xyz(p)) / frame.edge.y,
-              along<0, 0, 1>(at, xyz(p)) / frame.edge.z};
+    x += slope.down(xyz(p));
     next[i] = with_w(x, p.w);
-  }
-
-  /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
-  template <int X, int Y, int Z>
-  SIM_FN float along(Vec3 at, Vec3 metres) const {
-    // Face (x, y, z) lies between cell (x, y, z) - (X, Y, Z) and cell (x, y, z).
-    const Vec3 local = at - Vec3{X ? 0 : 0.5f, Y ? 0 : 0.5f, Z ? 0 : 0.5f};
-    const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
-    const Vec3 part = local - base;
-    float weights = 0;
-    float sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const int x = static_cast<int>(base.x) + (corner & 1);
-      const int y = static_cast<int>(base.y) + (corner >> 1 & 1);
-      const int z = static_cast<int>(base.z) + (corner >> 2);
-      const float weight = (corner & 1 ? part.x : 1 - part.x) * (corner & 2 ? part.y : 1 - part.y) *
-                           (corner & 4 ? part.z : 1 - part.z);
-      const CellKind here = grid.kind_at(x, y, z);
-      const CellKind before = grid.kind_at(x - X, y - Y, z - Z);
-      if (here != CellKind::Fluid && before != CellKind::Fluid) continue;
-      weights += weight;
-      if (here == CellKind::Solid || before == CellKind::Solid) {
-        const bool low = before == CellKind::Solid;
-        if (!walls.opening_count ||
-            !opens<X, Y, Z>(low ? Place{x - X, y - Y, z - Z} : Place{x, y, z}, low, metres))
-          continue;
-      }
-      sum += weight * (grid.q_at(x - X, y - Y, z - Z) - grid.q_at(x, y, z));
-    }
-    return weights > 0 ? sum / weights : 0;
-  }
-
-  struct Place {
-    int x, y, z;
-  };
-  /// Is this solid place outside the block, beyond an opening that the particle lies before?
-  template <int X, int Y, int Z>
-  SIM_FN bool opens(Place solid, bool low, Vec3 metres) const {
-    if (grid.block.holds(solid.x, solid.y, solid.z)) return false;
-    const float side = low ? 1.0f : -1.0f;
-    for (int k = 0; k < walls.count; ++k) {
-      if (dot(walls.planes[k].normal, Vec3{X, Y, Z}) == side && walls.opens(k, metres)) return true;
-    }
-    return false;
   }
 };
 
@@ -224,7 +211,18 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                              .block = grid.block,
                              .sums = coarse.sums.data(),
                              .unit_volume = mass_of(state.lightest_support, 1)});
-  if (state.obstacles.there()) {
+  if (state.obstacles.free.size() > 0) {
+    coarse.volume.resize(coarse.sums.size());
+    coarse.volume.zero();
+    for_each("gather volume", p.size(),
+             GatherVolume{.predicted = p.predicted(),
+                          .frame = coarse.frame,
+                          .block = grid.block,
+                          .volume = coarse.volume.data(),
+                          .unit_volume = mass_of(state.lightest_support, 1)});
+    for_each("classify cells", grid.block.size(),
+             ClassifyAfloat{coarse.frame, grid, state.waterline(), coarse.sums.data()});
+  } else if (state.obstacles.there()) {
     for_each("classify cells", grid.block.size(),
              ClassifyRound{.frame = coarse.frame,
                            .grid = grid,
@@ -240,9 +238,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
            Shift<Selection>{.select = select,
                             .predicted = p.predicted(),
                             .next = p.predicted_next(),
-                            .frame = coarse.frame,
-                            .grid = grid,
-                            .walls = state.walls});
+                            .slope = {coarse.frame, grid, state.walls}});
   balance_push(state, p);
 }
 

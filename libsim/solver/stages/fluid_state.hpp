@@ -12,6 +12,7 @@
 #include "libsim/particles/kernels.hpp"
 #include "libsim/particles/walls.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
+#include "libsim/pressure/waterline.hpp"
 #include "libsim/saliency/saliency.hpp"
 #include "libsim/scene/effects.hpp"
 #include "libsim/solver/stages/conjugate_gradient.hpp"
@@ -136,6 +137,14 @@ struct FluidState {
   BodyListener body_listener(float times) {
     return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times};
+  }
+  /// Of scenes with obstacles, while the coarse pressure's cells hold their sums.
+  Waterline waterline() {
+    return {{coarse.frame, mass_of(lightest_support, 1)},
+            coarse.multigrid.finest().block,
+            solids(),
+            coarse.sums.data(),
+            coarse.volume.data()};
   }
   Guards* guard() { return guards.data(); }
   /// For a pass in the first (0) or second (1) half of the present substep.

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "libsim/particles/solids.hpp"
+#include "libsim/particles/free_body.hpp"
 #include "libsim/scene/obstacle.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -13,6 +13,9 @@ struct ObstacleState {
   double frame_begin_s = 0;  ///< since frame 0
   Array<Body> bodies;        ///< where they are at the end of this substep
   Array<BodySum> sums;       ///< of this frame; none while nobody asks what they give
+  /// Volume of each below the water's level, over that of m_*, as CellWater counts; only with free ones.
+  Array<std::uint64_t> wet;
+  Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
 
   bool there() const { return bodies.size() > 0; }
   bool told() const { return sums.size() > 0; }

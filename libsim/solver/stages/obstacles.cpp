@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -11,8 +9,9 @@ static_assert(most_bodies == static_cast<int>(most_obstacles));
 /// All of them as an argument: the device is told without a copy of its own.
 struct PlaceBodies {
   Body from[most_bodies];
+  int which[most_bodies];
   Body* to;
-  SIM_FN void operator()(int i) const { to[i] = from[i]; }
+  SIM_FN void operator()(int i) const { to[which[i]] = from[i]; }
 };
 
 Vec3 vector(const std::array<double, 3>& v) {
@@ -31,9 +30,14 @@ void place(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   const auto dt = static_cast<double>(state.parameters.dt);
   PlaceBodies pass{};
   const auto bodies = bodies_at(o.obstacles, o.frame_begin_s + dt * (state.substep + 1), dt);
-  std::copy(bodies.begin(), bodies.end(), pass.from);
+  int count = 0;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (o.obstacles[k].motion == ObstacleMotion::Free) continue;
+    pass.from[count] = bodies[k];
+    pass.which[count++] = static_cast<int>(k);
+  }
   pass.to = o.bodies.data();
-  for_each("place obstacles", o.count(), pass);
+  for_each("place obstacles", count, pass);
 }
 
 }  // namespace

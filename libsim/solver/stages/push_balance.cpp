@@ -2,6 +2,7 @@
 /// gave. What it gave is measured against what the walls gave (Gauss' theorem on the cells), and the
 /// difference is taken from all whom it pushed, alike.
 
+#include "libsim/pressure/coarse_slope.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -125,6 +126,47 @@ struct SumBodies {
   }
 };
 
+/// What bodies that may float give: the displaced water's weight in the field, up to the level beside them.
+struct SumAfloat {
+  static constexpr int samples = 4;
+  CoarseSlope slope;
+  Waterline waterline;
+  BodyListener to;
+  std::uint64_t* wet;  ///< ObstacleState::wet
+  float unit_volume;
+  PushBalance* out;
+
+  SIM_FN void operator()(int i) const {
+    const CellBlock& block = waterline.block;
+    const int x = i % block.nx;
+    const int y = i / block.nx % block.ny;
+    const int z = i / (block.nx * block.ny);
+    const Vec3 e = slope.frame.edge;
+    const Vec3 centre = middle_of(slope.frame, x, y, z);
+    const Solids& solids = waterline.solids;
+    if (solids.nearest_body(centre) > 0.5f * length(e)) return;
+    const float level = waterline.beside(x, y, z);
+    if (level <= 0) return;
+    const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
+    for (int k = 0; k < samples * samples * samples; ++k) {
+      const float up = SumBodies::offset(k / samples % samples);
+      const Vec3 at = centre + Vec3{e.x * SumBodies::offset(k % samples), e.y * up,
+                                    e.z * SumBodies::offset(k / (samples * samples))};
+      int body;
+      if (solids.nearest_body(at, body) >= 0) continue;
+      // A sample is a layer of its own height, which the level may cut.
+      const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
+      if (below == 0) continue;
+      atomic_add(&wet[body], static_cast<std::uint64_t>(below * share * CellWater::fixed_point));
+      const Vec3 push = -(below * share) * slope.down(at);
+      MassWay sum{};
+      sum.add(1, push);
+      out->walls.add_at_once(sum);
+      if (to.sums) to.add(body, at, push);
+    }
+  }
+};
+
 template <class Boundary>
 struct Balance {
   Vec4* predicted;
@@ -163,6 +205,17 @@ void sum_walls(FluidState& state, Boundary boundary) {
 void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
+  if (state.obstacles.free.size() > 0) {
+    state.obstacles.wet.zero();
+    for_each("sum obstacles", grid.block.size(),
+             SumAfloat{.slope = {coarse.frame, grid, state.walls},
+                       .waterline = state.waterline(),
+                       .to = state.body_listener(1),
+                       .wet = state.obstacles.wet.data(),
+                       .unit_volume = mass_of(state.finest_support, 1),
+                       .out = coarse.balance.data()});
+    return;
+  }
   for_each("sum obstacles", grid.block.size(),
            SumBodies{.frame = coarse.frame,
                      .grid = grid,
@@ -191,7 +244,8 @@ void balance_push(FluidState& state, ClampView p) {
   coarse.balance.resize(1);
   coarse.balance.zero();
   // Where those who are not solved are not pressed, their share of the walls' push reaches nobody.
-  if (state.all_active || state.activation.rules.pressed) {
+  const bool pressed = state.all_active || state.activation.rules.pressed;
+  if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,
                   SumPush{.predicted = p.predicted(),
                           .next = p.predicted_next(),
@@ -199,8 +253,8 @@ void balance_push(FluidState& state, ClampView p) {
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
     state.obstacles.there() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
-    if (state.obstacles.there()) sum_bodies(state);
   }
+  if (state.obstacles.there() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
   state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
   clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }

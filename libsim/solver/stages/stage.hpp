@@ -15,7 +15,8 @@ struct Demand {
   std::vector<Effect> effects;    ///< that the scene lists
   bool nozzles = false;           ///< the scene has one
   bool outlets = false;           ///< the scene has one
-  bool moving_obstacles = false;  ///< the scene has one
+  bool moving_obstacles = false;  ///< the scene has one that goes a way of its own
+  bool free_obstacles = false;    ///< the scene has one that the water moves
   bool settling = false;          ///< the gate is closed and the water comes to rest
   bool levels = false;            ///< particles split and merge
   bool forced_targets = false;    ///< a test gives their targets
@@ -72,6 +73,10 @@ inline std::string if_levels(const Demand& demand) {
 }
 inline std::string if_wall_impulse(const Demand& demand) {
   return demand.wall_impulse ? "the walls' impulse is asked for" : "";
+}
+inline std::string if_pushes(const Demand& demand) {
+  const std::string asked = if_wall_impulse(demand);
+  return asked.empty() && demand.free_obstacles ? "an obstacle is free" : asked;
 }
 inline std::string if_activation(const Demand& demand) {
   return demand.activation && !demand.settling ? "the method accelerates in time" : "";

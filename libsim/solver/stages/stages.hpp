@@ -25,6 +25,10 @@ Stage graded_targets_stage();
 Stage split_and_merge_stage();
 /// Brings moving obstacles to their places at the substep's end.
 Stage obstacles_stage();
+/// Moves obstacles that are free.
+Stage bodies_move_stage();
+/// Takes what the water gave them.
+Stage bodies_pushed_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.

@@ -223,8 +223,7 @@ void clamp(FluidState& state, ClampView p, const Vec4* from, bool in_both, Bound
 }
 
 Stage account(const char* name, Phase phase) {
-  return {
-      .name = name, .source = "what the walls give the water", .phase = phase, .called_for = if_wall_impulse};
+  return {.name = name, .source = "what the walls give the water", .phase = phase, .called_for = if_pushes};
 }
 
 }  // namespace

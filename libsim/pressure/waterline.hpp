@@ -1,0 +1,86 @@
+#pragma once
+/// How high the water stands beside bodies, as the coarse pressure's cells have it.
+
+#include "libsim/pressure/coarse_grid.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// What a cell's sums say.
+struct CellWater {
+  PressureFrame frame;
+  float unit_volume;  ///< of the sums, m3
+
+  static constexpr float fixed_point = 1 << 20;
+  /// A cell whose particles miss more than this share of the rest density on average holds a surface: q = 0
+  /// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
+  static constexpr float surface_deficit = 0.05f;
+
+  SIM_FN static float mean_excess(const CellSum& sum) {
+    return static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
+  }
+  SIM_FN static bool is_water(const CellSum& sum) {
+    return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
+  }
+  /// Share of the cell that particles of this volume fill.
+  SIM_FN float filled(std::uint64_t volume) const {
+    const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
+    return at_most(static_cast<float>(volume) / fixed_point * unit_volume / cell, 1.0f);
+  }
+};
+
+/// Looks from a cell along the level, out of the bodies that hold it, on four sides.
+struct Waterline {
+  CellWater water;
+  CellBlock block;
+  Solids solids;
+  const CellSum* sums;
+  const std::uint64_t* volume;  ///< of all particles, those that rest included
+
+  /// Share of the cell's height up to which water stands beside the body: 0 dry, 1 below the surface.
+  SIM_FN float beside(int x, int y, int z) const {
+    const Vec3 at = middle_of(water.frame, x, y, z);
+    int body;
+    solids.nearest_body(at, body);
+    const Vec3 from = at - solids.bodies[body].centre;
+    const float away = sqrtf(from.x * from.x + from.z * from.z);
+    const Vec3 out = away > 1e-6f ? Vec3{from.x / away, 0, from.z / away} : Vec3{1, 0, 0};
+    float sum = 0;
+    int sides = 0;
+    for (int side = 0; side < 4; ++side) {
+      const Vec3 way = side == 0   ? out
+                       : side == 1 ? -1.0f * out
+                       : side == 2 ? Vec3{out.z, 0, -out.x}
+                                   : Vec3{-out.z, 0, out.x};
+      const Vec3 place = outside(at, way);
+      if (!solids.walls.holds(place)) continue;
+      sum += height_at(place);
+      ++sides;
+    }
+    return sides > 0 ? sum / static_cast<float>(sides) : 0;
+  }
+  /// The place from which on no body reaches into a cell, most of the time.
+  SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
+    const float clear = 0.75f * water.frame.edge.x;
+    Vec3 x = from;
+    for (int step = 0; step < most_steps; ++step) {
+      const float away = solids.nearest_body(x);
+      if (away >= clear) break;
+      x += at_least(clear - away, 0.25f * clear) * way;
+    }
+    return x;
+  }
+  SIM_FN float height_at(Vec3 place) const {
+    const Vec3 cells = water.frame.in_cells(place);
+    const int x = static_cast<int>(floorf(cells.x));
+    const int y = static_cast<int>(floorf(cells.y));
+    const int z = static_cast<int>(floorf(cells.z));
+    if (!block.holds(x, y, z)) return 0;
+    if (block.holds(x, y + 1, z) && CellWater::is_water(sums[block.index(x, y + 1, z)])) return 1;
+    return water.filled(volume[block.index(x, y, z)]);
+  }
+
+ private:
+  static constexpr int most_steps = 16;
+};
+
+}  // namespace sim::SIM_BACKEND

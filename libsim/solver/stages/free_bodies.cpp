@@ -1,0 +1,126 @@
+/// Obstacles that the water and gravity move.
+
+#include "libsim/particles/free_body.hpp"
+#include "libsim/solver/stages/stages.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// Takes each body to the substep's end, where the water meets it.
+struct Move {
+  Body* bodies;
+  FreeBody* free;
+  Walls walls;
+  Guards* guards;
+  float gravity, dt, most_speed;
+  bool first;  ///< of the frame
+
+  SIM_FN void operator()(int b) const {
+    FreeBody& it = free[b];
+    if (it.mass == 0) return;
+    if (first) it.by_walls = {0, 0, 0};
+    if (first) it.counted = {};
+    Body& body = bodies[b];
+    it.momentum += dt * it.force;
+    it.momentum.y -= it.mass * gravity * dt;
+    it.spin += dt * it.torque;
+    limit(it);
+    WallContact{walls, body, it, dt}.stop();
+    const Vec3 from = body.centre;
+    body.centre = fused(from, dt / it.mass, it.momentum);
+    turn_on(body, it, dt);
+    body.centre += WallContact{walls, body, it, dt}.way_back();
+    body.velocity = (1 / dt) * (body.centre - from);
+  }
+  SIM_FN void limit(FreeBody& it) const {
+    const float speed = length(it.momentum) / it.mass;
+    if (speed <= most_speed) return;
+    atomic_add(&guards->speed_limited, std::uint64_t{1});
+    it.momentum = (most_speed / speed) * it.momentum;
+  }
+};
+
+/// What the water gave in the substep. A body that is lighter than the water that goes along with it would
+/// swing: the water answers its last acceleration a, with the force -m_a a of its added mass. Counted as
+/// inertia of the body on both sides of Newton's law, m a' + m_a a' = F + m g + m_a a, it no longer matters.
+/// With f = m (a - g), the force that the body follows, that is f' = s F + (1 - s) f, s = m / (m + m_a).
+struct Push {
+  FreeBody* free;
+  const Body* bodies;
+  const BodySum* sums;
+  const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
+  float per_dt2;             ///< of the sums' ways
+
+  /// Added mass over the mass of the displaced water: 0.5 of a sphere far from walls, 0.64 of a cube; walls
+  /// raise it. Too little by half would swing, too much only makes bodies slow to follow.
+  static constexpr float added_mass = 0.7f;
+
+  SIM_FN void operator()(int b) const {
+    FreeBody& it = free[b];
+    if (it.mass == 0) return;
+    const Vec3 push = -per_dt2 * (sums[b].push - it.counted.push).value();
+    const Vec3 moment = turning(bodies[b], -per_dt2 * (sums[b].moment - it.counted.moment).value());
+    it.counted = sums[b];
+    const float water = wet ? static_cast<float>(wet[b]) / CellWater::fixed_point : it.volume;
+    const float share = it.mass / (it.mass + added_mass * at_most(water, it.volume));
+    follow(it.force, it.force_left, push, share);
+    follow(it.torque, it.torque_left, moment, share);
+  }
+  SIM_FN static void follow(Vec3& force, Vec3& left, Vec3 given, float share) {
+    force += share * (given - force);
+    left += given - force;
+  }
+  /// Pressure turns no body about an axis round which it is round; cells alone would.
+  SIM_FN static Vec3 turning(const Body& body, Vec3 moment) {
+    if (body.radius == 0) return moment;
+    if (body.half.y == 0) return {0, 0, 0};
+    const Vec3 axis = turned(body.turn, {0, 1, 0});
+    return moment - dot(moment, axis) * axis;
+  }
+};
+
+void move(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  auto& o = state.obstacles;
+  const auto& k = state.parameters;
+  for_each("move bodies", o.count(),
+           Move{.bodies = o.bodies.data(),
+                .free = o.free.data(),
+                .walls = state.walls,
+                .guards = state.guard(),
+                .gravity = k.gravity,
+                .dt = k.dt,
+                .most_speed = k.most_speed,
+                .first = state.substep == 0});
+}
+
+void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  auto& o = state.obstacles;
+  const float dt = state.parameters.dt;
+  for_each("push bodies", o.count(),
+           Push{.free = o.free.data(),
+                .bodies = o.bodies.data(),
+                .sums = o.sums.data(),
+                .wet = state.parameters.coarse_cycles > 0 ? o.wet.data() : nullptr,
+                .per_dt2 = 1 / (dt * dt)});
+}
+
+std::string if_free(const Demand& demand) { return demand.free_obstacles ? "an obstacle is free" : ""; }
+
+}  // namespace
+
+Stage bodies_move_stage() {
+  return stage_of<move>({.name = "bodies move",
+                         .source = "Newton's and Euler's laws, inelastic contact with walls",
+                         .phase = Phase::Substep,
+                         .called_for = if_free});
+}
+
+Stage bodies_pushed_stage() {
+  return stage_of<push>({.name = "bodies are pushed",
+                         .source = "what the water gives them, less the added mass",
+                         .phase = Phase::SubstepEnd,
+                         .called_for = if_free});
+}
+
+}  // namespace sim::SIM_BACKEND

@@ -1,0 +1,219 @@
+/// Obstacles that the water moves: their tables, the account of their momentum, walls, saved states.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "libsim/scene/obstacle.hpp"
+#include "stats/base/error.hpp"
+#include "tests/common/temporary_folder.hpp"
+#include "tests/libsim/fluid_helpers.hpp"
+
+namespace {
+
+using sim::Obstacle;
+using sim::ObstacleMotion;
+using sim::ObstacleShape;
+using testing::AllOf;
+using testing::HasSubstr;
+
+Obstacle free_sphere(double density) {
+  Obstacle out;
+  out.radius_m = 0.25;
+  out.start.centre_m = {0.5, 0.55, 0.5};
+  out.motion = ObstacleMotion::Free;
+  out.density_kg_m3 = density;
+  return out;
+}
+sim::Scene pool_with(const Obstacle& obstacle, double depth = 0.75) {
+  auto scene = fluid_test::tank({1, 1.5, 1}, {1, depth, 1}, 10);
+  scene.v_ref_m_s = 3;
+  scene.obstacles = {obstacle};
+  return scene;
+}
+sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRes) {
+  sim::SimulationOptions out;
+  out.method = method;
+  out.n_star = 128;
+  return out;
+}
+double mass_of(const Obstacle& o) { return o.density_kg_m3 * sim::volume_m3(o); }
+
+std::string dam_with(const std::string& motion) {
+  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
+  const std::string old = "format = 1";
+  return text.replace(text.find(old), old.size(), "format = 2") +
+         "\n[[obstacle]]\nshape = \"sphere\"\ncentre_m = [2.0, 1.0, 2.0]\nradius_m = 0.5\n" + motion;
+}
+
+TEST(FreeObstacles, AreReadFromASceneFile) {
+  const auto scene = sim::parse_scene(dam_with("motion = \"free\"\ndensity_kg_m3 = 300.0\n"), "scene.toml");
+  EXPECT_EQ(scene.obstacles.at(0).motion, ObstacleMotion::Free);
+  EXPECT_EQ(scene.obstacles[0].density_kg_m3, 300);
+  EXPECT_TRUE(sim::any_free(scene.obstacles));
+  EXPECT_THAT(sim::obstacles_in_words(scene.obstacles), HasSubstr("free, 300 kg/m3"));
+  const auto error = [](const std::string& motion) { return fluid_test::scene_error(dam_with(motion)); };
+  EXPECT_THAT(error("motion = \"free\"\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("density_kg_m3")));
+  EXPECT_THAT(error("motion = \"free\"\ndensity_kg_m3 = 0.0\n"), HasSubstr("density_kg_m3"));
+  EXPECT_THAT(error("density_kg_m3 = 300.0\n"), HasSubstr("density_kg_m3")) << "only free ones have one";
+  EXPECT_THAT(error("motion = \"free\"\ndensity_kg_m3 = 300.0\n[central_force]\nomega_per_s = 1.0\n"
+                    "centre_m = [1.0, 1.0, 1.0]\naxis = [0.0, 0.0, 1.0]\n"),
+              HasSubstr("would not pull it"));
+}
+
+TEST(FreeObstacles, MomentsOfInertiaAreThoseOfTheShape) {
+  for (const auto shape : {ObstacleShape::Sphere, ObstacleShape::Box, ObstacleShape::Capsule}) {
+    Obstacle o;
+    o.shape = shape;
+    if (shape == ObstacleShape::Box) o.size_m = {0.6, 0.45, 0.9};
+    if (shape != ObstacleShape::Box) o.radius_m = 0.3;
+    if (shape == ObstacleShape::Capsule) o.length_m = 0.5;
+    sim::Vec3d sum{};
+    double volume = 0;
+    constexpr int n = 80;
+    for (int k = 0; k < n * n * n; ++k) {
+      const auto at = [](int cell) { return 1.2 * ((cell + 0.5) / n - 0.5); };
+      const sim::Vec3d x{at(k % n), at(k / n % n), at(k / (n * n))};
+      if (sim::signed_distance(o, {}, x) > 0) continue;
+      volume += 1;
+      for (std::size_t a = 0; a < 3; ++a)
+        sum[a] += x[(a + 1) % 3] * x[(a + 1) % 3] + x[(a + 2) % 3] * x[(a + 2) % 3];
+    }
+    const auto moments = sim::inertia_m2(o);
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_NEAR(moments[a] / (sum[a] / volume), 1, 0.02) << sim::shape_name(shape) << " " << a;
+  }
+}
+
+/// A body that nothing else touches falls as water does, and the floor stops it.
+TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
+  Obstacle brick;
+  brick.shape = ObstacleShape::Box;
+  brick.size_m = {0.4, 0.3, 0.5};
+  brick.start.centre_m = {1.2, 1.0, 1.2};
+  brick.start.turn = {0, 0, 0.2588190451, 0.9659258263};  // 30 degrees about z
+  brick.motion = ObstacleMotion::Free;
+  brick.density_kg_m3 = 700;
+  auto scene = fluid_test::tank({2, 2, 2}, {0.5, 0.25, 0.5}, 0);
+  scene.v_ref_m_s = 3;
+  scene.obstacles = {brick};
+  const auto fluid = sim::make_simulation(scene, options_of());
+  double rested_s = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    fluid->step_frame();
+    const auto now = fluid->read_obstacles().at(0);
+    // The first substep begins at rest.
+    if (frame == 0) rested_s = scene.frame_dt_s / fluid->substeps().taken;
+    if (frame < 15) {
+      EXPECT_NEAR(now.velocity_m_s[1], -9.81 * (fluid->time_s() - rested_s), 1e-4);
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      // No place inside the floor is inside the brick by more than a millimetre.
+      const sim::Vec3d below{now.pose.centre_m[0] + (corner & 1 ? 0.1 : -0.1), -1e-3,
+                             now.pose.centre_m[2] + (corner & 4 ? 0.1 : -0.1)};
+      EXPECT_GT(sim::signed_distance(brick, now.pose, below), -1e-9) << frame;
+    }
+  }
+  const auto last = fluid->read_obstacles().at(0);
+  EXPECT_NEAR(last.pose.centre_m[1], 0.15, 0.01) << "it lies on its broad side";
+  EXPECT_NEAR(last.velocity_m_s[1], 0, 1e-3);
+  EXPECT_NEAR(last.walls_n_s[1], mass_of(brick) * 9.81 * scene.frame_dt_s, 0.01);
+}
+
+/// Water + body + walls: what the body gained is what the water and the walls gave it.
+TEST(FreeObstacles, MomentumIsTheWatersAndTheWalls) {
+  for (const double density : {100.0, 500.0, 3000.0}) {
+    const auto scene = pool_with(free_sphere(density));
+    auto options = options_of();
+    options.wall_impulse = true;
+    options.substeps = 3;
+    const auto fluid = sim::make_simulation(scene, options);
+    auto before = fluid->read_obstacles().at(0);
+    const double mass = mass_of(scene.obstacles[0]);
+    const double displaced = 1000 * sim::volume_m3(scene.obstacles[0]);
+    int walls = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      fluid->step_frame();
+      const auto now = fluid->read_obstacles().at(0);
+      const auto account = fluid->momentum();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double gained =
+            mass * (now.velocity_m_s[k] - before.velocity_m_s[k]) + now.owed_n_s[k] - before.owed_n_s[k];
+        const double weight = k == 1 ? -mass * 9.81 * scene.frame_dt_s : 0;
+        EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
+                    2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
+            << density << " frame " << frame;
+      }
+      EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
+      EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s)
+          << "it follows in the end";
+      walls += now.walls_n_s[1] != 0;
+      before = now;
+    }
+    EXPECT_EQ(walls > 0, density > 1000) << "the heavy one reaches the floor";
+  }
+}
+
+TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
+  const test::TemporaryFolder folder;
+  Obstacle brick = free_sphere(400);
+  brick.shape = ObstacleShape::Box;
+  brick.radius_m = 0;
+  brick.size_m = {0.4, 0.3, 0.5};
+  const auto scene = pool_with(brick);
+  auto options = options_of(sim::MethodKind::OursTsp);
+  options.temporal.fixed_tau = -10;
+  const auto whole = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < 20; ++frame) whole->step_frame();
+  whole->save_state(folder.path() / "state");
+  options.resume_from = folder.path() / "state";
+  const auto rest = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < 10; ++frame) {
+    whole->step_frame();
+    rest->step_frame();
+  }
+  const auto a = whole->read_state();
+  const auto b = rest->read_state();
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
+  const auto at = whole->read_obstacles(), again = rest->read_obstacles();
+  EXPECT_EQ(std::memcmp(at.data(), again.data(), sizeof at[0]), 0);
+  EXPECT_NE(at[0].velocity_m_s[1], 0);
+}
+
+/// Fixed ones run what they always did.
+TEST(FreeObstacles, CostNothingWhereNoneIs) {
+  auto scene = pool_with(free_sphere(500));
+  const auto launches = [](const sim::Scene& of) {
+    const auto fluid = sim::make_simulation(of, options_of());
+    fluid->profile_launches(true);
+    fluid->step_frame();
+    std::string out;
+    for (const auto& time : fluid->launch_times()) out += std::string(time.label) + "\n";
+    fluid->profile_launches(false);
+    return out + fluid->explain();
+  };
+  EXPECT_THAT(launches(scene), AllOf(HasSubstr("move bodies\n"), HasSubstr("gather volume\n"),
+                                     HasSubstr("an obstacle is free")));
+  scene.obstacles[0].motion = ObstacleMotion::Fixed;
+  EXPECT_THAT(launches(scene),
+              testing::Not(testing::AnyOf(HasSubstr("move bodies"), HasSubstr("push bodies"),
+                                          HasSubstr("clamp and hear"), HasSubstr("gather volume"),
+                                          HasSubstr("fastest body"), HasSubstr("an obstacle is free"))));
+}
+
+TEST(FreeObstacles, BeginWithTheRun) {
+  const auto scene = pool_with(free_sphere(500));
+  auto options = options_of();
+  options.start = sim::make_simulation(scene, options)->read_state();
+  options.start_frame = 60;
+  try {
+    sim::make_simulation(scene, options);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nobody knows where its free obstacles are"));
+  }
+}
+
+}  // namespace
