@@ -27,7 +27,7 @@ struct GBuffer {
 
   std::vector<float> depth;           ///< front of the splatted spheres, not smoothed (Eq. 8)
   std::vector<float> filtered_depth;  ///< after the narrow-range filter
-  /// 3 values a pixel: unit normal in eye space (x right, y up, z to the viewer), 0 where there is no fluid.
+  /// 3 values a pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Rough in foam.
   std::vector<float> normal;
   /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed; water is this / packing.
   std::vector<float> thickness;
