@@ -47,7 +47,7 @@ std::vector<fs::path> export_every_protocol(const TemporaryFolder& folder) {
 TEST(ExportValidatorE2e, EveryShippedProtocolHoldsTheRules) {
   const TemporaryFolder folder;
   const auto exports = export_every_protocol(folder);
-  EXPECT_THAT(exports, SizeIs(7));
+  EXPECT_THAT(exports, SizeIs(8));
   for (const fs::path& bids : exports) {
     EXPECT_THAT(::test::BidsRules::broken_by(bids), IsEmpty()) << bids;
     EXPECT_THAT(::test::psych_ds_broken_by(bids.string() + "_psych"), IsEmpty()) << bids;
