@@ -248,7 +248,7 @@ class Simulation {
   /// there; other effects keep theirs. Substeps follow the new effects' steps. Without the effects that went,
   /// the run is bit for bit one that never had them from this state on, and their columns are freed.
   /// base::Error, and nothing has changed: what check_effects refuses, and more substeps than the options or
-  /// the program allow.
+  /// the program allow. base::Error, and the simulation is of no more use: a device without room.
   virtual void set_effects(const std::vector<Effect>&) {}
   /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}

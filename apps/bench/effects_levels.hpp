@@ -33,8 +33,8 @@ struct LevelCost {
   double psnr_db = 0, ssim = 0, flip_percent = 0;
 };
 
-/// A row a variant, each effect's rows together: added is over the first of them, saved is of what the
-/// second added.
+/// A row a variant, each effect's rows together: added is over the first of them, saved is of the time of the
+/// second one's own passes.
 TextTable to_table(const EffectsRun& run, const std::vector<LevelCost>& costs);
 /// A bar a variant: ms of the effect's own passes.
 std::string to_svg(const EffectsRun& run, const std::vector<LevelCost>& costs);

@@ -47,6 +47,11 @@ std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches) {
   return out;
 }
 
+void drop_what_cannot_run(std::vector<EffectSwitch>& switches) {
+  const auto running = turned_on(switches);
+  for (auto& one : switches) one.on = one.on && find(running, one.effect.kind);
+}
+
 std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const std::string& off) {
   if (off.empty()) return listed;
   auto switches = switches_of(listed, listed);

@@ -19,6 +19,8 @@ std::vector<EffectSwitch> switches_of(const std::vector<sim::Effect>& listed,
                                       const std::vector<sim::Effect>& running);
 /// Those that are on, but for what needs one that is not.
 std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches);
+/// Turns off those of coefficient 0, and those that need one that is off.
+void drop_what_cannot_run(std::vector<EffectSwitch>& switches);
 /// What is left of the listed without these kinds, words with commas, and without what needs them.
 /// base::Error for a word that is not listed.
 std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const std::string& off);

@@ -107,7 +107,7 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
       break;
     case OverlayKind::Temperature:
       if (!heat_) {
-        legend_ = "temperature: the scene does not list heat";
+        legend_ = "temperature: heat is not listed, or off";
         return;
       }
       field(sim::ParticleField::Temperature);

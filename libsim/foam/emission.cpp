@@ -45,15 +45,15 @@ struct Surface {
   Walls walls;
   Potential energy;
   const std::uint8_t* level;
-  int coarsest;
+  int coarsest_seen;
   Vec4* normal;
   float* approach;
 
   SIM_FN void operator()(int i) const {
     normal[i] = {0, 0, 0, 0};
     approach[i] = 0;
-    // Too coarse to emit, and to stand beside what does: levels of neighbours differ by one.
-    if (level[i] > coarsest + 1) return;
+    // Too coarse to emit, and to stand beside what does.
+    if (level[i] > coarsest_seen) return;
     const Vec3 v = xyz(velocity[i]);
     if (!(energy(specific_energy(v)) > 0)) return;
     const Vec4 self = position[i];
@@ -234,7 +234,7 @@ void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const W
                    .walls = walls,
                    .energy = rules.energy,
                    .level = water.level(),
-                   .coarsest = rules.coarsest,
+                   .coarsest_seen = rules.coarsest_seen,
                    .normal = water.normal(),
                    .approach = pool.approach.data()});
 }

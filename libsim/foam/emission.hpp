@@ -25,6 +25,7 @@ struct FoamRules {
   float crest_weight = 1;  ///< k_wc / k_ta
   Potential energy{};      ///< tau_k, J/kg: v^2 / 2
   int coarsest = 3;        ///< level that still emits
+  int coarsest_seen = 3;   ///< of levels that may stand beside such water
   float lifetime = 1;      ///< mean time on the water, s
   float volume = 1;        ///< of a diffuse particle, m3
   float air_drag = 0;      ///< of spray, 1/s

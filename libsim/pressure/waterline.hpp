@@ -52,20 +52,31 @@ struct Waterline {
                        : side == 2 ? Vec3{out.z, 0, -out.x}
                                    : Vec3{-out.z, 0, out.x};
       const Vec3 place = outside(at, way);
-      if (!solids.walls.holds(place)) continue;
+      if (solids.nearest_body(place) < 0) continue;
       sum += height_at(place);
       ++sides;
     }
     return sides > 0 ? sum / static_cast<float>(sides) : 0;
   }
-  /// The place from which on no body reaches into a cell, most of the time.
+  /// The place from which on no body reaches into a cell, most of the time; the last one before a wall where
+  /// the gap is narrower.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
     const float clear = 0.75f * water.frame.edge.x;
     Vec3 x = from;
     for (int step = 0; step < most_steps; ++step) {
       const float away = solids.nearest_body(x);
       if (away >= clear) break;
-      x += at_least(clear - away, 0.25f * clear) * way;
+      const Vec3 next = x + at_least(clear - away, 0.25f * clear) * way;
+      if (!solids.walls.holds(next)) return before_wall(x, next);
+      x = next;
+    }
+    return x;
+  }
+  /// The farthest place from x towards `beyond` that the walls hold, to an eighth.
+  SIM_FN Vec3 before_wall(Vec3 x, Vec3 beyond) const {
+    for (int part = 7; part > 0; --part) {
+      const Vec3 place = x + (static_cast<float>(part) / 8) * (beyond - x);
+      if (solids.walls.holds(place)) return place;
     }
     return x;
   }

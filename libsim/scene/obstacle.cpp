@@ -15,7 +15,6 @@ using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 constexpr double farthest_m = 1e4;
 constexpr double thinnest_m = 1e-3;
-constexpr double lightest_kg_m3 = 50;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
@@ -92,7 +91,7 @@ void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle&
     out.period_s = table.number("period_s", {1e-3, 1e6});
   } else if (word == "free") {
     out.motion = ObstacleMotion::Free;
-    out.density_kg_m3 = table.number("density_kg_m3", {lightest_kg_m3, 1e5});
+    out.density_kg_m3 = table.number("density_kg_m3", {lightest_free_kg_m3, 1e5});
   }
 }
 

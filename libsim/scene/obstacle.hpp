@@ -14,6 +14,9 @@ namespace sim {
 
 enum class ObstacleShape { Sphere, Box, Capsule };
 
+/// Of free obstacles: lighter ones leap.
+inline constexpr double lightest_free_kg_m3 = 50;
+
 /// How an obstacle moves once the water has settled.
 enum class ObstacleMotion {
   Fixed,

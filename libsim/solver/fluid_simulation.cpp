@@ -145,7 +145,7 @@ class FluidSimulation final : public Simulation {
     const SolverParameters numbers = solver_parameters(scene, options_);
     check_foam(numbers.effects, scene, frame_dt());
     Schedule schedule = compile_schedule(demand_of(scene, options_, numbers));
-    // Nothing fails from here on.
+    // From here on only memory can fail.
     scene_ = std::move(scene);
     schedule_ = std::move(schedule);
     state_.parameters.effects = numbers.effects;

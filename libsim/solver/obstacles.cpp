@@ -45,6 +45,17 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
                           " m thick: particles of this size could pass through it",
                       "make it at least " + base::shortest(least) + " m thick, or use a larger --n-star");
   }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (obstacle.motion != ObstacleMotion::Free) continue;
+    if (!(obstacle.density_kg_m3 >= lightest_free_kg_m3))
+      throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
+                        "is free and has " + base::shortest(obstacle.density_kg_m3) + " kg/m3",
+                        "give it " + base::shortest(lightest_free_kg_m3) + " kg/m3 or more");
+    if (scene.central_force)
+      throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
+                        "is free in a scene with a central force, which moves water alone",
+                        "remove the force, or keep the obstacle fixed");
+  }
   o.obstacles = scene.obstacles;
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));

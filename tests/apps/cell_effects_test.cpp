@@ -13,6 +13,9 @@
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps {
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
 namespace {
 
 using ::testing::AllOf;
@@ -57,6 +60,7 @@ std::string set_of(const std::string& body) {
 const char* const two_levels = "effects = [\"none\", \"foam\"]";
 
 TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
+  NEEDS_EFFECTS;
   const auto protocol =
       protocol_with("effects = [\"none\", \"scene\", \"foam\"]",
                     set_of("keep = [\"foam\"]\neffect = [{kind = \"air_drag\", rate_per_s = 2}]"));
@@ -76,12 +80,14 @@ TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
 }
 
 TEST(CellEffects, WithoutTheFactorAreTheScenesOwn) {
+  NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/task1.toml"));
   EXPECT_FALSE(cell_effects(protocol, protocol.design.cells.front().stimulus));
   EXPECT_EQ(error_of(protocol), "");
 }
 
 TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
+  NEEDS_EFFECTS;
   const auto expect = [](const study::Protocol& protocol, const std::string& marked, const char* problem,
                          const char* mend) {
     EXPECT_THAT(error_of(protocol),
@@ -105,6 +111,7 @@ TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
 }
 
 TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
+  NEEDS_EFFECTS;
   const auto same = protocol_with("effects = [\"foam\", \"scene\"]", set_of("keep = [\"foam\"]"));
   EXPECT_THAT(error_of(same),
               AllOf(HasSubstr(place_in(same, "\"foam\", |\"scene\"]")),
@@ -114,6 +121,7 @@ TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
 }
 
 TEST(CellEffects, ReachTheFluidOfTheirCells) {
+  NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/foam.toml"));
   RunOptions options;
   options.display = "headless";
@@ -135,6 +143,7 @@ TEST(CellEffects, ReachTheFluidOfTheirCells) {
 }
 
 TEST(CellEffects, NameTheirBakesAndStimuli) {
+  NEEDS_EFFECTS;
   const auto plan = plan_bakes(study::read_protocol(base::resource("protocols/foam.toml")));
   std::vector<std::string> files, names;
   for (const auto& one : plan) {

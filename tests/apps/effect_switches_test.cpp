@@ -42,6 +42,14 @@ TEST(EffectSwitches, WhatNeedsAnotherFallsWithIt) {
   EXPECT_EQ(turned_on(switches), (Effects{{EffectKind::AirDrag, 0.5}}));
 }
 
+TEST(EffectSwitches, WhatCannotRunIsNotShownAsOn) {
+  auto switches = switches_of(listed, listed);
+  for (auto& one : switches) one.on = true;
+  switches[0].on = false;
+  drop_what_cannot_run(switches);
+  for (const auto& one : switches) EXPECT_EQ(one.on, one.effect.kind == EffectKind::AirDrag);
+}
+
 TEST(EffectSwitches, WordsTurnThemOff) {
   EXPECT_EQ(left_on(listed, ""), listed) << "also what is at 0, as the scene says";
   EXPECT_EQ(left_on(listed, "air_drag"), (Effects{{EffectKind::Cohesion, 3}, {EffectKind::Adhesion, 2}}));

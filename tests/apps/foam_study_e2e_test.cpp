@@ -35,6 +35,9 @@ json entry(const json& list, const std::map<std::string, std::string>& words) {
 
 class FoamStudyE2e : public ::testing::Test {
  protected:
+  void SetUp() override {
+    if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  }
   /// The report's numbers about `participants` of an observer to whom foam is worth so many scores.
   json report_of(const std::string& effects, const std::string& participants) {
     const std::string database = folder_ / ("study_" + effects + ".db"),
@@ -130,6 +133,9 @@ TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
 /// Of the study's scene, coarse and short: 0.5 s about the first foam.
 class FoamShownE2e : public ::testing::Test {
  protected:
+  void SetUp() override {
+    if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  }
   FoamShownE2e() {
     std::string text = base::read_file(foam_protocol(), 1 << 20);
     text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");

@@ -148,7 +148,7 @@ TEST_F(ViewE2e, PaintsEachValueOverTheWater) {
   EXPECT_NE(none.out.find("computes none"), std::string::npos) << none.out;
   const auto cold = small_run("--overlay temperature --png " + (folder / "cold").string());
   EXPECT_EQ(cold.exit_code, 0);
-  EXPECT_NE(cold.out.find("does not list heat"), std::string::npos) << cold.out;
+  EXPECT_NE(cold.out.find("temperature: heat is not listed, or off"), std::string::npos) << cold.out;
 }
 
 TEST_F(ViewE2e, PaintsTheTemperatureOfAHotJet) {

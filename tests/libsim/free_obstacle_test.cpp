@@ -216,4 +216,23 @@ TEST(FreeObstacles, BeginWithTheRun) {
   }
 }
 
+TEST(FreeObstacles, AreCarriedWhereLittleRoomIsLeftBesideThem) {
+  // Three cells across the tank, and less than one of them between the sphere and each wall.
+  Obstacle sphere = free_sphere(400);
+  sphere.radius_m = 0.35;
+  const auto fluid = sim::make_simulation(pool_with(sphere, 1.1), options_of());
+  for (int frame = 0; frame < 30; ++frame) fluid->step_frame();
+  EXPECT_GT(fluid->read_obstacles().at(0).pose.centre_m[1], sphere.start.centre_m[1] + 0.05);
+}
+
+TEST(FreeObstacles, AreCheckedInScenesThatNoFileDescribes) {
+  EXPECT_THAT(
+      [] { sim::make_simulation(pool_with(free_sphere(0)), options_of()); },
+      testing::ThrowsMessage<base::Error>(AllOf(HasSubstr("0 kg/m3"), HasSubstr("50 kg/m3 or more"))));
+  auto scene = pool_with(free_sphere(500));
+  scene.central_force = sim::CentralForce{};
+  EXPECT_THAT([&] { sim::make_simulation(scene, options_of()); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("central force")));
+}
+
 }  // namespace

@@ -167,7 +167,10 @@ void Panel::draw_effects(Controls& controls) {
     ImGui::EndDisabled();
     ImGui::EndDisabled();
   }
-  if (changed) controls.chosen.effects = turned_on(controls.switches);
+  if (changed) {
+    drop_what_cannot_run(controls.switches);
+    controls.chosen.effects = turned_on(controls.switches);
+  }
   ImGui::Separator();
 }
 

@@ -165,6 +165,7 @@ void Viewer::follow_keys() {
     const auto number = static_cast<std::size_t>(key - GLFW_KEY_1);
     if (key < GLFW_KEY_1 || number >= controls_.switches.size()) continue;
     controls_.switches[number].on = !controls_.switches[number].on;
+    drop_what_cannot_run(controls_.switches);
     controls_.chosen.effects = turned_on(controls_.switches);
   }
 }
@@ -185,6 +186,7 @@ void Viewer::exchange_effects() {
     if (wished != prepared.scene.effects) {
       prepared.fluid->set_effects(wished);
       prepared.scene.effects = wished;
+      fluid_->painter = OverlayPainter(prepared.scene, prepared.finest_spacing_m);
       std::printf("frame %d: %zu passes, with %s\n", figures_.frame, prepared.fluid->passes().size(),
                   in_words(wished).c_str());
       std::fflush(stdout);

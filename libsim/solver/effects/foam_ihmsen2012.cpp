@@ -7,9 +7,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-FoamRules rules_of(const SolverParameters& k) {
+FoamRules rules_of(const FluidState& state) {
+  const auto& k = state.parameters;
   const auto& e = k.effects;
   const float diameter = e[EffectOption::FoamDiameter];
+  const auto coarsest = static_cast<int>(e[EffectOption::FoamCoarsest]);
   return {.dt = k.dt * static_cast<float>(k.substeps),
           .gravity = k.gravity,
           .rate = e[EffectKind::Foam],
@@ -17,7 +19,9 @@ FoamRules rules_of(const SolverParameters& k) {
           .crest = {e[EffectOption::FoamCrestFrom], e[EffectOption::FoamCrestSpan]},
           .crest_weight = e[EffectOption::FoamCrestWeight],
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
-          .coarsest = static_cast<int>(e[EffectOption::FoamCoarsest]),
+          .coarsest = coarsest,
+          // Graded levels of neighbours differ by one.
+          .coarsest_seen = state.levels.rules.graded ? coarsest + 1 : most_levels - 1,
           .lifetime = e[EffectOption::FoamLifetime],
           .volume = pi / 6 * diameter * diameter * diameter,
           .air_drag = e[EffectOption::FoamAirDrag],
@@ -26,7 +30,7 @@ FoamRules rules_of(const SolverParameters& k) {
 
 void run(FluidState& state, FoamView p) {
   FoamPool& pool = state.foam;
-  const FoamRules rules = rules_of(state.parameters);
+  const FoamRules rules = rules_of(state);
   if (p.size() > 0) {
     pool.approach.resize(static_cast<std::size_t>(p.size()));
     find_foam_surface(pool, p, state.grid, state.walls, rules);

@@ -44,7 +44,8 @@ SIM_FN Vec3 slowed_by(const Solids& solids, Vec4 at, Vec3 v, float way) {
   return slowed_by(solids.walls, at, v, way);
 }
 
-/// Everyone, also those that temporal acceleration does not solve: by its rules nobody near a wall rests.
+/// Everyone, also those that temporal acceleration does not solve: the tuned readings let nobody rest near a
+/// wall.
 template <class Boundary>
 struct Slide {
   const Vec4* position;
