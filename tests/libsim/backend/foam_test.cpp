@@ -187,6 +187,7 @@ SIM_TEST(Foam, WaterTwoLevelsTooCoarseIsNotLookedAt) {
   const auto whole = all.state.foam.approach.to_host();
   Water fine(mixed_crowd(), false, stirred);
   fine.rules.coarsest = 0;
+  fine.rules.coarsest_seen = 1;
   fine.births();
   const auto approach = fine.state.foam.approach.to_host();
   const auto normal = fine.state.particles.all().normal.to_host();
