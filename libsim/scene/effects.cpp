@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "libsim/scene/picture_effects.hpp"
 #include "stats/base/error.hpp"
@@ -92,10 +91,11 @@ const EffectTraits& traits_of(EffectKind kind) { return all_traits[static_cast<s
 const OptionTraits& traits_of(EffectOption option) { return option_traits[static_cast<std::size_t>(option)]; }
 
 std::string options_in_words(const Effect& effect) {
-  std::ostringstream out;
+  std::string out;
   for (std::size_t k = 0; k < option_count; ++k)
-    if (option_traits[k].of == effect.kind) out << ' ' << option_traits[k].key << " = " << effect.options[k];
-  return out.str();
+    if (option_traits[k].of == effect.kind)
+      out += std::string(" ") + option_traits[k].key + " = " + base::shortest(effect.options[k]);
+  return out;
 }
 
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects) {
@@ -129,13 +129,13 @@ std::string format_effects(const std::vector<Effect>& effects) {
 }
 
 std::string effects_in_words(const std::vector<Effect>& effects) {
-  std::ostringstream out;
+  std::string out;
   for (const Effect& effect : effects) {
     if (effect.coefficient == 0) continue;
-    out << (out.tellp() > 0 ? "; " : "") << traits_of(effect.kind).word << ' ' << traits_of(effect.kind).key
-        << " = " << effect.coefficient << options_in_words(effect);
+    out += std::string(out.empty() ? "" : "; ") + traits_of(effect.kind).word + ' ' +
+           traits_of(effect.kind).key + " = " + base::shortest(effect.coefficient) + options_in_words(effect);
   }
-  return out.str();
+  return out;
 }
 
 std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,

@@ -66,7 +66,8 @@ std::string settled_key(const Scene& scene, const SimulationOptions& options) {
        << ' ' << options.n_star << ' ' << backend_name(options.backend) << ' ' << options.iterations << ' '
        << options.substeps << ' ' << options.frame_dt_s << ' ' << options.relaxation << ' ' << options.tensile
        << ' ' << options.viscosity_m2_s << ' ' << options.momentum << ' ' << options.courant << ' '
-       << options.most_substeps << ' ' << options.coarse_cycles << ' ' << options.coarse_edge;
+       << options.most_substeps << ' ' << options.coarse_cycles << ' ' << options.coarse_edge << ' '
+       << format_effects(scene.effects);
   return base::sha256_hex(text.str());
 }
 

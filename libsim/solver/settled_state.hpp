@@ -14,8 +14,9 @@ namespace sim {
 /// VIP_CACHE_DIR is empty.
 std::filesystem::path default_cache_folder();
 
-/// Names everything that a settled state depends on: scene file, method, n_*, back end, step, solver numbers,
-/// and the program's own bytes, so that a changed solver never reads an old state.
+/// Names everything that a settled state depends on: scene file, effects (a study varies them within one
+/// file), method, n_*, back end, step, solver numbers, and the program's own bytes, so that a changed solver
+/// never reads an old state.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);
 
 /// The state kept under `key`; nothing when there is none or it is damaged (checksum, or

@@ -61,7 +61,8 @@ void check_groups(const base::TomlTable& table, const Design& design) {
 void check_trials(const base::TomlTable& table, const Design& design) {
   const auto cells = static_cast<int>(cell_groups(design).front().size());
   if (design.pairs && cells < 2)
-    table.fail("pairs", "need two cells of one scene and n_*", "name more methods or effects, or remove pairs");
+    table.fail("pairs", "need two cells of one scene and n_*",
+               "name more methods or effects, or remove pairs");
   const int trials = design.groups * trials_of_group(design);
   if (trials > most_trials) {
     table.fail(design.pairs ? "pairs" : "method",
@@ -160,6 +161,11 @@ Design read_design(const base::TomlTable& table) {
   Design design;
   design.timing = read_timing_source(table);
   design.effects = read_effect_sets(table);
+  if (!design.effects.empty() && design.timing == TimingSource::Settings) {
+    table.fail("effects",
+               "cannot vary under timing = \"settings\": the pilot's curve is of frame rates alone",
+               "use timing = \"equal\", or remove effects");
+  }
   design.cells = read_cells(table, design.timing, design.effects);
   design.pairs = table.boolean_or("pairs", false);
   design.groups = static_cast<int>(table.integer_or("groups", 1, {1, 100}));

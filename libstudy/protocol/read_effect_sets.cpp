@@ -16,6 +16,10 @@ bool needs_no_table(const std::string& level) {
 
 std::vector<std::string> read_levels(const base::TomlTable& design) {
   const auto levels = distinct_words(design, "effects");
+  if (levels.size() < 2) {
+    design.fail("effects", "holds one level, which is no factor",
+                "name two levels or more, or give the scene's file these effects and remove this key");
+  }
   if (levels.size() > most_levels) {
     design.fail("effects", "holds " + std::to_string(levels.size()) + " levels",
                 "name at most " + std::to_string(most_levels));

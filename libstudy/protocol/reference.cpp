@@ -24,7 +24,8 @@ meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",
-       R"(What a level of `effects` holds: these effects and no others, whatever the scene lists besides.)"},
+       R"(What a level of `effects` holds: these effects of the water and no others, whatever the scene lists besides.
+Effects of the picture that the scene lists, such as `shadows`, stay at every level, none included.)"},
       {"design.effect_set.effect", "[[design.effect_set.effect]]",
        R"(An effect with its coefficient and options, as `[[effect]]` in a scene file
 ([methods.md](methods.md#effects)).)"},
@@ -116,8 +117,8 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design", "method", "list of texts", "", "", "LoRes, HiRes, FovFluid, Ours, Ours-TSp"},
       {"design", "n_star", "list of texts", "", "", "particles when all are coarsest; \"32k\" = 32,768"},
       {"design", "effects", "list of texts", "", "not varied",
-       "levels of the factor effects, 20 at most. none: no effects. scene: those of the scene's file. Another "
-       "level has a table `effect_set`. Without this key each scene has its own"},
+       "levels of the factor effects, 2 to 20; refused under settings. none: no effects. scene: those of the "
+       "scene's file. Another level has a table `effect_set`. Without this key each scene has its own"},
       {"design", "effect_set", "tables", "", where_needed, "needed by each level but none and scene"},
       {"design", "duration_s", "number", "[0.1, 3600]", "", "of each stimulus, s"},
       {"design", "mean_fps", "list of numbers", "[0.1, 1000]", where_needed,

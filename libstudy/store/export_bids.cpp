@@ -104,9 +104,10 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
 }
 
 void write_events(Connection& database, const LabelledSession& session, Writer& writer) {
-  const auto asked = bids::items(database, session.id, "u.trial_id IS NOT NULL");
+  auto asked = bids::items(database, session.id, "u.trial_id IS NOT NULL");
   Json columns = event_columns();
-  for (const Item& item : asked) {
+  for (Item& item : asked) {
+    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // a question named as a column is
     columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }

@@ -1,14 +1,18 @@
 #include "stats/analysis/factor_levels.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "stats/inference/adjust.hpp"
 
 namespace stats {
 
 namespace {
+
+constexpr std::int64_t most_count = std::numeric_limits<int>::max();
 
 /// Of the t test, or of the exact sign test in its place.
 std::optional<double> p_of(const Result<OneSampleTTest>& test, const std::optional<Unanimous>& all_alike,
@@ -54,18 +58,36 @@ LevelPreference prefer(std::span<const PairChoice> choices, std::span<const Fact
   return out;
 }
 
-/// Mean over the rest of a - b of one participant; NaN where a treatment of either level was not judged.
-double difference_of(const ScoreTable& table, std::span<const FactorPlace> places, int n_star, int a, int b,
-                     std::size_t participant) {
-  std::map<int, std::pair<double, double>> rests;  // by the other factors
+/// Over a common denominator where a count holds it.
+ExactMean sum_of(const ExactMean& x, const ExactMean& y) {
+  const auto common = std::lcm(std::int64_t{x.count}, std::int64_t{y.count});
+  if (common > most_count) return {x.value() + y.value(), 1};
+  const auto count = static_cast<int>(common);
+  return {x.sum * (count / x.count) + y.sum * (count / y.count), count};
+}
+
+/// Each participant's sum over the treatments of a level; NaN where one of them was not judged.
+std::vector<ExactMean> sums_of(const ScoreTable& table, std::span<const FactorPlace> places, int n_star,
+                               int level) {
+  std::vector<ExactMean> out(static_cast<std::size_t>(table.participants()), ExactMean{0, 1});
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double value = table.column(n_star, static_cast<int>(i))[participant];
-    if (places[i].level == a) rests[places[i].rest].first = value;
-    if (places[i].level == b) rests[places[i].rest].second = value;
+    if (places[i].level != level) continue;
+    const auto means = table.means(n_star, static_cast<int>(i));
+    for (std::size_t person = 0; person < out.size(); ++person)
+      out[person] = sum_of(out[person], means[person]);
   }
-  double sum = 0;
-  for (const auto& [rest, values] : rests) sum += values.first - values.second;
-  return sum / static_cast<double>(rests.size());
+  return out;
+}
+
+/// Of each participant who judged all treatments of both levels: a - b, averaged over the other factors.
+Result<ExactDifferences> differences_of(const ScoreTable& table, std::span<const FactorPlace> places,
+                                        int n_star, int a, int b) {
+  const auto sums = exact_differences(sums_of(table, places, n_star, a), sums_of(table, places, n_star, b));
+  if (!sums) return sums;
+  ExactDifferences out = *sums;
+  out.denominator *= static_cast<double>(std::count_if(
+      places.begin(), places.end(), [&](const FactorPlace& place) { return place.level == a; }));
+  return out;
 }
 
 LevelDifference differ(const ScoreTable& table, std::span<const FactorPlace> places, int n_star, int a, int b,
@@ -74,14 +96,14 @@ LevelDifference differ(const ScoreTable& table, std::span<const FactorPlace> pla
   out.n_star = n_star;
   out.a = a;
   out.b = b;
-  std::vector<double> differences;
-  for (int person = 0; person < table.participants(); ++person) {
-    const double value = difference_of(table, places, n_star, a, b, static_cast<std::size_t>(person));
-    if (!std::isnan(value)) differences.push_back(value);
+  const auto differences = differences_of(table, places, n_star, a, b);
+  if (!differences) {
+    out.difference = Refusal{differences.reason()};
+    return out;
   }
-  out.participants = differences.size();
-  out.difference = t_test_one(differences, {Alternative::TwoSided, plan.confidence, 0});
-  if (!out.difference) out.all_alike = unanimous(differences);
+  out.participants = differences->numerators.size();
+  out.difference = t_test_one(differences->values(), {Alternative::TwoSided, plan.confidence, 0});
+  if (!out.difference) out.all_alike = unanimous(*differences);
   return out;
 }
 

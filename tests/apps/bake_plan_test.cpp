@@ -1,5 +1,5 @@
 /// Which stimuli of a protocol are baked, and in what a bake differs from what is wanted.
-#include "apps/study/bakes/bake_plan.hpp"
+#include "apps/study/bakes/session_bakes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 #include "tests/apps/study_test_support.hpp"
+#include "tests/libsim/bake/make_bake.hpp"
 
 namespace apps {
 namespace {
@@ -155,6 +156,45 @@ TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
   }
   other.pictures = true;
   EXPECT_EQ(header_of(other).scene_name, "Float");
+}
+
+TEST(SessionBakes, PicturesOfAFreeObstacleArePlayedParticlesAloneAreNot) {
+  const auto protocol = study::parse_protocol(
+      test::replaced(test::replaced(test::replaced(shipped("ptpe_pilot"), "single_dam", "float"),
+                                    "n_star = [\"32k\"]", "n_star = [\"64\"]"),
+                     "duration_s = 10", "duration_s = 0.5"),
+      "test");
+  const SessionLook look{{}, {32, 18}};
+  const auto plan = plan_bakes(protocol);
+  ASSERT_EQ(plan.size(), 1u);
+  auto wanted = order_of(protocol, plan[0], look);
+  wanted.pictures = true;
+  sim::BakeHeader header = header_of(wanted);
+  const sim::BakeHeader made = bake_test::header(header.frame_count, 32, 18);
+  header.backend = made.backend;
+  header.max_particles = made.max_particles;
+  header.radius_by_level_m = made.radius_by_level_m;
+  header.view.renderer = made.view.renderer;
+  const test::TemporaryFolder folder;
+  const auto write = [&](const std::string& name) {
+    sim::BakeWriter writer(folder / name, header);
+    for (std::int64_t i = 0; i < header.frame_count; ++i) {
+      writer.add_frame(static_cast<double>(i) / 60, bake_test::particles(i, 2, 2, 2), {});
+      if (header.has_pictures()) writer.add_picture(bake_test::picture(i, 32, 18));
+    }
+    writer.finish();
+  };
+  write(plan[0].file);
+  for (const auto& path : {folder / "", folder / plan[0].file}) {
+    const SessionBakes bakes(path, protocol, look);
+    EXPECT_TRUE(bakes.whole());
+    EXPECT_EQ(bakes.departure(), "");
+  }
+  header.picture_width_px = header.picture_height_px = 0;
+  header.camera = "";
+  write("particles.bake");
+  EXPECT_THAT([&] { SessionBakes(folder / "particles.bake", protocol, look); },
+              ::testing::ThrowsMessage<base::Error>(HasSubstr("has free obstacles")));
 }
 
 }  // namespace

@@ -110,6 +110,18 @@ TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
          "kind = |\"adhesion\"", "needs cohesion", "list cohesion too");
 }
 
+TEST(CellEffects, OfThePictureAreInEveryLevelAndInNoSet) {
+  const auto kept = protocol_with(two_levels, set_of("keep = [\"foam\", \"shadows\"]"));
+  const auto given = protocol_with(two_levels, set_of("effect = [{kind = \"caustics\", strength = 1}]"));
+  EXPECT_THAT(error_of(kept),
+              AllOf(HasSubstr(place_in(kept, "\"foam\", |\"shadows\"")),
+                    HasSubstr("= \"shadows\" is an effect of the picture, which every level keeps"),
+                    HasSubstr("mend: leave it out")));
+  EXPECT_THAT(error_of(given),
+              AllOf(HasSubstr(place_in(given, "kind = |\"caustics\"")),
+                    HasSubstr("= \"caustics\" is an effect of the picture, which every level keeps")));
+}
+
 TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
   NEEDS_EFFECTS;
   const auto same = protocol_with("effects = [\"foam\", \"scene\"]", set_of("keep = [\"foam\"]"));

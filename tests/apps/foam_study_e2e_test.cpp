@@ -100,7 +100,7 @@ TEST_F(FoamStudyE2e, ThePageTellsTheLevelsAndTestsNoClaimAboutMethods) {
 TEST_F(FoamStudyE2e, PowerSaysThatItKnowsNoEffects) {
   const Ended power = run_program({vip_stats, "power", foam_protocol(), "--n", "4"});
   EXPECT_EQ(power.exit_code, 1);
-  EXPECT_THAT(power.err, AllOf(HasSubstr("varies effects"), HasSubstr("mend: ")));
+  EXPECT_THAT(power.err, AllOf(HasSubstr("varies effects"), HasSubstr("--observer ptpe:effects=... ")));
 }
 
 TEST_F(FoamStudyE2e, ABundleFreezesTheProtocolWithoutClaimsAboutMethods) {
@@ -108,8 +108,18 @@ TEST_F(FoamStudyE2e, ABundleFreezesTheProtocolWithoutClaimsAboutMethods) {
   const Ended frozen = run_program({vip_stats, "preregister", foam_protocol(), "--out", bundle});
   ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
   EXPECT_EQ(json::parse(base::read_file(bundle / "hypotheses.json", 1 << 20)), json::array());
+  EXPECT_THAT(base::read_file(bundle / "PREREGISTRATION.txt", 1 << 20),
+              AllOf(HasSubstr("Hypotheses\nNone: effects are a factor; H1 to H6 are about methods alone. "),
+                    Not(HasSubstr("estimates a and b"))));
   EXPECT_THAT(base::read_file(bundle / "plan.toml", 1 << 20),
               HasSubstr(study::read_protocol(foam_protocol()).sha256));
+  const fs::path pilot = folder_ / "pilot";
+  ASSERT_EQ(
+      run_program({vip_stats, "preregister", base::resource("protocols/ptpe_pilot.toml"), "--out", pilot})
+          .exit_code,
+      0);
+  EXPECT_THAT(base::read_file(pilot / "PREREGISTRATION.txt", 1 << 20),
+              HasSubstr("Hypotheses\nNone: the study estimates a and b of mu = a exp(b delta).\n"));
 }
 
 TEST_F(FoamStudyE2e, CheckNamesLevelsAndStimuli) {

@@ -75,11 +75,15 @@ inline std::vector<Case> head_and_methods() {
        refused("/task1")},
       {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
       {"H1 to H3 were tested by paired t tests.", set("/plan/tests", "mixed")},
+      {"H1 to H3 were tested by paired t tests.", set("/hypotheses", Json::array())},
       {"H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of freedom; "
        "paired "
        "t tests stand beside.",
        set("/plan/tests", "paired"), set("/plan/tests", "mixed")},
       {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
+      {"What each level of a factor is worth over another was tested within participants by one-sample t "
+       "tests, and by exact sign tests where all participants are alike.",
+       set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},
       {"Tests of the hypotheses were two-sided.", set("/plan/directional", true)},
       {"Tests of the hypotheses were one-sided, in the direction claimed.", set("/plan/directional", false),
        set("/plan/directional", true)},

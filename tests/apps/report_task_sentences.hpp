@@ -113,7 +113,8 @@ inline std::vector<Case> task1() {
       {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
       {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
        set("/task1/ordinal", Json::array())},
-      {"# What each level is worth over another, all else alike: participants' differences against nought",
+      {"# What each level is worth over another, all else alike: participants' differences against nought; "
+       "Holm over the pairs of levels of one factor, score and n[*], not over the table",
        set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},
       {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
       {"# Repeated showings", set("/task1/retest", Json::array()),
@@ -173,7 +174,8 @@ inline std::vector<Case> task2() {
        refused("/task2/triads")},
       {"Effects are a factor: what is called a method here is one with a level of effects.",
        set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
-      {"# What each level is worth over another, all else alike: participants' shares against one half",
+      {"# What each level is worth over another, all else alike: participants' shares against one half; Holm "
+       "over the pairs of levels of one factor, not over the table",
        set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
       {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
       {"Of # pairs shown again, # were answered alike.", set("/task2/retest", nullptr),

@@ -198,6 +198,19 @@ TEST(TaskResults, PartsThatTheStudyLacksAreAbsent) {
   EXPECT_THAT(results.missing[0].reason, HasSubstr("no protocol"));
 }
 
+// H1 to H3 need the items of cybersickness, and are not tested where effects vary.
+TEST(TaskResults, RealismAloneIsEnoughWhereEffectsAreAFactor) {
+  auto task = made_study::task1(12);
+  std::erase_if(task.questions, [](const auto& question) { return question.id != "realism"; });
+  EXPECT_THAT(results_of({{task}, 0}).dump(), HasSubstr("does not ask for realism and the four items"));
+  task.effects = {{"none", "no effects"}, {"foam", "keeps foam"}};
+  for (std::size_t i = 0; i < task.methods.size(); ++i)
+    task.treatments.push_back({"", task.methods[i], "", i % 2 ? "foam" : "none"});
+  const auto results = results_of({{task}, 0});
+  EXPECT_THAT(results.at("hypotheses"), IsEmpty());
+  EXPECT_EQ(results.at("task1").at("factors").at(0).at("factor"), "effects") << results.at("task1");
+}
+
 TEST(TaskResults, TwoPeopleAndOneMethodMissingGiveReasonsNotNumbers) {
   auto protocol = made_study::task1(2);
   for (auto& session : protocol.sessions)

@@ -87,6 +87,10 @@ TEST_F(SettledState, EveryChoiceHasItsOwnState) {
   add();
   scene_.sha256 = "of another";
   add();
+  scene_.effects = {{sim::EffectKind::AirDrag, 1}};
+  add();
+  scene_.effects[0].coefficient = 1.0000001;
+  add();
   std::sort(keys.begin(), keys.end());
   EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }

@@ -19,6 +19,7 @@ namespace study {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -90,16 +91,46 @@ TEST(EffectLevels, EveryPairIsPlannedOnceAndEachOrderEquallyOften) {
 
 TEST(EffectLevels, NeverAdjacentKeepsNeighboursApart) {
   std::string text = base::read_file(base::resource("protocols/demo.toml"), 1 << 20);
-  const std::string from = "never_adjacent = [\"method\"]";
-  text.replace(text.find(from), from.size(),
-               "never_adjacent = [\"effects\"]\neffects = [\"none\", \"scene\"]");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("never_adjacent = [\"method\"]", "never_adjacent = [\"effects\"]\neffects = [\"none\", \"scene\"]");
+  replace("method = [\"LoRes\", \"HiRes\"]", "method = [\"LoRes\", \"HiRes\", \"FovFluid\", \"Ours\"]");
+  replace("timing = \"settings\"\nmean_fps = [15, 30]\nsd_fps = [0, 5]",
+          "timing = \"equal\"\nmean_fps = [30]\nsd_fps = [5]");
   const Protocol protocol = parse_protocol(text, "p.toml");
   const auto trials = test::design_trials(protocol, make_plan(protocol, "P01", 3, 0));
-  ASSERT_EQ(trials.size(), 16u);
+  ASSERT_EQ(trials.size(), 8u);
   for (std::size_t i = 1; i < trials.size(); ++i) {
     EXPECT_NE(test::stimulus_of(protocol, trials[i].first).effects,
               test::stimulus_of(protocol, trials[i - 1].first).effects);
   }
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_protocol(text, "p.toml");
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(EffectLevels, OneLevelAloneIsRefused) {
+  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
+  const std::string from = "effects = [\"none\", \"foam\"]";
+  text.replace(text.find(from), from.size(), "effects = [\"foam\"]");
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("p.toml:15:11: "), HasSubstr("holds one level"),
+                                    HasSubstr("mend: name two levels or more")));
+}
+
+TEST(EffectLevels, OfAPilotAreRefused) {
+  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
+  const std::string from = "timing = \"settings\"";
+  text.replace(text.find(from), from.size(), from + "\neffects = [\"none\", \"scene\"]");
+  EXPECT_THAT(error_of(text),
+              AllOf(HasSubstr("p.toml:"), HasSubstr("cannot vary under timing = \"settings\""),
+                    HasSubstr("mend: use timing = \"equal\"")));
 }
 
 TEST(EffectLevels, StandInTheDatabaseAndItsTables) {

@@ -121,6 +121,27 @@ TEST(ExportBids, EveryTableIsFullAndEveryColumnIsDescribed) {
   EXPECT_EQ(tables, 6);
 }
 
+TEST(ExportBids, AQuestionNamedAsAColumnHasOneOfItsOwn) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  const auto text = std::regex_replace(test::pairs().text, std::regex("\\bease\\b"), "effects");
+  {
+    Store store(path, sqlite::Open::Create);
+    store.add_run(test::run_plan(parse_protocol(text, "pairs.toml"), {"P01"}));
+    const auto sessions = store.open_runs().at(0).sessions;
+    const OpenUnit& pair = sessions.at(0).units.at(1);
+    const KeptAnswer kept{"effects", {test::score(5), 3}};
+    store.answer(sessions.at(0).id, pair, test::show(store, sessions.at(0), pair, 10), {&kept, 1}, true, 1);
+  }
+  export_bids(path, folder / "bids");
+  const fs::path stem = folder / "bids/sub-P01/ses-pairsv1/beh/sub-P01_ses-pairsv1_task-pairs_events";
+  const auto head = read_table(stem.string() + ".tsv", '\t').at(0);
+  EXPECT_EQ(std::count(head.begin(), head.end(), "effects"), 1);
+  EXPECT_EQ(std::count(head.begin(), head.end(), "answer_effects"), 1);
+  const auto json = read_json(stem.string() + ".json");
+  EXPECT_THAT(json["effects"]["Description"].get<std::string>(), HasSubstr("level of the factor effects"));
+}
+
 TEST(ExportBids, EventsTellWhatWasShownAndAnswered) {
   const test::TemporaryFolder folder;
   export_bids(make_study(folder), folder / "bids");

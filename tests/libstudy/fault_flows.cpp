@@ -205,6 +205,11 @@ std::vector<Flow> all_flows() {
        [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
        [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
        {"s.db"}},
+      {"upgrade from schema 5",
+       fixture("study_v5.db"),
+       [](const fs::path& folder) { Store(folder / "s.db", sqlite::Open::Write); },
+       [](const fs::path& folder) { return faults::database_content(folder / "s.db"); },
+       {"s.db"}},
   };
 }
 

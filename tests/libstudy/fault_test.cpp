@@ -168,6 +168,7 @@ TEST(Faults, SomeCallsOfUpgradesFromSchema1) { try_some(13, "upgrade from schema
 TEST(Faults, SomeCallsOfUpgradesFromSchema2) { try_some(13, "upgrade from schema 2"); }
 TEST(Faults, SomeCallsOfUpgradesFromSchema3) { try_some(13, "upgrade from schema 3"); }
 TEST(Faults, SomeCallsOfUpgradesFromSchema4) { try_some(13, "upgrade from schema 4"); }
+TEST(Faults, SomeCallsOfUpgradesFromSchema5) { try_some(13, "upgrade from schema 5"); }
 
 /// Every call: one test for each flow and kind of fault, so that they run side by side.
 class FaultsSlow : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {};

@@ -96,6 +96,25 @@ TEST(LevelDifferences, AverageOverTheOtherFactorWithinEachParticipant) {
   EXPECT_NEAR(level_differences(table, other, 2, {})[0].difference->mean, (-0.5 - 1 + 1) / 3, 1e-12);
 }
 
+// 13/3 - 10/3 + 4 - 5 is nought, and as doubles it is not.
+TEST(LevelDifferences, OfThirdsThatCancelAreNoughtExactly) {
+  std::vector<MethodScore> all;
+  for (int person = 0; person < 5; ++person) {
+    const std::vector<std::vector<double>> answers{{4, 4, 5}, {3, 3, 4}, {4, 4, 4}, {5, 5, 5}};
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      for (std::size_t scene = 0; scene < answers[i].size(); ++scene)
+        all.push_back({person, static_cast<int>(scene), 0, static_cast<int>(i), answers[i][scene]});
+    }
+  }
+  const ScoreTable table({.code = "realism", .label = "Realism", .items = {"realism"}}, all, 5, {"16k"},
+                         {"A, none", "A, foam", "B, none", "B, foam"});
+  const auto found = level_differences(table, places, 2, {});
+  EXPECT_FALSE(found[0].difference);
+  ASSERT_TRUE(found[0].all_alike);
+  EXPECT_EQ(found[0].all_alike->value, 0);
+  EXPECT_EQ(found[0].p(), 1);
+}
+
 TEST(LevelDifferences, OfOneParticipantAreRefusedWithTheReason) {
   const auto found = level_differences(table_of({{3, 5, 4, 5}}), places, 2, {});
   EXPECT_FALSE(found[0].p());

@@ -47,7 +47,7 @@ PowerKind power_kind(const study::Protocol& protocol) {
   if (!protocol.design.effects.empty()) {
     throw base::Error("protocol " + protocol.name,
                       "varies effects, and the worlds of power are about methods and frame rates alone",
-                      "simulate it: vip-study run with --observer frames:foam=... for several numbers of "
+                      "simulate it: vip-study run with --observer ptpe:effects=... for several numbers of "
                       "participants, then vip-stats report");
   }
   if (protocol.design.pairs) return PowerKind::Task2;

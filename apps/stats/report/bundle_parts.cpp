@@ -29,6 +29,15 @@ std::string hypothesis_text(const Json& hypothesis) {
   return out;
 }
 
+std::string no_hypotheses(const std::vector<study::Protocol>& protocols) {
+  const bool pilots = std::all_of(protocols.begin(), protocols.end(), [](const study::Protocol& one) {
+    return one.design.timing == study::TimingSource::Settings;
+  });
+  return pilots ? "None: the study estimates a and b of mu = a exp(b delta).\n"
+                : "None: effects are a factor; H1 to H6 are about methods alone. What each level is worth is "
+                  "exploratory.\n";
+}
+
 }  // namespace
 
 std::vector<stats::Hypothesis> hypotheses_of(const study::Protocol& protocol,
@@ -87,7 +96,7 @@ std::string bundle_text(const std::vector<study::Protocol>& protocols, const sta
            "\n";
   out += "\nHypotheses\n";
   for (const Json& hypothesis : hypotheses) out += hypothesis_text(hypothesis);
-  if (hypotheses.empty()) out += "None: the study estimates a and b of mu = a exp(b delta).\n";
+  if (hypotheses.empty()) out += no_hypotheses(protocols);
   std::vector<std::string> hashes;
   for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
   out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" + format_plan(plan, hashes);

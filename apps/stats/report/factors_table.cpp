@@ -23,9 +23,12 @@ std::string treatment_note(const Field& task) {
 }
 
 std::string preference_factors(const Field& task2) {
-  Table table("What each level is worth over another, all else alike: participants' shares against one half",
-              {"Factor: pair of levels", "Participants", "Chosen", "Share", "Mean share [CI]", "<i>t</i>",
-               "<i>df</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
+  Table table(
+      "What each level is worth over another, all else alike: participants' shares against one half; Holm "
+      "over the "
+      "pairs of levels of one factor, not over the table",
+      {"Factor: pair of levels", "Participants", "Chosen", "Share", "Mean share [CI]", "<i>t</i>",
+       "<i>df</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
   for (const Field& line : task2["factors"].entries()) {
     if (!line["p"].is_number()) {
       table.refused(name_of(line, " over "), refusal(line));
@@ -41,7 +44,8 @@ std::string preference_factors(const Field& task2) {
 
 std::string score_factors(const Field& task1) {
   Table table(
-      "What each level is worth over another, all else alike: participants' differences against nought",
+      "What each level is worth over another, all else alike: participants' differences against nought; Holm "
+      "over the pairs of levels of one factor, score and n*, not over the table",
       {"Factor: pair of levels", "Score", "n*", "Participants", "Difference [CI]", "<i>t</i>", "<i>df</i>",
        "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
   for (const Field& line : task1["factors"].entries()) {

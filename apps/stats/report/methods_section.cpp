@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
 
@@ -99,6 +101,23 @@ std::string pilot_text(const Field& pilot) {
          words(pilot["estimator"]) + "; its intervals by " + words(pilot["interval"]["method"]) + ". ";
 }
 
+std::string tests_of_task1(const Field& root) {
+  const auto hypotheses = root["hypotheses"].entries();
+  if (std::none_of(hypotheses.begin(), hypotheses.end(),
+                   [](const Field& one) { return one["task"].words() == "task1"; }))
+    return "";
+  return root["plan"]["tests"].words() == "mixed"
+             ? "H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of "
+               "freedom; paired <i>t</i> tests stand beside. "
+             : "H1 to H3 were tested by paired <i>t</i> tests. ";
+}
+
+std::string factors_text(const Field& root) {
+  if (root["task1"]["factors"].entries().empty() && root["task2"]["factors"].entries().empty()) return "";
+  return "What each level of a factor is worth over another was tested within participants by one-sample "
+         "<i>t</i> tests, and by exact sign tests where all participants are alike. ";
+}
+
 std::string task1_text(const Field& root) {
   if (!root["task1"].there()) return "";
   const Field plan = root["plan"];
@@ -108,10 +127,7 @@ std::string task1_text(const Field& root) {
          fixed(plan["margins"]["realism"], 2) + " points on realism and " +
          fixed(plan["margins"]["sickness"], 2) + " on cybersickness. Bootstrap intervals of Task 1 use " +
          count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". " +
-         (plan["tests"].words() == "mixed"
-              ? "H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of "
-                "freedom; paired <i>t</i> tests stand beside. "
-              : "H1 to H3 were tested by paired <i>t</i> tests. ");
+         tests_of_task1(root);
 }
 
 /// "two-sided", or which of H1 to H6 are not.
@@ -144,7 +160,7 @@ std::string methods_section(const Field& root) {
   std::string text = protocols_text(root["study"]) + people(root["flow"]) + exclusion_rules(root) +
                      pilot_text(root["pilot"]) + task1_text(root);
   if (root["task2"].there()) text += "Each pair of Task 2 was tested by an exact two-sided binomial test. ";
-  text += hypotheses_text(root);
+  text += factors_text(root) + hypotheses_text(root);
   if (root["plan"]["confidence"].is_number())
     text += "Intervals hold " + percent(root["plan"]["confidence"]) +
             " unless another share stands beside them. ";

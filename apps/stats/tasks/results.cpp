@@ -38,7 +38,7 @@ stats::Result<Json> results_of(TaskPart& part, const stats::AnalysisPlan& plan) 
   if (data.task == TaskKind::Task1) {
     const auto results = analyse_task1(data, plan);
     if (!results) return stats::Refusal{results.reason()};
-    if (data.protocol.effects.empty()) part.hypotheses = results->hypotheses;
+    part.hypotheses = results->hypotheses;
     return task1_json(data, *results, plan);
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());

@@ -122,10 +122,13 @@ stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& dat
 stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
-  const auto hypotheses = verdicts(out.tables, data, plan);
-  if (!hypotheses) return stats::Refusal{hypotheses.reason()};
-  out.hypotheses = *hypotheses;
-  stats::add_tipping_points(out.hypotheses, out.tables);
+  // The paper's claims are about methods alone.
+  if (data.protocol.effects.empty()) {
+    const auto hypotheses = verdicts(out.tables, data, plan);
+    if (!hypotheses) return stats::Refusal{hypotheses.reason()};
+    out.hypotheses = *hypotheses;
+    stats::add_tipping_points(out.hypotheses, out.tables);
+  }
   for (const auto& table : out.tables) out.analyses.push_back(stats::analyse_scores(table, plan));
   out.ordinal = fit_ordinal(data, plan);
   return out;

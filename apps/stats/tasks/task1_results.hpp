@@ -32,7 +32,8 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
 /// A table's scores before scenes are averaged: one for each report, NaN for those planned and not given.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
-/// Refused: no cybersickness items, so that the hypotheses have no second score.
+/// Without hypotheses where effects are a factor. Else refused: no cybersickness items, so that the
+/// hypotheses have no second score.
 stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
 /// H1 to H3 alone: for sensitivity and power.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "libsim/scene/picture_effects.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
@@ -26,12 +27,21 @@ std::vector<std::string> all_kinds() {
   return out;
 }
 
+bool is_of_the_picture(const std::string& word) {
+  const auto words = sim::picture_effect_words();
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+constexpr const char* stays = "is an effect of the picture, which every level keeps";
+constexpr const char* leave_out = "leave it out";
+
 /// keep: kinds that stay as the scene lists them.
 std::vector<Effect> kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
   std::vector<Effect> out;
   const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string word = "= " + base::toml_quoted(words[i]);
+    if (is_of_the_picture(words[i])) set.fail_at("keep", i, word + " " + stays, leave_out);
     const auto kind = sim::effect_named(words[i]);
     if (!kind) set.fail_at("keep", i, word + " is no effect", "use one of " + base::joined(all_kinds()));
     if (!lists(scene.effects, *kind)) {
@@ -47,6 +57,8 @@ std::vector<Effect> kept_effects(const base::TomlTable& set, const sim::Scene& s
 /// Keys that a kind of effect lacks.
 void check_keys(const base::TomlTable& set) {
   for (const auto& table : set.tables("effect")) {
+    if (const std::string word = table.string("kind"); is_of_the_picture(word))
+      table.fail("kind", "= " + base::toml_quoted(word) + " " + stays, leave_out);
     const auto kind = sim::effect_named(table.choice("kind", all_kinds()));
     std::vector<std::string> known{sim::traits_of(*kind).key};
     for (std::size_t k = 0; k < sim::option_count; ++k) {

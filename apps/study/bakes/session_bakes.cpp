@@ -27,9 +27,12 @@ bool shows(const PlannedStimulus& planned, const study::Cell& cell) {
   return !planned.rate || (planned.rate->mean == cell.setting.mean && planned.rate->sd == cell.setting.sd);
 }
 
-/// Where nothing says which rate tau follows from, none that a bake went by is the right one.
-BakeOrder order_for(const study::Protocol& protocol, const PlannedStimulus& one, const SessionLook& look) {
+/// Where nothing says which rate tau follows from, none that a bake went by is the right one. Pictures are as
+/// good as particles.
+BakeOrder order_for(const study::Protocol& protocol, const PlannedStimulus& one, const SessionLook& look,
+                    const sim::BakeHeader& found) {
   BakeOrder order = apps::order_of(protocol, one, look);
+  order.pictures = found.has_pictures();
   if (!one.rate) order.fluid.fixed_rate = sim::FrameRate{};
   return order;
 }
@@ -75,7 +78,7 @@ void SessionBakes::use_file(const study::Protocol& protocol, const SessionLook& 
   std::vector<std::string> departures;
   for (Source& source : sources_) {
     source.bake = bake;
-    sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look));
+    sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
     wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);  // at_end says what follows
     wanted.frame_dt_s = bake->header.frame_dt_s;  // make_stimulus() asks for it
     for (const std::string& one : fluid_departures(bake->header, wanted)) {
@@ -92,7 +95,7 @@ void SessionBakes::use_folder(const study::Protocol& protocol, const SessionLook
   for (Source& source : sources_) {
     if (source.planned.file.empty() || !fs::exists(path_ / source.planned.file)) continue;
     const auto bake = open_bake(path_ / source.planned.file);
-    const sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look));
+    const sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
     std::vector<std::string> departures = fluid_departures(bake->header, wanted);
     if (source.planned.adaptive) {
       for (std::string& one : view_departures(bake->header, wanted)) departures.push_back(std::move(one));
