@@ -6,6 +6,8 @@
 #include <string>
 
 #include "apps/study/bakes/bake_plan.hpp"
+#include "libsim/scene/scene.hpp"
+#include "stats/base/file.hpp"
 
 namespace apps {
 
@@ -93,6 +95,11 @@ void print_speed(const CheckReport& report) {
               1000 * content.content_step_s);
 }
 
+/// A bake of particles holds nothing of them.
+bool has_free_obstacles(const PlannedStimulus& one) {
+  return sim::any_free(sim::read_scene(base::find_input(one.what.scene)).obstacles);
+}
+
 void print_stimuli(const CheckReport& report) {
   bool bakes = false;
   for (const auto& level : report.protocol.design.effects)
@@ -105,7 +112,9 @@ void print_stimuli(const CheckReport& report) {
     if (!one.live.empty()) {
       std::printf("live: %s\n", one.live.c_str());
     } else {
-      std::printf("baked, %lld frames; or live where that is in time\n", static_cast<long long>(one.frames));
+      std::printf("baked%s, %lld frames; or live where that is in time\n",
+                  has_free_obstacles(one) ? " by --keep pictures, for its obstacles are free" : "",
+                  static_cast<long long>(one.frames));
       bakes = true;
     }
   }

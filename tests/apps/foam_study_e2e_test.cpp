@@ -132,6 +132,16 @@ TEST_F(FoamStudyE2e, CheckNamesLevelsAndStimuli) {
   EXPECT_EQ(json::parse(base::read_file(found, 1 << 20)).at("stimuli")[1].at("effects"), "foam");
 }
 
+TEST_F(FoamStudyE2e, CheckSaysThatFreeObstaclesTakePictures) {
+  std::string text = base::read_file(foam_protocol(), 1 << 20);
+  text = replaced(replaced(text, "sea_spray", "float"), "keep = [\"foam\"]",
+                  "effect = [{kind = \"air_drag\", rate_per_s = 1}]");
+  base::write_file_atomically(folder_ / "float.toml", text);
+  const std::string free = "baked by --keep pictures, for its obstacles are free, 510 frames";
+  EXPECT_THAT(run_program({vip_study, "check", folder_ / "float.toml"}).out, HasSubstr(free));
+  EXPECT_THAT(run_program({vip_study, "check", foam_protocol()}).out, HasSubstr("  baked, 510 frames"));
+}
+
 TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
   const std::string text = base::read_file(foam_protocol(), 1 << 20), path = folder_ / "wrong.toml";
   base::write_file_atomically(path, replaced(text, "keep = [\"foam\"]", "keep = [\"heat\"]"));

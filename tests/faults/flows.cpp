@@ -241,6 +241,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(2),
       upgrade_from(3),
       upgrade_from(4),
+      upgrade_from(5),
   };
   return flows;
 }
