@@ -18,7 +18,8 @@ struct TableText {
 const std::vector<TableText>& table_texts() {
   static const std::vector<TableText> texts{
       {"", "The file itself", "Stands before the first table."},
-      {"design", "[design]", R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
+      {"design", "[design]",
+       R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
 every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a participant
 meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
@@ -125,7 +126,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "means of the frame rate, frames/s; needed under settings and equal, refused otherwise"},
       {"design", "sd_fps", "list of numbers", "[0, 1000]", where_needed,
        "standard deviations, frames/s; as mean_fps"},
-      {"design", "moments", "tables", "", where_needed, "needed under table2, one for each cell whatever its effects"},
+      {"design", "moments", "tables", "", where_needed,
+       "needed under table2, one for each cell whatever its effects"},
       {"design", "pairs", "true or false", "", "false",
        "each trial shows two cells of a group: all unordered pairs"},
       {"design", "groups", "whole number", "[1, 100]", "1",

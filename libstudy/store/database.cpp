@@ -19,7 +19,7 @@ using sqlite::Open;
 
 namespace {
 
-constexpr std::array step_files{"001_initial.sql", "002_blocks.sql", "003_permissions.sql",
+constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_permissions.sql",
                                 "004_counting.sql", "005_headsets.sql", "006_effects.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 

@@ -1,5 +1,5 @@
-#include "libstudy/observer/frames_observer.hpp"
 #include "libstudy/observer/observer.hpp"
+#include "libstudy/observer/frames_observer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,51 @@
+/// Effects written as a scene file lists them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "libsim/scene/effects.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/toml.hpp"
+
+namespace {
+
+using sim::EffectKind;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+TEST(Effects, AreWrittenAsTheyAreRead) {
+  NEEDS_EFFECTS;
+  std::vector<sim::Effect> effects{
+      {EffectKind::Cohesion, 12.5}, {EffectKind::AirDrag, 0}, {EffectKind::Foam, 0.3}};
+  effects[2].options[static_cast<std::size_t>(sim::EffectOption::FoamLifetime)] = 1.1;
+  const std::string text = sim::format_effects(effects);
+  const auto read = sim::read_effects(base::parse_toml(text, "e.toml").tables("effect"));
+  ASSERT_EQ(read.size(), 2u) << "a coefficient of 0 drops the effect";
+  EXPECT_EQ(read[0].coefficient, 12.5);
+  EXPECT_EQ(read[1].kind, EffectKind::Foam);
+  EXPECT_EQ(read[1].options, effects[2].options);
+  EXPECT_THAT(sim::effects_in_words(effects),
+              testing::StartsWith("cohesion tension_n_m = 12.5; foam emission_per_s = 0.3 "));
+  EXPECT_EQ(sim::effects_in_words({}), "");
+  effects[0].coefficient = 0.12345678;
+  effects[2].options[static_cast<std::size_t>(sim::EffectOption::FoamLifetime)] = 1.23456789;
+  EXPECT_THAT(sim::effects_in_words(effects),
+              testing::AllOf(testing::HasSubstr("tension_n_m = 0.12345678; "),
+                             testing::HasSubstr(" lifetime_s = 1.23456789 ")));
+  EXPECT_EQ(sim::effect_named("air_drag"), EffectKind::AirDrag);
+  EXPECT_FALSE(sim::effect_named("froth"));
+}
+
+TEST(Effects, BesideOthersMayNeedThemAndNotRepeatThem) {
+  NEEDS_EFFECTS;
+  const auto read = [](const std::string& text) {
+    return sim::read_effects(base::parse_toml(text, "e.toml").tables("effect"), {{EffectKind::Cohesion, 20}});
+  };
+  EXPECT_EQ(read("[[effect]]\nkind = \"adhesion\"\nwork_n_m = 10\n").size(), 2u);
+  EXPECT_THAT([&] { read("[[effect]]\nkind = \"cohesion\"\ntension_n_m = 10\n"); },
+              testing::ThrowsMessage<base::Error>(
+                  testing::AllOf(testing::HasSubstr("e.toml:2:8"), testing::HasSubstr("listed twice"))));
+}
+
+}  // namespace
