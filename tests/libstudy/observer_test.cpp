@@ -201,10 +201,11 @@ std::unique_ptr<Observer> observer_of(const std::string& specification) {
 }
 
 TEST(MakeObserver, SpecificationsAreWrittenBackInFull) {
-  for (const std::string text :
-       {"random", "constant:4", "constant:2.5", "dropout:0.2,random", "dropout:0.1,constant:7",
-        "frames:grain=4,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0,sickness=0.25,"
-        "fatigue=0.02"}) {
+  const std::string of_frames =
+      "frames:grain=4,flicker=0.6,timing=1.2,noise=0.9,participant_sd=0.5,bias=0,sickness=0.25,fatigue=0.02";
+  for (const std::string& text :
+       {std::string("random"), std::string("constant:4"), std::string("constant:2.5"),
+        std::string("dropout:0.2,random"), std::string("dropout:0.1,constant:7"), of_frames}) {
     EXPECT_EQ(observer_of(text)->simulated(), text);
   }
   EXPECT_EQ(observer_of("dropout:0.2")->simulated(), "dropout:0.2,random");
