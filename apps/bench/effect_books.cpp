@@ -40,9 +40,8 @@ std::string in_words(const nlohmann::json& books) {
     const auto& foam = books["foam"];
     const auto count = [&](const char* key) { return foam[key].get<std::uint64_t>(); };
     out += fmt::format(
-        "  foam         {} made, {:.4g} m3: {} in the air, {} on the water, {} in it; {} dissolved, {} found "
-        "no "
-        "room, {} left\n",
+        "  foam         {} made, {:.4g} m3: {} in the air, {} on the water, {} in it; {} dissolved, "
+        "{} found no room, {} left\n",
         count("emitted"), foam["emitted_m3"].get<double>(), count("spray"), count("foam"), count("bubbles"),
         count("dissolved"), count("dropped"), count("left"));
   }
@@ -50,9 +49,8 @@ std::string in_words(const nlohmann::json& books) {
     const auto& heat = books["heat"];
     const auto amount = [&](const char* key) { return heat[key].get<double>(); };
     out += fmt::format(
-        "  heat         {:.6g} K m_* held; {:.4g} poured, {:.4g} taken by nozzles, {:.4g} drained, {:.4g} "
-        "from "
-        "walls\n",
+        "  heat         {:.6g} K m_* held; {:.4g} poured, {:.4g} taken by nozzles, {:.4g} drained, "
+        "{:.4g} from walls\n",
         amount("held"), amount("poured"), amount("taken"), amount("drained"), amount("from_walls"));
   }
   return out;
