@@ -1,8 +1,11 @@
 // Rigid obstacles in the tank: where a ray meets them first.
 layout(std430, binding = 4) readonly buffer Obstacles {
-  vec4 obstacles[];  // three each: centre and radius; half sides, 0; turn
+  vec4 obstacles[];  // three each: centre and radius; half sides, 1 for a mesh; turn
 };
 uniform int obstacle_count;
+#ifdef MESHES
+#include "obstacle_meshes.glsl"
+#endif
 
 const vec3 obstacle_colour = vec3(0.55, 0.20, 0.07);
 const float never = 1e30;
@@ -52,6 +55,13 @@ Meeting meet_obstacles(vec3 o, vec3 d) {
     const vec4 back = vec4(-turn.xyz, turn.w);
     const vec3 from = turned(back, o - centre.xyz), along = turned(back, d);
     Meeting here = Meeting(m.at, vec3(0.0));
+#ifdef MESHES
+    if (half_sides.w > 0.0) {
+      const MeshGrid grid = mesh_grid(k);
+      const float at = meet_mesh(grid, from, along);
+      if (at > 0.0 && at < m.at) nearer(here, at, mesh_normal(grid, from + at * along));
+    } else
+#endif
     if (centre.w > 0.0) {
       meet_ball(here, from, along, half_sides.y, centre.w);
       meet_ball(here, from, along, -half_sides.y, centre.w);

@@ -1,9 +1,11 @@
 #pragma once
-/// What stands before a function that kernels call.
+/// What stands before a function that kernels call; APART: one that few need, which stays a call.
 
 #ifdef SIM_CUDA
 #include <cuda_runtime.h>
 #define SIM_FN __host__ __device__ __forceinline__
+#define SIM_FN_APART __host__ __device__ __noinline__
 #else
 #define SIM_FN inline
+#define SIM_FN_APART [[gnu::noinline]] inline
 #endif

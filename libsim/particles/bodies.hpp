@@ -1,6 +1,7 @@
 #pragma once
 /// Rigid bodies as particles meet them: distance, normal, and how much of a kernel lies inside.
 
+#include "libsim/particles/mesh_grid.hpp"
 #include "libsim/particles/walls.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -64,7 +65,8 @@ struct SphereShare {
 };
 
 /// A sphere, a capsule along its own y, or a box: all within `radius` of a box of half sides `half`, of which
-/// a box has no radius and the others no half sides but along y.
+/// a box has no radius and the others no half sides but along y. Or a mesh, which lies in a box of half sides
+/// `half`, and whose distances are a MeshGrid's.
 struct Body {
   Vec3 half;
   float radius;
@@ -73,10 +75,7 @@ struct Body {
   Vec3 velocity;  ///< of the centre on its way to this place, m/s
   Vec3 spin;      ///< rad/s
 
-  struct Near {
-    float distance;  ///< signed, m
-    Vec3 normal;     ///< outwards
-  };
+  using Near = NearSurface;
   /// In the body's own axes.
   SIM_FN Near near_here(Vec3 p) const {
     const Vec3 beyond{fabsf(p.x) - half.x, fabsf(p.y) - half.y, fabsf(p.z) - half.z};

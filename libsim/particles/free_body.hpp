@@ -46,24 +46,26 @@ SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
 }
 
 /// Takes from a free body's momentum what would carry it through the tank's walls in dt. Contacts are those
-/// of the corners of the box round which the body lies, each a ball of its radius; they are inelastic and
-/// without friction. Outlets let no body through.
+/// of the corners of the box round which the body lies, each a ball of its radius, or of a mesh's contacts;
+/// they are inelastic and without friction. Outlets let no body through.
 struct WallContact {
-  static constexpr int corners = 8;
   static constexpr int sweeps = 8;  ///< over all contacts, in which those of one body agree
   const Walls& walls;
   const Body& body;
   FreeBody& free;
   float dt;
+  const MeshGrid* mesh = nullptr;
 
+  SIM_FN int corners() const { return mesh ? mesh->contact_count : 8; }
   SIM_FN Vec3 arm(int corner) const {
+    if (mesh) return turned(body.turn, mesh->contacts[corner]);
     const Vec3 h = body.half;
     return turned(body.turn, {corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y, corner & 4 ? h.z : -h.z});
   }
   SIM_FN void stop() const {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       for (int k = 0; k < walls.count; ++k) {
-        for (int c = 0; c < corners; ++c)
+        for (int c = 0; c < corners(); ++c)
           stop(walls.planes[k].normal, walls.distance(k, body.centre), arm(c));
       }
     }
@@ -88,7 +90,7 @@ struct WallContact {
     for (int k = 0; k < walls.count; ++k) {
       float depth = 0;
       const float away = walls.distance(k, body.centre);
-      for (int c = 0; c < corners; ++c)
+      for (int c = 0; c < corners(); ++c)
         depth = at_least(body.radius - away - dot(walls.planes[k].normal, arm(c)), depth);
       out += depth * walls.planes[k].normal;
     }

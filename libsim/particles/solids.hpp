@@ -35,14 +35,36 @@ struct Solids {
   Walls walls;
   const Body* bodies;
   int count;
-  float dt;  ///< in which the bodies came to their places, s
+  float dt;                          ///< in which the bodies came to their places, s
+  const MeshGrid* meshes = nullptr;  ///< of all bodies; nullptr: none is a mesh
+
+  SIM_FN Body::Near near(int body, Vec3 x) const {
+    const MeshGrid* mesh = mesh_of(meshes, body);
+    if (!mesh) return bodies[body].near(x);
+    const Body::Near here = mesh->near(bodies[body].to_body(x));
+    return {here.distance, turned(bodies[body].turn, here.normal)};
+  }
+  SIM_FN float distance(int body, Vec3 x) const {
+    const MeshGrid* mesh = mesh_of(meshes, body);
+    return mesh ? mesh->near(bodies[body].to_body(x)).distance : bodies[body].distance(x);
+  }
+  /// Body::missing; a mesh's surface counts as a plane.
+  SIM_FN float missing(int body, Vec3 x, float h, Vec3& gradient) const {
+    if (!mesh_of(meshes, body)) return bodies[body].missing(x, h, gradient);
+    gradient = {0, 0, 0};
+    const Body::Near at = near(body, x);
+    if (at.distance >= h) return 0;
+    const float q = at_least(at.distance / h, 0.0f);
+    gradient = -(Walls::slope(q) / h) * at.normal;
+    return Walls::behind(q);
+  }
 
   /// 1 - prod (1 - share) over walls and bodies.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     float present = 1 - walls.missing(x, h, gradient);
     for (int b = 0; b < count; ++b) {
       Vec3 own;
-      const float share = bodies[b].missing(x, h, own);
+      const float share = missing(b, x, h, own);
       gradient = (1 - share) * gradient + present * own;
       present *= 1 - share;
     }
@@ -52,10 +74,10 @@ struct Solids {
   SIM_FN Vec3 missing_gradient(int body, Vec3 x, float h) const {
     Vec3 own;
     Vec3 other;
-    if (bodies[body].missing(x, h, own) <= 0) return {0, 0, 0};
+    if (missing(body, x, h, own) <= 0) return {0, 0, 0};
     float present = 1 - walls.missing(x, h, other);
     for (int b = 0; b < count; ++b) {
-      if (b != body) present *= 1 - bodies[b].missing(x, h, other);
+      if (b != body) present *= 1 - missing(b, x, h, other);
     }
     return present * own;
   }
@@ -63,7 +85,7 @@ struct Solids {
   SIM_FN float beside_bodies(Vec3 x, float h) const {
     float present = 1;
     Vec3 own;
-    for (int b = 0; b < count; ++b) present *= 1 - bodies[b].missing(x, h, own);
+    for (int b = 0; b < count; ++b) present *= 1 - missing(b, x, h, own);
     return present;
   }
 
@@ -72,7 +94,7 @@ struct Solids {
     float least = 3e38f;
     body = 0;
     for (int b = 0; b < count; ++b) {
-      const float away = bodies[b].distance(x);
+      const float away = distance(b, x);
       if (away >= least) continue;
       least = away;
       body = b;
@@ -92,8 +114,8 @@ struct Solids {
     bool held = false;
     for (int b = 0; b < count; ++b) {
       const Body& body = bodies[b];
-      const Body::Near after = body.near(to);
-      const float before = body.distance(fused(x, dt, body.velocity_at(x))) - gap;
+      const Body::Near after = near(b, to);
+      const float before = distance(b, fused(x, dt, body.velocity_at(x))) - gap;
       const float beyond = Walls::kept_distance * at_least(before, 0.0f) - (after.distance - gap);
       if (beyond <= 0) continue;
       heard.body(b, to, beyond * after.normal);
@@ -108,7 +130,7 @@ struct Solids {
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
     bool moved = false;
     for (int b = 0; b < count; ++b) {
-      const Body::Near at = bodies[b].near(x);
+      const Body::Near at = near(b, x);
       const float depth = gap - at.distance;
       if (depth <= 0) continue;
       heard.body(b, x, depth * at.normal);

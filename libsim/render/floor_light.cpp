@@ -21,8 +21,6 @@ constexpr int surface_cell_in_cells = 3;  // edge over that of a cell of the flo
 
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
-const char* defines_of(const Scene& scene) { return scene.obstacles.empty() ? "" : "#define OBSTACLES\n"; }
-
 GLsizei levels_of(int cells) { return static_cast<GLsizei>(std::bit_width(static_cast<unsigned>(cells))); }
 
 }  // namespace
@@ -58,12 +56,12 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   for (GlBuffer* buffer : {&surface_a_, &surface_b_}) buffer->reserve(16 * size_of(surface_x, surface_z));
   std::string effects;
   if (strength(PictureEffectKind::Shadows) > 0) {
-    shadows_ = compute_program("shadows.comp", defines_of(scene));
+    shadows_ = compute_program("shadows.comp", obstacle_defines(scene).c_str());
     shadow_.reserve(8 * size_of(floor_x, floor_z));
     effects += "#define SHADOWS\n";
   }
   if (strength(PictureEffectKind::Caustics) > 0) {
-    caustics_ = compute_program("caustics.comp", defines_of(scene));
+    caustics_ = compute_program("caustics.comp", obstacle_defines(scene).c_str());
     caustic_.reserve(4 * size_of(floor_x, floor_z));
     effects += "#define CAUSTICS\n";
   }
@@ -111,7 +109,7 @@ void FloorLight::smooth() {
 void FloorLight::cast_shadows(const FloorWater& water) {
   shadows_.use();
   if (water.obstacle_count > 0) glUniform1i(shadows_.uniform("obstacle_count"), water.obstacle_count);
-  bind_storage({surface_b_.name(), shadow_.name(), 0, 0, water.obstacles});
+  bind_storage({surface_b_.name(), shadow_.name(), 0, 0, water.obstacles, water.obstacle_grids});
   dispatch_pixels(block_.cells[2], block_.cells[3]);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -121,7 +119,7 @@ void FloorLight::gather_caustics(const FloorWater& water) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   caustics_.use();
   if (water.obstacle_count > 0) glUniform1i(caustics_.uniform("obstacle_count"), water.obstacle_count);
-  bind_storage({surface_b_.name(), caustic_.name(), 0, 0, water.obstacles});
+  bind_storage({surface_b_.name(), caustic_.name(), 0, 0, water.obstacles, water.obstacle_grids});
   dispatch_pixels(block_.cells[0], block_.cells[1]);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -16,7 +16,8 @@ namespace sim {
 struct FloorWater {
   unsigned particles = 0;  ///< GL buffer of RenderParticle
   std::int64_t count = 0;
-  unsigned obstacles = 0;  ///< GL buffer of their poses (shaders/obstacles.glsl); 0: none
+  unsigned obstacles = 0;       ///< GL buffer of their poses (shaders/obstacles.glsl); 0: none
+  unsigned obstacle_grids = 0;  ///< of meshes (shaders/obstacle_meshes.glsl); 0: none
   int obstacle_count = 0;
 };
 

@@ -1,10 +1,12 @@
 #include "libsim/render/render_passes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <memory>
 
 #include "libsim/render/gl_context.hpp"
+#include "libsim/scene/mesh.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {
@@ -50,9 +52,35 @@ namespace {
 /// What the scene calls for in the passes that show it.
 std::string defines_of(const Scene& scene) {
   return std::string(coefficients_of(scene.effects)[EffectKind::Foam] > 0 ? "#define FOAM\n" : "") +
-         (scene.obstacles.empty() ? "" : "#define OBSTACLES\n");
+         obstacle_defines(scene);
+}
+
+/// The grids of meshes for shaders/obstacle_meshes.glsl; empty without any.
+std::vector<float> grids_of(const std::vector<Obstacle>& obstacles) {
+  std::vector<float> out;
+  if (!any_mesh(obstacles)) return out;
+  constexpr std::size_t head = 8;
+  out.resize(head * obstacles.size());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (!obstacles[k].mesh) continue;
+    const DistanceGrid& grid = obstacles[k].mesh->grid();
+    float* const row = &out[head * k];
+    for (std::size_t a = 0; a < 3; ++a) {
+      row[a] = static_cast<float>(grid.low_m[a]);
+      row[4 + a] = std::bit_cast<float>(static_cast<std::int32_t>(grid.nodes[a]));
+    }
+    row[3] = static_cast<float>(grid.step_m);
+    row[7] = std::bit_cast<float>(static_cast<std::int32_t>(out.size()));
+    out.insert(out.end(), grid.values_m.begin(), grid.values_m.end());
+  }
+  return out;
 }
 }  // namespace
+
+std::string obstacle_defines(const Scene& scene) {
+  if (scene.obstacles.empty()) return "";
+  return any_mesh(scene.obstacles) ? "#define OBSTACLES\n#define MESHES\n" : "#define OBSTACLES\n";
+}
 
 bool lights_the_floor(const Scene& scene) {
   return std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
@@ -77,6 +105,11 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
   no_particles.reserve(16);
   glCreateVertexArrays(1, &vertex_array);
   place_obstacles(motions_at(obstacles, 0));
+  const std::vector<float> words = grids_of(obstacles);
+  if (words.empty()) return;
+  const auto bytes = static_cast<std::int64_t>(words.size() * sizeof words[0]);
+  grids.reserve(bytes);
+  grids.write(words.data(), bytes);
 }
 
 void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motions) {
@@ -90,7 +123,7 @@ void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motion
     const Obstacle& o = obstacles[k];
     const Pose& pose = motions.at(k).pose;
     row(pose.centre_m, o.radius_m);
-    row(half_sides_m(o), 0);
+    row(half_sides_m(o), o.mesh ? 1 : 0);
     row(pose.turn, pose.turn[3]);
   }
   const auto bytes = static_cast<GLsizeiptr>(rows.size() * sizeof rows[0]);
@@ -273,6 +306,7 @@ void FluidRenderer::State::tell_obstacles(const GlProgram& program) const {
 
 void FluidRenderer::State::bind_obstacles() const {
   if (!obstacles.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
+  if (grids.name()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, grids.name());
 }
 
 void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
@@ -288,7 +322,8 @@ void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
 }
 
 void FluidRenderer::State::light_floor() {
-  floor_light->compute({particles_, count_, poses.name(), static_cast<int>(obstacles.size())}, timer);
+  floor_light->compute({particles_, count_, poses.name(), grids.name(), static_cast<int>(obstacles.size())},
+                       timer);
 }
 
 void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {

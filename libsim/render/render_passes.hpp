@@ -31,6 +31,8 @@ void dispatch_particles(std::int64_t count);
 
 /// Does the scene list a picture effect with a strength above 0?
 bool lights_the_floor(const Scene& scene);
+/// What of shaders/obstacles.glsl the scene calls for, as #define lines.
+std::string obstacle_defines(const Scene& scene);
 
 struct FluidRenderer::State {
   RenderOptions options;
@@ -57,6 +59,7 @@ struct FluidRenderer::State {
   GlBuffer counters, no_particles, values;
   std::vector<Obstacle> obstacles;  // of the scene
   GlBuffer poses;                   // of the obstacles; only with some
+  GlBuffer grids;                   // of those that are meshes
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;

@@ -34,7 +34,7 @@ std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::in
               scene.fill_min_m[2] + (iz + 0.5) * dz};
   }
   for (const Obstacle& obstacle : scene.obstacles)
-    std::erase_if(out, [&](const Vec3d& x) { return signed_distance(obstacle, obstacle.start, x) < 0; });
+    std::erase_if(out, [&](const Vec3d& x) { return holds(obstacle, obstacle.start, x); });
   return out;
 }
 

@@ -34,9 +34,9 @@ double viscosity_of(const Scene& scene, std::int64_t n_star);
 struct Scales {
   double length_m = 0, speed_m_s = 0;
   double viscosity_m2_s = 0;  ///< nu, the water's and the effect's
-  double reynolds = 0;  ///< v L / nu
-  double weber = 0;     ///< rho_0 v^2 L / sigma
-  double bond = 0;      ///< rho_0 g L^2 / sigma
+  double reynolds = 0;        ///< v L / nu
+  double weber = 0;           ///< rho_0 v^2 L / sigma
+  double bond = 0;            ///< rho_0 g L^2 / sigma
 };
 Scales scales_of(const Scene& scene, std::int64_t n_star);
 

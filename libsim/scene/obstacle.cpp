@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libsim/scene/mesh_reader.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
@@ -54,7 +55,15 @@ Vector reach(const Obstacle& o, const Pose& pose) {
   return out;
 }
 
+bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
+  return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
+    const Vector at = sum(turned(pose.turn, own), 1, pose.centre_m);
+    const bool low = at[0] < -1e-9 || at[1] < -1e-9 || at[2] < -1e-9;
+    return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open above
+  });
+}
 bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
+  if (o.mesh) return in_tank(*o.mesh, pose, tank_size_m);
   const Vector far = reach(o, pose);
   for (std::size_t a = 0; a < 3; ++a) {
     if (pose.centre_m[a] - far[a] < -1e-9) return false;
@@ -95,11 +104,16 @@ void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle&
   }
 }
 
-Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, const Vector& origin_m) {
+Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, const Vector& origin_m,
+                       const std::optional<std::filesystem::path>& beside) {
   Obstacle out;
   const base::Range size{thinnest_m, farthest_m};
-  const std::string shape = table.choice("shape", {"sphere", "box", "capsule"});
-  if (shape == "box") {
+  const std::string shape = table.choice("shape", {"sphere", "box", "capsule", "mesh"});
+  if (shape == "mesh") {
+    out.shape = ObstacleShape::Mesh;
+    out.mesh = read_mesh(table, size, beside);
+    out.start.turn = out.mesh->turn();
+  } else if (shape == "box") {
     out.shape = ObstacleShape::Box;
     const auto sides = table.numbers("size_m", 3, size);
     out.size_m = {sides[0], sides[1], sides[2]};
@@ -113,7 +127,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   out.start.centre_m = place(table, "centre_m", origin_m);
   if (table.has("rotation_deg")) {
     const double angle = table.number("rotation_deg", {-360, 360}) * std::numbers::pi / 180;
-    out.start.turn = rotation(direction(table, "rotation_axis"), angle);
+    out.start.turn = product(rotation(direction(table, "rotation_axis"), angle), out.start.turn);
   }
   read_motion(table, origin_m, out);
   if (!in_tank(out, out.start, tank_size_m))
@@ -135,7 +149,10 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
 }  // namespace
 
 const char* shape_name(ObstacleShape shape) {
-  return shape == ObstacleShape::Sphere ? "sphere" : shape == ObstacleShape::Box ? "box" : "capsule";
+  return shape == ObstacleShape::Sphere    ? "sphere"
+         : shape == ObstacleShape::Box     ? "box"
+         : shape == ObstacleShape::Capsule ? "capsule"
+                                           : "mesh";
 }
 
 Pose pose_at(const Obstacle& o, double time_s) {
@@ -158,12 +175,18 @@ std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, doubl
 }
 
 Vector half_sides_m(const Obstacle& o) {
+  if (o.mesh) {
+    Vector out{};
+    for (std::size_t k = 0; k < 3; ++k) out[k] = std::max(-o.mesh->low_m()[k], o.mesh->high_m()[k]);
+    return out;
+  }
   if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
   return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
 }
 
 double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_m) {
   const Vector local = turned(back(pose.turn), sum(point_m, -1, pose.centre_m));
+  if (o.mesh) return o.mesh->distance_m(local);
   const Vector half = half_sides_m(o);
   Vector outside{};
   double inside = -1e30;
@@ -175,13 +198,20 @@ double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_
   return (inside > 0 ? length(outside) : inside) - o.radius_m;
 }
 
+bool holds(const Obstacle& o, const Pose& pose, const Vector& point_m) {
+  if (o.mesh && length(sum(point_m, -1, pose.centre_m)) > o.mesh->farthest_m()) return false;
+  return signed_distance(o, pose, point_m) < 0;
+}
+
 double volume_m3(const Obstacle& o) {
+  if (o.mesh) return o.mesh->volume_m3();
   if (o.shape == ObstacleShape::Box) return o.size_m[0] * o.size_m[1] * o.size_m[2];
   const double disc = std::numbers::pi * o.radius_m * o.radius_m;
   return disc * (4 * o.radius_m / 3 + (o.shape == ObstacleShape::Capsule ? o.length_m : 0));
 }
 
 Vector inertia_m2(const Obstacle& o) {
+  if (o.mesh) return o.mesh->inertia_m2();
   const double r2 = o.radius_m * o.radius_m;
   if (o.shape == ObstacleShape::Sphere) return {0.4 * r2, 0.4 * r2, 0.4 * r2};
   if (o.shape == ObstacleShape::Box) {
@@ -201,7 +231,13 @@ bool any_free(const std::vector<Obstacle>& obstacles) {
                      [](const Obstacle& o) { return o.motion == ObstacleMotion::Free; });
 }
 
+bool any_mesh(const std::vector<Obstacle>& obstacles) {
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const Obstacle& o) { return o.shape == ObstacleShape::Mesh; });
+}
+
 double thickness_m(const Obstacle& o) {
+  if (o.mesh) return o.mesh->thickness_m();
   if (o.shape == ObstacleShape::Box) return *std::min_element(o.size_m.begin(), o.size_m.end());
   return 2 * o.radius_m;
 }
@@ -211,16 +247,18 @@ double top_speed(const Obstacle& o) {
   if (o.motion != ObstacleMotion::Turns) return 0;
   const Vector arm = sum(o.start.centre_m, -1, o.about_m);
   const double from_axis = length(sum(arm, -dot(arm, o.axis), o.axis));
-  return std::abs(o.rate_rad_s) * (from_axis + length(half_sides_m(o)) + o.radius_m);
+  const double beyond = o.mesh ? o.mesh->farthest_m() : length(half_sides_m(o)) + o.radius_m;
+  return std::abs(o.rate_rad_s) * (from_axis + beyond);
 }
 
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& tank_size_m,
-                                     const Vector& origin_m, double most_speed_m_s) {
+                                     const Vector& origin_m, double most_speed_m_s,
+                                     const std::optional<std::filesystem::path>& beside) {
   std::vector<Obstacle> out;
   for (const auto& table : scene.tables("obstacle")) {
     if (out.size() == most_obstacles)
       table.fail("", "is one obstacle too many", "use at most " + std::to_string(most_obstacles));
-    out.push_back(read_obstacle(table, tank_size_m, origin_m));
+    out.push_back(read_obstacle(table, tank_size_m, origin_m, beside));
     if (out.back().motion == ObstacleMotion::Free && scene.has("central_force"))
       table.fail("motion", "is free in a scene with a central force, which would not pull it",
                  "leave central_force out, or keep the obstacle fixed");
@@ -241,7 +279,10 @@ std::string obstacles_in_words(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& o : obstacles) {
     out += std::string("  obstacle: ") + shape_name(o.shape);
     if (o.shape == ObstacleShape::Box) out += " of " + vector(o.size_m) + " m";
-    if (o.shape != ObstacleShape::Box) out += " of radius " + base::shortest(o.radius_m) + " m";
+    if (o.mesh)
+      out += " " + o.mesh->sha256().substr(0, 12) + " of " + base::shortest(o.mesh->volume_m3()) + " m3";
+    else if (o.shape != ObstacleShape::Box)
+      out += " of radius " + base::shortest(o.radius_m) + " m";
     if (o.shape == ObstacleShape::Capsule) out += ", axis " + base::shortest(o.length_m) + " m";
     out += " at " + vector(o.start.centre_m) + " m, turned by " + vector(o.start.turn);
     if (o.motion == ObstacleMotion::Turns)

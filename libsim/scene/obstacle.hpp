@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,9 @@ class TomlTable;
 
 namespace sim {
 
-enum class ObstacleShape { Sphere, Box, Capsule };
+class Mesh;  // libsim/scene/mesh.hpp
+
+enum class ObstacleShape { Sphere, Box, Capsule, Mesh };
 
 /// Of free obstacles: lighter ones leap.
 inline constexpr double lightest_free_kg_m3 = 50;
@@ -50,7 +55,8 @@ struct Obstacle {
   double radius_m = 0;             ///< of a sphere or a capsule
   double length_m = 0;             ///< of a capsule's axis, between the centres of its round ends; along y
   std::array<double, 3> size_m{};  ///< of a box, along its own axes
-  Pose start;                      ///< at rest and at frame 0
+  std::shared_ptr<const Mesh> mesh;
+  Pose start;  ///< at rest and at frame 0
   ObstacleMotion motion = ObstacleMotion::Fixed;
   std::array<double, 3> about_m{};      ///< a point of the axis that it turns about
   std::array<double, 3> axis{0, 1, 0};  ///< direction of that axis, a unit vector
@@ -69,24 +75,29 @@ Pose pose_at(const Obstacle& obstacle, double time_s);
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
+/// Is the point inside? Quicker than its distance.
+bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half the sides of the box round which the shape lies within radius_m, along its own axes: of a box half
-/// its sides, of a capsule half its axis.
+/// its sides, of a capsule half its axis. A mesh lies in that box.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about its own axes over its mass, of an even density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
-/// The shortest way through the middle, m.
+bool any_mesh(const std::vector<Obstacle>& obstacles);
+/// The shortest way through the middle, m; of a mesh twice the depth of its deepest place.
 double thickness_m(const Obstacle& obstacle);
 /// Speed that no point of it ever exceeds, m/s; of a free one nobody knows: 0.
 double top_speed(const Obstacle& obstacle);
 
 /// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
 /// key, a size that is not positive, an axis without direction, a place or a way that leaves the tank, more
-/// than most_obstacles, one that is faster than most_speed_m_s. origin_m: Scene::origin_m, which places then
-/// count from.
+/// than most_obstacles, one that is faster than most_speed_m_s; in a mesh's file at file:line. origin_m:
+/// Scene::origin_m, which places then count from. beside: the folder that files of meshes count from, if the
+/// text has one.
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
-                                     const std::array<double, 3>& origin_m, double most_speed_m_s);
+                                     const std::array<double, 3>& origin_m, double most_speed_m_s,
+                                     const std::optional<std::filesystem::path>& beside = {});
 
 /// The obstacles in words, for people and for keys of saved states; empty without any.
 std::string obstacles_in_words(const std::vector<Obstacle>& obstacles);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/mesh_reader.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/toml.hpp"
 
@@ -158,7 +159,8 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& name) {
+Scene parse_scene(std::string_view text, const std::string& name,
+                  const std::optional<std::filesystem::path>& beside) {
   const auto root = base::parse_toml(text, name);
   const std::int64_t format = root.integer("format");
   if (format < 1 || format > newest_format) {
@@ -195,7 +197,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   scene.effects = read_effects(effects);
   scene.picture_effects = read_picture_effects(effects);
   read_warm(root, scene);
-  scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m, scene.v_ref_m_s);
+  scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m, scene.v_ref_m_s, beside);
   read_nozzles(root, scene);
   scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
   scene.view = camera(root.table("view"), scene.origin_m);
@@ -216,7 +218,16 @@ Scene parse_scene(std::string_view text, const std::string& name) {
 
 Scene read_scene(const std::filesystem::path& path) {
   const auto found = base::find_input(path);
-  return parse_scene(base::read_file(found, 1 << 20), found.string());
+  const std::string text = base::read_file(found, most_scene_bytes);
+  Scene out = parse_scene(text, found.string(), found.parent_path());
+  // Who changes a mesh's file has another scene.
+  out.sha256 = base::sha256_hex(with_meshes(text, found));
+  return out;
+}
+
+std::string scene_text(const std::filesystem::path& path) {
+  const auto found = base::find_input(path);
+  return with_meshes(base::read_file(found, most_scene_bytes), found);
 }
 
 }  // namespace sim

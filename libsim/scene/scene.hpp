@@ -81,13 +81,16 @@ struct Scene {
   double recirculation_corner_m = 0;
   Camera view;         ///< the participant's
   Camera overview;     ///< for figures
-  std::string sha256;  ///< of the file's text
+  std::string sha256;  ///< of the file's text, or of scene_text() where it names files of meshes
 };
 
 /// Formats 1 and 2, which has [[effect]] and [[obstacle]]. Errors are base::Error at file:line:column:
 /// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that do not go
-/// together.
-Scene parse_scene(std::string_view text, const std::string& name);
+/// together. beside: the folder that files of meshes count from, if the text has one.
+Scene parse_scene(std::string_view text, const std::string& name,
+                  const std::optional<std::filesystem::path>& beside = {});
 Scene read_scene(const std::filesystem::path& path);
+/// The file's text as it stands alone: with the triangles of its meshes in it. Scene::sha256 is its hash.
+std::string scene_text(const std::filesystem::path& path);
 
 }  // namespace sim

@@ -60,6 +60,7 @@ FluidState copy_of(const FluidState& live) {
   out.parameters = live.parameters;
   out.walls = live.walls;
   out.obstacles.bodies.from_host(live.obstacles.bodies.to_host());
+  out.obstacles.meshes.from_host(live.obstacles.meshes.to_host());
   out.domain = live.domain;
   out.supports = live.supports;
   out.finest_support = live.finest_support;

@@ -59,6 +59,7 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   o.obstacles = scene.obstacles;
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));
+  place_meshes(o);
   if (any_free(o.obstacles)) {
     if (time_s > 0)
       throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",

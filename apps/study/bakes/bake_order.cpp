@@ -79,8 +79,8 @@ std::string effects_words(const sim::BakeHeader& header) {
 
 sim::BakeHeader header_of(const BakeOrder& order) {
   sim::BakeHeader header;
-  header.scene_text = base::read_file(order.fluid.scene, 1 << 20);
-  sim::Scene scene = sim::parse_scene(header.scene_text, order.fluid.scene.string());
+  header.scene_text = sim::scene_text(order.fluid.scene);
+  sim::Scene scene = sim::read_scene(order.fluid.scene);
   if (order.fluid.effects) scene.effects = *order.fluid.effects;
   if (sim::any_free(scene.obstacles) && !order.pictures)
     throw base::Error(order.fluid.scene.string(),

@@ -37,7 +37,7 @@ SIM_FN Vec3 slowed_by(const Solids& solids, Vec4 at, Vec3 v, float way) {
   const float d = 0.5f * at.w;
   for (int b = 0; b < solids.count; ++b) {
     const Body& body = solids.bodies[b];
-    const Body::Near near = body.near(xyz(at));
+    const Body::Near near = solids.near(b, xyz(at));
     if (near.distance >= d) continue;
     v = slowed(v, body.velocity_at(xyz(at)), near.normal, way / d * face_share(body, xyz(at), near.distance));
   }

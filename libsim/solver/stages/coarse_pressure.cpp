@@ -115,7 +115,7 @@ struct ClassifyRound {
     const float away = solids.nearest_body(at, body);
     const float wide = frame.edge.y;
     if (grid.kind[i] == CellKind::Solid || away > 0.5f * wide || sums[i].volume > 0) return;
-    const Vec3 outside = at + (0.75f * wide - away) * solids.bodies[body].near(at).normal;
+    const Vec3 outside = at + (0.75f * wide - away) * solids.near(body, at).normal;
     const Vec3 there = frame.in_cells(outside);
     const int x = static_cast<int>(floorf(there.x));
     const int y = static_cast<int>(floorf(there.y));

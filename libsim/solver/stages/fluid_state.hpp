@@ -131,7 +131,9 @@ struct FluidState {
   }
   /// What bounds the water of a scene with obstacles; others have `walls`. Kernels are templates of the two,
   /// so that those of a scene without obstacles know nothing of them.
-  Solids solids() const { return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt}; }
+  Solids solids() const {
+    return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt, obstacles.meshes.data()};
+  }
   /// Is what walls and obstacles do to places told to anybody?
   bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }
   BodyListener body_listener(float times) {

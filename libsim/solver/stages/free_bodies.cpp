@@ -11,6 +11,7 @@ namespace {
 struct Move {
   Body* bodies;
   FreeBody* free;
+  const MeshGrid* meshes;  ///< as Solids has them
   Walls walls;
   Guards* guards;
   float gravity, dt, most_speed;
@@ -26,11 +27,12 @@ struct Move {
     it.momentum.y -= it.mass * gravity * dt;
     it.spin += dt * it.torque;
     limit(it);
-    WallContact{walls, body, it, dt}.stop();
+    const WallContact contact{walls, body, it, dt, mesh_of(meshes, b)};
+    contact.stop();
     const Vec3 from = body.centre;
     body.centre = fused(from, dt / it.mass, it.momentum);
     turn_on(body, it, dt);
-    body.centre += WallContact{walls, body, it, dt}.way_back();
+    body.centre += contact.way_back();
     body.velocity = (1 / dt) * (body.centre - from);
   }
   SIM_FN void limit(FreeBody& it) const {
@@ -86,6 +88,7 @@ void move(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   for_each("move bodies", o.count(),
            Move{.bodies = o.bodies.data(),
                 .free = o.free.data(),
+                .meshes = o.meshes.data(),
                 .walls = state.walls,
                 .guards = state.guard(),
                 .gravity = k.gravity,

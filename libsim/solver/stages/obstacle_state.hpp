@@ -16,6 +16,10 @@ struct ObstacleState {
   /// Volume of each below the water's level, over that of m_*, as CellWater counts; only with free ones.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
+  // None while no obstacle is a mesh:
+  Array<MeshGrid> meshes;     ///< as `bodies`
+  Array<float> distances;     ///< of all their grids
+  Array<Vec3> mesh_contacts;  ///< of all of them
 
   bool there() const { return bodies.size() > 0; }
   bool told() const { return sums.size() > 0; }
@@ -24,6 +28,9 @@ struct ObstacleState {
     if (told()) sums.zero();
   }
 };
+
+/// Brings the grids of obstacles that are meshes to the device.
+void place_meshes(ObstacleState& state);
 
 /// The obstacles where a scene has them at this time, as they came there in `dt`; at rest for dt = 0.
 std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_s, double dt);

@@ -1,3 +1,4 @@
+#include "libsim/scene/mesh.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -61,6 +62,40 @@ std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_
     out.push_back(body);
   }
   return out;
+}
+
+void place_meshes(ObstacleState& state) {
+  if (!any_mesh(state.obstacles)) return;
+  std::vector<float> distances;
+  std::vector<Vec3> contacts;
+  std::vector<std::array<std::size_t, 2>> begin;
+  for (const Obstacle& o : state.obstacles) {
+    begin.push_back({distances.size(), contacts.size()});
+    if (!o.mesh) continue;
+    const auto& values = o.mesh->grid().values_m;
+    distances.insert(distances.end(), values.begin(), values.end());
+    for (const auto& contact : o.mesh->contacts_m()) contacts.push_back(vector(contact));
+  }
+  state.distances.from_host(distances);
+  state.mesh_contacts.from_host(contacts);
+  std::vector<MeshGrid> meshes;
+  for (std::size_t k = 0; k < state.obstacles.size(); ++k) {
+    MeshGrid out{};
+    if (const auto& mesh = state.obstacles[k].mesh) {
+      const DistanceGrid& grid = mesh->grid();
+      const std::size_t end = k + 1 < begin.size() ? begin[k + 1][1] : contacts.size();
+      out = {.low = vector(grid.low_m),
+             .step = static_cast<float>(grid.step_m),
+             .nx = grid.nodes[0],
+             .ny = grid.nodes[1],
+             .nz = grid.nodes[2],
+             .values = state.distances.data() + begin[k][0],
+             .contacts = state.mesh_contacts.data() + begin[k][1],
+             .contact_count = static_cast<int>(end - begin[k][1])};
+    }
+    meshes.push_back(out);
+  }
+  state.meshes.from_host(meshes);
 }
 
 Stage obstacles_stage() {

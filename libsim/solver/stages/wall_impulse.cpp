@@ -95,7 +95,7 @@ struct MissingInBodies {
     if (lambda[i] == 0) return;
     const Vec4 at = predicted[i];
     for (int b = 0; b < solids.count; ++b) {
-      const Body::Near near = solids.bodies[b].near(xyz(at));
+      const Body::Near near = solids.near(b, xyz(at));
       if (near.distance >= at.w) continue;
       const Vec3 gradient = solids.missing_gradient(b, xyz(at), at.w);
       to.add(b, xyz(at) - near.distance * near.normal, (lambda[i] / mass_unit) * gradient);

@@ -1,0 +1,62 @@
+#pragma once
+/// Meshes as particles meet them: signed distances at the nodes of a grid (libsim/scene/mesh.hpp).
+
+#include "libsim/exec/vec.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// What a place has of a body's surface.
+struct NearSurface {
+  float distance;  ///< signed, m
+  Vec3 normal;     ///< outwards
+};
+
+struct MeshGrid {
+  Vec3 low;
+  float step;
+  int nx, ny, nz;
+  const float* values;   ///< m, x fastest; nullptr: the body is no mesh
+  const Vec3* contacts;  ///< places of the surface that walls meet, in the body's own axes
+  int contact_count;
+
+  /// Between nodes the distance is trilinear, and the normal is its slope. Beyond the grid both are those
+  /// from the place of the surface that the nearest point of the grid has. A call of its own: scenes whose
+  /// bodies are no meshes carry no more of it than that.
+  SIM_FN_APART NearSurface near(Vec3 p) const {
+    const Vec3 most{static_cast<float>(nx - 1), static_cast<float>(ny - 1), static_cast<float>(nz - 1)};
+    const Vec3 cells = (1 / step) * (p - low);
+    const Vec3 within{at_most(at_least(cells.x, 0.0f), most.x), at_most(at_least(cells.y, 0.0f), most.y),
+                      at_most(at_least(cells.z, 0.0f), most.z)};
+    const int x = floor_within(within.x, 0, nx - 2);
+    const int y = floor_within(within.y, 0, ny - 2);
+    const int z = floor_within(within.z, 0, nz - 2);
+    const float u = within.x - static_cast<float>(x);
+    const float v = within.y - static_cast<float>(y);
+    const float w = within.z - static_cast<float>(z);
+    const float* at = values + (static_cast<long long>(z) * ny + y) * nx + x;
+    const float* up = at + nx;
+    const float* back = at + static_cast<long long>(nx) * ny;
+    const float* both = back + nx;
+    // Slopes along x of the cell's four edges, and the distances there.
+    const float s0 = at[1] - at[0], s1 = up[1] - up[0], s2 = back[1] - back[0], s3 = both[1] - both[0];
+    const float d0 = at[0] + u * s0, d1 = up[0] + u * s1, d2 = back[0] + u * s2, d3 = both[0] + u * s3;
+    const float front = d0 + v * (d1 - d0), behind = d2 + v * (d3 - d2);
+    const Vec3 slope{(1 - w) * (s0 + v * (s1 - s0)) + w * (s2 + v * (s3 - s2)),
+                     (1 - w) * (d1 - d0) + w * (d3 - d2), behind - front};
+    const float steep = length(slope);
+    // In the middle of a body slopes cancel.
+    const Vec3 normal = steep > 1e-6f * step ? (1 / steep) * slope : Vec3{0, 1, 0};
+    const float distance = front + w * (behind - front);
+    if (within.x == cells.x && within.y == cells.y && within.z == cells.z) return {distance, normal};
+    const Vec3 from = p - (low + step * within) + distance * normal;
+    const float away = length(from);
+    return {away, away > 0 ? (1 / away) * from : normal};
+  }
+};
+
+/// The mesh of a body; nullptr: it is another shape.
+SIM_FN const MeshGrid* mesh_of(const MeshGrid* meshes, int body) {
+  return meshes && meshes[body].values ? &meshes[body] : nullptr;
+}
+
+}  // namespace sim::SIM_BACKEND

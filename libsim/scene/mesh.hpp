@@ -1,0 +1,77 @@
+#pragma once
+/// A mesh as a rigid body: where its mass lies, and its signed distance on a grid.
+
+#include <array>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "libsim/scene/obj_text.hpp"
+#include "libsim/scene/surface_tree.hpp"
+
+namespace sim {
+
+/// Signed distances at the nodes of a grid round the surface, x fastest.
+struct DistanceGrid {
+  std::array<double, 3> low_m{};
+  double step_m = 0;
+  std::array<int, 3> nodes{};
+  std::vector<float> values_m;
+};
+
+/// Volume, centre of mass and moments of what a surface encloses, of an even density: the sums over its
+/// tetrahedra with one point.
+struct MassProperties {
+  double volume_m3 = 0;
+  std::array<double, 3> centre_m{};
+  /// Inertia tensor about the centre over the mass, m2.
+  std::array<std::array<double, 3>, 3> inertia_m2{};
+};
+MassProperties mass_properties(const Triangles& mesh);
+
+inline constexpr std::size_t most_grid_nodes = 1 << 21;
+
+/// The body's own axes begin in its centre of mass and are its principal ones, those of the file where these
+/// are principal.
+class Mesh {
+ public:
+  /// spacing_m: of the grid, which must not have more than most_grid_nodes; 0: a 48th of the longest side, or
+  /// a quarter of the shortest.
+  Mesh(const Triangles& mesh, double spacing_m);
+
+  const std::vector<std::array<double, 3>>& places_m() const { return mesh_.places; }
+  double volume_m3() const { return volume_m3_; }
+  const std::array<double, 3>& inertia_m2() const { return inertia_m2_; }
+  /// Unit quaternion x, y, z, w from its own axes to the file's.
+  const std::array<double, 4>& turn() const { return turn_; }
+  /// Of the box round it along its own axes.
+  const std::array<double, 3>& low_m() const { return low_m_; }
+  const std::array<double, 3>& high_m() const { return high_m_; }
+  double farthest_m() const { return farthest_m_; }  ///< of its places from the centre
+  double spacing_m() const { return spacing_m_; }
+  double grid_nodes() const;  ///< how many
+  /// Signed distance in its own axes, exact.
+  double distance_m(const std::array<double, 3>& at_m) const { return tree_.distance(at_m); }
+  /// Computed when first asked for. The same bits for any number of threads.
+  const DistanceGrid& grid() const;
+  /// Places of the surface that walls meet: the farthest ones in some 70 directions.
+  std::vector<std::array<double, 3>> contacts_m() const;
+  /// Twice the depth of its deepest node, m.
+  double thickness_m() const;
+  /// SHA-256 of all that it was made of.
+  const std::string& sha256() const { return sha256_; }
+
+ private:
+  double nodes_along(std::size_t axis) const;
+  Triangles mesh_;
+  double volume_m3_ = 0;
+  std::array<double, 3> inertia_m2_{}, low_m_{}, high_m_{};
+  std::array<double, 4> turn_{0, 0, 0, 1};
+  double farthest_m_ = 0, spacing_m_ = 0;
+  std::string sha256_;
+  SurfaceTree tree_;
+  mutable std::once_flag baked_;
+  mutable DistanceGrid grid_;
+};
+
+}  // namespace sim

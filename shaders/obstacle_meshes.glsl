@@ -1,0 +1,72 @@
+// Obstacles that are meshes: signed distances at the nodes of grids, as the solver has them.
+layout(std430, binding = 5) readonly buffer ObstacleGrids {
+  float obstacle_grids[];  // eight words an obstacle: low corner, step; nodes, where its distances begin. Then these
+};
+
+const int most_mesh_steps = 128;
+const int halvings = 8;  // of the last step
+
+struct MeshGrid {
+  vec3 low;
+  float step;
+  ivec3 nodes;
+  int first;
+};
+
+MeshGrid mesh_grid(int k) {
+  const int at = 8 * k;
+  const vec4 place = vec4(obstacle_grids[at], obstacle_grids[at + 1], obstacle_grids[at + 2], obstacle_grids[at + 3]);
+  const ivec4 size = floatBitsToInt(
+      vec4(obstacle_grids[at + 4], obstacle_grids[at + 5], obstacle_grids[at + 6], obstacle_grids[at + 7]));
+  return MeshGrid(place.xyz, place.w, size.xyz, size.w);
+}
+
+// Trilinear, at the nearest place of the grid.
+float mesh_distance(MeshGrid grid, vec3 p) {
+  const vec3 cells = clamp((p - grid.low) / grid.step, vec3(0.0), vec3(grid.nodes - 1));
+  const ivec3 cell = min(ivec3(cells), grid.nodes - 2);
+  const vec3 f = cells - vec3(cell);
+  const int at = grid.first + (cell.z * grid.nodes.y + cell.y) * grid.nodes.x + cell.x;
+  const int up = at + grid.nodes.x, back = at + grid.nodes.x * grid.nodes.y, both = back + grid.nodes.x;
+  const vec4 low = vec4(obstacle_grids[at], obstacle_grids[up], obstacle_grids[back], obstacle_grids[both]);
+  const vec4 high =
+      vec4(obstacle_grids[at + 1], obstacle_grids[up + 1], obstacle_grids[back + 1], obstacle_grids[both + 1]);
+  const vec4 along = mix(low, high, f.x);
+  const vec2 across = mix(along.xz, along.yw, f.y);
+  return mix(across.x, across.y, f.z);
+}
+
+vec3 mesh_normal(MeshGrid grid, vec3 p) {
+  const vec2 e = vec2(grid.step, 0.0);
+  const vec3 slope = vec3(mesh_distance(grid, p + e.xyy) - mesh_distance(grid, p - e.xyy),
+                          mesh_distance(grid, p + e.yxy) - mesh_distance(grid, p - e.yxy),
+                          mesh_distance(grid, p + e.yyx) - mesh_distance(grid, p - e.yyx));
+  return dot(slope, slope) > 0.0 ? normalize(slope) : vec3(0.0, 1.0, 0.0);
+}
+
+// Where a ray goes from outside to inside: steps as long as the distance, then halves of the last one.
+float meet_mesh(MeshGrid grid, vec3 o, vec3 d) {
+  const vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
+  const vec3 high = grid.low + grid.step * vec3(grid.nodes - 1);
+  const vec3 a = (grid.low - o) / safe, b = (high - o) / safe;
+  const vec3 near = min(a, b), far = max(a, b);
+  const float leave = min(far.x, min(far.y, far.z));
+  float at = max(max(near.x, max(near.y, near.z)), 0.0);
+  float before = at;
+  bool outside = false;
+  for (int k = 0; k < most_mesh_steps && at < leave; ++k) {
+    const float away = mesh_distance(grid, o + at * d);
+    if (away <= 0.0 && outside) {
+      for (int half_step = 0; half_step < halvings; ++half_step) {
+        const float middle = 0.5 * (before + at);
+        if (mesh_distance(grid, o + middle * d) > 0.0) before = middle;
+        else at = middle;
+      }
+      return at;
+    }
+    outside = away > 0.0;
+    before = at;
+    at += max(abs(away), 0.05 * grid.step);
+  }
+  return -1.0;
+}
