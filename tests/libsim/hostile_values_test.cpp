@@ -26,7 +26,9 @@ std::vector<test::SoundText> texts_in(const fs::path& folder) {
 TEST(HostileValues, OfAnyKeyOfASceneAreTakenOrRefusedWithPlaceAndMend) {
   const auto names = test::try_hostile_values(
       texts_in(base::resource("data/scenes")),
-      [](const std::string& text) { return sim::parse_scene(text, test::hostile_name); },
+      [](const std::string& text) {
+        return sim::parse_scene(text, test::hostile_name, base::resource("data/scenes"));
+      },
       [](const sim::Scene& scene) {
         const auto method = sim::MethodKind::HiRes;
         sim::substeps_of(scene, 64);

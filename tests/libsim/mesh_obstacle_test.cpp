@@ -1,0 +1,228 @@
+/// Obstacles that are meshes: their tables, files beside the scene, what identifies them, and the water.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cstring>
+
+#include "libsim/scene/mesh_reader.hpp"
+#include "libsim/scene/obstacle.hpp"
+#include "stats/base/error.hpp"
+#include "tests/common/temporary_folder.hpp"
+#include "tests/libsim/fluid_helpers.hpp"
+#include "tests/libsim/mesh_shapes.hpp"
+
+namespace {
+
+using mesh_test::box_text;
+using sim::MethodKind;
+using sim::Obstacle;
+using sim::ObstacleMotion;
+using sim::ObstacleShape;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string dam_with(const std::string& keys) {
+  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
+  const std::string old = "format = 1";
+  return text.replace(text.find(old), old.size(), "format = 2") +
+         "\n[[obstacle]]\nshape = \"mesh\"\ncentre_m = [2.0, 1.0, 2.0]\n" + keys;
+}
+const std::string brick = box_text({1, 1, 1}, {1.6, 1.5, 1.4});
+std::string inline_brick() { return "obj = '''\n" + brick + "'''\n"; }
+
+TEST(MeshObstacles, AreReadFromAFileOrFromTheText) {
+  const test::TemporaryFolder folder;
+  base::write_file_atomically(folder.path() / "brick.obj", brick);
+  const auto scene = sim::parse_scene(
+      dam_with("file = \"brick.obj\"\nscale = 2.0\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 90.0\n"),
+      "scene.toml", folder.path());
+  const Obstacle& o = scene.obstacles.at(0);
+  EXPECT_EQ(o.shape, ObstacleShape::Mesh);
+  EXPECT_NEAR(sim::volume_m3(o), 8 * 0.12, 1e-12);
+  EXPECT_NEAR(sim::inertia_m2(o)[0], (1.0 + 0.64) / 12, 1e-12);
+  EXPECT_NEAR(sim::signed_distance(o, o.start, {2, 1, 2.6 + 0.1}), 0.1, 1e-12) << "its x lies along z";
+  EXPECT_TRUE(sim::holds(o, o.start, {2.3, 1.1, 2.1}));
+  EXPECT_FALSE(sim::holds(o, o.start, {2.5, 1.1, 2.1}));
+  EXPECT_FALSE(sim::holds(o, o.start, {9, 1.1, 2.1}));
+  EXPECT_THAT(sim::obstacles_in_words(scene.obstacles), HasSubstr("mesh " + o.mesh->sha256().substr(0, 12)));
+  const auto text = sim::parse_scene(dam_with(inline_brick() + "scale = 2.0\n"), "scene.toml");
+  EXPECT_EQ(text.obstacles.at(0).mesh->sha256(), o.mesh->sha256());
+}
+
+TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
+  const test::TemporaryFolder folder;
+  base::write_file_atomically(folder.path() / "open.obj", brick.substr(0, brick.rfind("f ")));
+  const auto error = [&](const std::string& keys) {
+    try {
+      sim::parse_scene(dam_with(keys), "scene.toml", folder.path());
+    } catch (const base::Error& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error(inline_brick()), "no error");
+  EXPECT_THAT(error(""), AllOf(HasSubstr("scene.toml:"), HasSubstr("is a mesh without a file")));
+  EXPECT_THAT(error("file = \"none.obj\"\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("does not exist")));
+  EXPECT_THAT(error("file = \"\"\n"), HasSubstr("is not the name of a file"));
+  EXPECT_THAT(error("file = \"open.obj\"\n" + inline_brick()), HasSubstr("stands beside obj"));
+  EXPECT_THAT(error("file = \"open.obj\"\n"), AllOf(HasSubstr("open.obj:"), HasSubstr("the edge from place"),
+                                                    HasSubstr("close the surface")));
+  EXPECT_THAT(error("obj = '''\nv 0 0\n'''\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("in its line 1 ")));
+  EXPECT_THAT(error(inline_brick() + "scale = 0.0\n"), HasSubstr("scale"));
+  EXPECT_THAT(error(inline_brick() + "scale = 1e-5\n"), HasSubstr("m long on one side"));
+  EXPECT_THAT(error(inline_brick() + "scale = 20.0\n"), HasSubstr("outside the tank"));
+  EXPECT_THAT(error(inline_brick() + "spacing_m = 1.0\n"), HasSubstr("half of the mesh's shortest side"));
+  EXPECT_THAT(error(inline_brick() + "spacing_m = 1e-3\n"), HasSubstr("use at most 2097152"));
+  EXPECT_THAT(error(inline_brick() + "radius_m = 1.0\n"), HasSubstr("radius_m"));
+  EXPECT_THAT(fluid_test::scene_error(dam_with("file = \"open.obj\"\n")),
+              HasSubstr("comes without a folder"));
+}
+
+/// The file's content is a part of what a scene is, and its text stands alone.
+TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
+  const test::TemporaryFolder folder;
+  const auto scene_file = folder.path() / "scene.toml", mesh_file = folder.path() / "brick.obj";
+  base::write_file_atomically(scene_file, dam_with("  file = 'brick.obj'  # beside\n"));
+  base::write_file_atomically(mesh_file, "# of no meaning\n" + brick);
+  const auto scene = sim::read_scene(scene_file);
+  const std::string alone = sim::scene_text(scene_file);
+  const auto again = sim::parse_scene(alone, "alone");
+  EXPECT_EQ(again.sha256, scene.sha256);
+  EXPECT_EQ(again.obstacles.at(0).mesh->sha256(), scene.obstacles.at(0).mesh->sha256());
+  base::write_file_atomically(mesh_file, brick);
+  EXPECT_EQ(sim::read_scene(scene_file).sha256, scene.sha256) << "comments shape nothing";
+  base::write_file_atomically(mesh_file, box_text({1, 1, 1}, {1.6, 1.5, 1.5}));
+  EXPECT_NE(sim::read_scene(scene_file).sha256, scene.sha256);
+  EXPECT_THAT(alone, HasSubstr("obj = '''\nv 1 1 1\n"));
+  // Without a file the text is the file's.
+  base::write_file_atomically(scene_file, dam_with(inline_brick()));
+  EXPECT_EQ(sim::scene_text(scene_file), dam_with(inline_brick()));
+  const std::string one_line =
+      "obstacle = [{shape = \"mesh\", centre_m = [2.0, 1.0, 2.0], file = \"brick.obj\"}]\n";
+  std::string dam = dam_with("");
+  base::write_file_atomically(scene_file, one_line + dam.substr(0, dam.find("[[obstacle]]")));
+  try {
+    sim::read_scene(scene_file);
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("scene.toml"), HasSubstr("on a line of its own")));
+  }
+}
+
+/// A pool with a cube, as a box or as a mesh.
+sim::Scene pool(bool as_mesh, ObstacleMotion motion = ObstacleMotion::Fixed) {
+  auto scene = fluid_test::tank({1, 1.5, 1}, {1, 0.75, 1}, 20);
+  scene.v_ref_m_s = 2;
+  Obstacle cube;
+  cube.shape = as_mesh ? ObstacleShape::Mesh : ObstacleShape::Box;
+  cube.size_m = {0.4, 0.4, 0.4};
+  if (as_mesh)
+    cube.mesh = std::make_shared<const sim::Mesh>(
+        mesh_test::triangles(box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})), 0);
+  cube.start.centre_m = {0.5, 0.45, 0.5};
+  cube.motion = motion;
+  cube.way_m = {0.1, 0, 0};
+  cube.period_s = 1;
+  cube.density_kg_m3 = 500;
+  scene.obstacles = {cube};
+  return scene;
+}
+sim::SimulationOptions options_of(MethodKind method = MethodKind::HiRes) {
+  sim::SimulationOptions out;
+  out.method = method;
+  out.n_star = 128;
+  return out;
+}
+
+TEST(MeshObstacles, WaterInsideIsLeftOutAndStaysOut) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) {
+    const auto scene = pool(true, ObstacleMotion::Swings);
+    const auto fluid = sim::make_simulation(scene, options_of(method));
+    EXPECT_NEAR(static_cast<double>(fluid->report().mass_units) / 1024, 1 - 0.064 / 0.75, 0.02);
+    for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
+    const sim::Pose now = sim::pose_at(scene.obstacles[0], fluid->time_s());
+    for (const auto& p : fluid->read_state()) {
+      const sim::Vec3d at{static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)};
+      EXPECT_GT(sim::signed_distance(scene.obstacles[0], now, at), -0.03 * fluid->spacing_m()) << p.id;
+    }
+    EXPECT_EQ(fluid->report().guards.not_finite, 0u);
+  }
+}
+
+/// Means over the second second.
+struct Afloat {
+  double height_m = 0, push_n = 0;
+};
+Afloat afloat(bool as_mesh, ObstacleMotion motion) {
+  auto options = options_of();
+  options.wall_impulse = true;
+  const auto fluid = sim::make_simulation(pool(as_mesh, motion), options);
+  Afloat out;
+  constexpr int frames = 60;
+  for (int frame = 0; frame < 2 * frames; ++frame) {
+    fluid->step_frame();
+    if (frame < frames) continue;
+    out.height_m += fluid->read_obstacles().at(0).pose.centre_m[1] / frames;
+    out.push_n -= 60 * fluid->momentum().obstacles.at(0).push[1] / frames;
+  }
+  EXPECT_EQ(fluid->report().guards.not_finite, 0u);
+  return out;
+}
+
+TEST(MeshObstacles, ACubeOfTrianglesIsABox) {
+  const Afloat box = afloat(false, ObstacleMotion::Free), mesh = afloat(true, ObstacleMotion::Free);
+  std::printf("afloat: box %.4f m, mesh %.4f m\n", box.height_m, mesh.height_m);
+  EXPECT_NEAR(mesh.height_m, box.height_m, 0.02);
+  EXPECT_NEAR(mesh.push_n, 9.81 * 500 * 0.064, 0.03 * 9.81 * 500 * 0.064) << "it bears its weight";
+  const Afloat held = afloat(false, ObstacleMotion::Fixed), mesh_held = afloat(true, ObstacleMotion::Fixed);
+  std::printf("held: box %.1f N, mesh %.1f N, Archimedes %.1f N\n", held.push_n, mesh_held.push_n,
+              9810 * 0.064);
+  EXPECT_NEAR(mesh_held.push_n, held.push_n, 0.05 * 9810 * 0.064);
+}
+
+std::vector<sim::ParticleState> run(const sim::Scene& scene, const sim::SimulationOptions& options,
+                                    int frames) {
+  const auto fluid = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
+  return fluid->read_state();
+}
+bool same_bits(const std::vector<sim::ParticleState>& a, const std::vector<sim::ParticleState>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+TEST(MeshObstacles, ThreadsChangeNoBit) {
+  const int usual = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const auto one = run(pool(true, ObstacleMotion::Free), options_of(MethodKind::Ours), 20);
+  omp_set_num_threads(3);
+  const auto three = run(pool(true, ObstacleMotion::Free), options_of(MethodKind::Ours), 20);
+  omp_set_num_threads(usual);
+  EXPECT_TRUE(same_bits(one, three));
+}
+
+TEST(MeshObstacles, ASavedRunGoesOnBitForBit) {
+  const test::TemporaryFolder folder;
+  const auto scene = pool(true, ObstacleMotion::Free);
+  auto options = options_of();
+  const auto whole = sim::make_simulation(scene, options);
+  for (int frame = 0; frame < 10; ++frame) whole->step_frame();
+  whole->save_state(folder.path() / "state");
+  for (int frame = 0; frame < 10; ++frame) whole->step_frame();
+  options.resume_from = folder.path() / "state";
+  EXPECT_TRUE(same_bits(run(scene, options, 10), whole->read_state()));
+  auto other = scene;
+  other.obstacles[0].mesh = std::make_shared<const sim::Mesh>(
+      mesh_test::triangles(box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.21})), 0);
+  EXPECT_THROW(sim::make_simulation(other, options), base::Error) << "a state of another mesh";
+}
+
+TEST(MeshObstacles, ThinOnesAreRefused) {
+  auto scene = pool(true);
+  scene.obstacles[0].mesh = std::make_shared<const sim::Mesh>(
+      mesh_test::triangles(box_text({-0.2, -0.2, -0.02}, {0.2, 0.2, 0.02})), 0);
+  EXPECT_THROW(sim::make_simulation(scene, options_of()), base::Error);
+}
+
+}  // namespace
