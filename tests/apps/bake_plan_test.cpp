@@ -158,6 +158,19 @@ TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
   EXPECT_EQ(header_of(other).scene_name, "Float");
 }
 
+/// What a bake holds of its scene needs no file beside it.
+TEST(BakeOrder, HoldsTheTrianglesOfMeshes) {
+  BakeOrder other = order();
+  other.fluid.scene = base::resource("data/scenes/boat.toml");
+  other.pictures = true;
+  const sim::BakeHeader header = header_of(other);
+  EXPECT_THAT(header.scene_text, HasSubstr("obj = '''\nv "));
+  const sim::Scene scene = sim::baked_scene(header);
+  EXPECT_EQ(scene.sha256, header.scene_sha256);
+  EXPECT_EQ(sim::obstacles_in_words(scene.obstacles),
+            sim::obstacles_in_words(sim::read_scene(other.fluid.scene).obstacles));
+}
+
 TEST(SessionBakes, PicturesOfAFreeObstacleArePlayedParticlesAloneAreNot) {
   const auto protocol = study::parse_protocol(
       test::replaced(test::replaced(test::replaced(shipped("ptpe_pilot"), "single_dam", "float"),
