@@ -58,6 +58,7 @@ SIM_TEST(MeshGrids, DistancesAreThoseOfTheShapeWithinHalfACell) {
   for (int k = 0; k < 5000; ++k) {
     const Vec3 p = place(k, 0.56f);
     EXPECT_NEAR(box_mesh.grid.near(p).distance, box(brick_half).distance(p), 0.02f);
+    if (length(p) < 0.08f) continue;  // the cusp in the middle
     EXPECT_NEAR(ball.grid.near(p).distance, length(p) - 0.5f, 0.02f);
     const Body::Near near = ball.grid.near(p);
     EXPECT_NEAR(length(near.normal), 1, 1e-5f);
@@ -120,15 +121,19 @@ SIM_TEST(MeshGrids, ContactsAreThoseOfTheBox) {
   free.mass = 2;
   free.inertia = {0.1f, 0.2f, 0.3f};
   free.momentum = {-6, -8, 2};
-  FreeBody other = free;
-  const WallContact as_box{walls, body, free, 0.02f}, as_mesh{walls, body, other, 0.02f, &mesh.grid};
-  EXPECT_EQ(as_mesh.corners(), 8);
-  as_box.stop();
-  as_mesh.stop();
+  constexpr float dt = 0.005f;
+  EXPECT_LT(length((WallContact{walls, body, free, dt}.way_back()) -
+                   (WallContact{walls, body, free, dt, &mesh.grid}.way_back())),
+            1e-5f);
+  const WallContact contact{walls, body, free, dt, &mesh.grid};
+  EXPECT_EQ(contact.corners(), 8);
+  body.centre += contact.way_back();
+  contact.stop();
   EXPECT_GT(length(free.spin), 0.0f);
-  EXPECT_LT(length(free.momentum - other.momentum), 0.05f);
-  EXPECT_LT(length(free.spin - other.spin), 0.05f);
-  EXPECT_LT(length(as_box.way_back() - as_mesh.way_back()), 1e-5f);
+  turn_on(body, free, dt);
+  body.centre += (dt / free.mass) * free.momentum;
+  EXPECT_LT(length(WallContact{walls, body, free, dt}.way_back()), 0.005f)
+      << "as the box's corners say; without walls it would go 0.02 m";
 }
 
 }  // namespace
