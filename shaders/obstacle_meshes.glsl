@@ -3,7 +3,7 @@ layout(std430, binding = 5) readonly buffer ObstacleGrids {
   float obstacle_grids[];  // eight words an obstacle: low corner, step; nodes, where its distances begin. Then these
 };
 
-const int most_mesh_steps = 128;
+const int most_mesh_steps = 96;
 const int halvings = 8;  // of the last step
 
 struct MeshGrid {
@@ -36,11 +36,14 @@ float mesh_distance(MeshGrid grid, vec3 p) {
   return mix(across.x, across.y, f.z);
 }
 
+// By the differences along the corners of a tetrahedron.
 vec3 mesh_normal(MeshGrid grid, vec3 p) {
-  const vec2 e = vec2(grid.step, 0.0);
-  const vec3 slope = vec3(mesh_distance(grid, p + e.xyy) - mesh_distance(grid, p - e.xyy),
-                          mesh_distance(grid, p + e.yxy) - mesh_distance(grid, p - e.yxy),
-                          mesh_distance(grid, p + e.yyx) - mesh_distance(grid, p - e.yyx));
+  vec3 slope = vec3(0.0);
+  for (int corner = 0; corner < 4; ++corner) {
+    const vec3 way = vec3(corner == 0 || corner == 1 ? 1.0 : -1.0, corner == 0 || corner == 2 ? 1.0 : -1.0,
+                          corner == 0 || corner == 3 ? 1.0 : -1.0);
+    slope += mesh_distance(grid, p + grid.step * way) * way;
+  }
   return dot(slope, slope) > 0.0 ? normalize(slope) : vec3(0.0, 1.0, 0.0);
 }
 
@@ -52,21 +55,23 @@ float meet_mesh(MeshGrid grid, vec3 o, vec3 d) {
   const vec3 near = min(a, b), far = max(a, b);
   const float leave = min(far.x, min(far.y, far.z));
   float at = max(max(near.x, max(near.y, near.z)), 0.0);
-  float before = at;
+  float before = at, inside_at = never;
+  int halves_left = halvings;
   bool outside = false;
-  for (int k = 0; k < most_mesh_steps && at < leave; ++k) {
+  for (int k = 0; k < most_mesh_steps && at < leave && halves_left > 0; ++k) {
     const float away = mesh_distance(grid, o + at * d);
     if (away <= 0.0 && outside) {
-      for (int half_step = 0; half_step < halvings; ++half_step) {
-        const float middle = 0.5 * (before + at);
-        if (mesh_distance(grid, o + middle * d) > 0.0) before = middle;
-        else at = middle;
-      }
-      return at;
+      inside_at = at;
+    } else {
+      outside = away > 0.0;
+      before = at;
     }
-    outside = away > 0.0;
-    before = at;
-    at += max(abs(away), 0.05 * grid.step);
+    if (inside_at < never) {
+      --halves_left;
+      at = 0.5 * (before + inside_at);
+    } else {
+      at += max(abs(away), 0.2 * grid.step);
+    }
   }
-  return -1.0;
+  return inside_at < never ? inside_at : -1.0;
 }

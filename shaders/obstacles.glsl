@@ -3,12 +3,12 @@ layout(std430, binding = 4) readonly buffer Obstacles {
   vec4 obstacles[];  // three each: centre and radius; half sides, 1 for a mesh; turn
 };
 uniform int obstacle_count;
-#ifdef MESHES
-#include "obstacle_meshes.glsl"
-#endif
 
 const vec3 obstacle_colour = vec3(0.55, 0.20, 0.07);
 const float never = 1e30;
+#ifdef MESHES
+#include "obstacle_meshes.glsl"
+#endif
 
 struct Meeting {
   float at;  // way along the ray, never = not at all

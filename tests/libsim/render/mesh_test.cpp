@@ -43,10 +43,16 @@ class MeshObstaclesGl : public render_test::RenderGl {
     }
     return out;
   }
+  static sim::FluidRenderer renderer_of(const sim::Scene& scene) {
+    sim::RenderOptions options = render_test::open_options();
+    options.floor_cells = 128;
+    sim::FluidRenderer out(scene, options);
+    out.place_obstacles(0.25);
+    return out;
+  }
   /// Two eyes beside each other.
-  static sim::Image both_eyes(const sim::Scene& scene, const std::vector<sim::RenderParticle>& particles) {
-    sim::FluidRenderer renderer(scene, render_test::open_options());
-    renderer.place_obstacles(0.25);
+  static sim::Image both_eyes(sim::FluidRenderer& renderer,
+                              const std::vector<sim::RenderParticle>& particles) {
     std::vector<sim::View> views;
     for (int eye = 0; eye < 2; ++eye) {
       sim::Camera camera;
@@ -82,10 +88,12 @@ class MeshObstaclesGl : public render_test::RenderGl {
 TEST_F(MeshObstaclesGl, LookLikeTheShapesThatTheyCopyToBothEyes) {
   auto empty = scene_of(false);
   empty.obstacles.clear();
+  sim::FluidRenderer of_shapes = renderer_of(scene_of(false)), of_meshes = renderer_of(scene_of(true)),
+                     of_nothing = renderer_of(empty);
   for (const auto& particles : {std::vector<sim::RenderParticle>{}, pool()}) {
-    const auto shapes = both_eyes(scene_of(false), particles);
-    const auto meshes = both_eyes(scene_of(true), particles);
-    const auto nothing = both_eyes(empty, particles);
+    const auto shapes = both_eyes(of_shapes, particles);
+    const auto meshes = both_eyes(of_meshes, particles);
+    const auto nothing = both_eyes(of_nothing, particles);
     for (int eye = 0; eye < 2; ++eye) {
       EXPECT_GT(unlike(shapes, nothing, eye), 0.05) << "they are seen at all";
       EXPECT_LT(unlike(shapes, meshes, eye), 0.1 * unlike(shapes, nothing, eye)) << eye;
