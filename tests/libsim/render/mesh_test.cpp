@@ -43,16 +43,15 @@ class MeshObstaclesGl : public render_test::RenderGl {
     }
     return out;
   }
-  static sim::FluidRenderer renderer_of(const sim::Scene& scene) {
-    sim::RenderOptions options = render_test::open_options();
-    options.floor_cells = 128;
-    sim::FluidRenderer out(scene, options);
-    out.place_obstacles(0.25);
+  static sim::RenderOptions few_floor_cells() {
+    sim::RenderOptions out = render_test::open_options();
+    out.floor_cells = 128;
     return out;
   }
   /// Two eyes beside each other.
   static sim::Image both_eyes(sim::FluidRenderer& renderer,
                               const std::vector<sim::RenderParticle>& particles) {
+    renderer.place_obstacles(0.25);
     std::vector<sim::View> views;
     for (int eye = 0; eye < 2; ++eye) {
       sim::Camera camera;
@@ -88,8 +87,9 @@ class MeshObstaclesGl : public render_test::RenderGl {
 TEST_F(MeshObstaclesGl, LookLikeTheShapesThatTheyCopyToBothEyes) {
   auto empty = scene_of(false);
   empty.obstacles.clear();
-  sim::FluidRenderer of_shapes = renderer_of(scene_of(false)), of_meshes = renderer_of(scene_of(true)),
-                     of_nothing = renderer_of(empty);
+  const auto options = few_floor_cells();
+  sim::FluidRenderer of_shapes(scene_of(false), options), of_meshes(scene_of(true), options),
+      of_nothing(empty, options);
   for (const auto& particles : {std::vector<sim::RenderParticle>{}, pool()}) {
     const auto shapes = both_eyes(of_shapes, particles);
     const auto meshes = both_eyes(of_meshes, particles);
