@@ -59,6 +59,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   o.obstacles = scene.obstacles;
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));
+  o.wet.resize(o.bodies.size());
+  o.wet.zero();
   if (any_free(o.obstacles)) {
     if (time_s > 0)
       throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
@@ -66,8 +68,6 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);
-    o.wet.resize(free.size());
-    o.wet.zero();
     told = true;
   }
   if (!told) return;

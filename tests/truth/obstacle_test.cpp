@@ -10,6 +10,7 @@ struct Sunk {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 512;
   double radius = 0.25;
+  double height = 0.5;
   bool mixed = false;  ///< level 0 on one side, 3 on the other
   double beta = 1;
   Backend backend = Backend::Cpu;
@@ -21,7 +22,7 @@ Vec3d force_on(const Sunk& sunk) {
   scene.v_ref_m_s = 3;
   sim::Obstacle sphere;
   sphere.radius_m = sunk.radius;
-  sphere.start.centre_m = {0.5, 0.5, 0.5};
+  sphere.start.centre_m = {0.5, sunk.height, 0.5};
   scene.obstacles = {sphere};
   sim::SimulationOptions options;
   options.backend = sunk.backend;
@@ -83,4 +84,62 @@ TEST(SunkSphereGpu, FeelsItsDisplacedWater) {
   }
 }
 
+}  // namespace
+namespace {
+TEST(TmpPartition, Measures) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::LoRes, MethodKind::Ours}) {
+    auto scene = fluid_test::tank({2, 1.5, 1}, {0.8, 1, 1}, 60);
+    scene.v_ref_m_s = 3;
+    sim::Obstacle box;
+    box.shape = sim::ObstacleShape::Box;
+    box.size_m = {0.4, 1.4, 1.0};
+    box.start.centre_m = {1.0, 0.7, 0.5};
+    scene.obstacles = {box};
+    sim::SimulationOptions options;
+    options.method = method;
+    options.n_star = method == MethodKind::HiRes ? 512 : 2048;
+    options.wall_impulse = true;
+    const auto fluid = sim::make_simulation(scene, options);
+    double thrust = 0, lift = 0, left = 0;
+    int over = 0;
+    double stir = 0, near_body = 0, near_wall = 0, top = 0, n = 0;
+    for (int frame = 0; frame < 120; ++frame) {
+      fluid->step_frame();
+      if (frame < 60) continue;
+      const auto account = fluid->momentum();
+      thrust -= account.obstacles.at(0).push[0];
+      lift -= account.obstacles.at(0).push[1];
+      left += account.walls.at(0).sum();
+      const auto state = fluid->read_state();
+      over = 0;
+      for (const auto& p : state) {
+        const auto at = place(p);
+        const auto v = velocity(p);
+        over += at[0] > 1.0;
+        stir += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        n += 1;
+        top = std::max(top, at[1]);
+        if (at[0] > 0.66) near_body += mass(p);
+        if (at[0] < 0.14) near_wall += mass(p);
+      }
+    }
+    const double given = 0.5 * 1000 * 9.81 * 60 * scene.frame_dt_s;
+    std::printf("%s thrust %.3f lift %.3f left %.3f over %d stir %.4f near body/wall %.4f top %.3f n %.0f\n",
+                std::string(sim::method_name(method)).c_str(), thrust / given, lift / given, left / given,
+                over, std::sqrt(stir / n), near_body / near_wall, top, n / 60);
+  }
+}
+TEST(TmpPartSunk, Measures) {
+  for (const Sunk& sunk : {finest, coarsest, both})
+    for (const double radius : {0.2, 0.25})
+      for (const double height : {0.5, 0.85, 1.0, 1.1}) {
+        Sunk now = sunk;
+        now.radius = radius;
+        now.height = height;
+        const double dip = std::clamp((1 + 0.0 - (height - radius)) / (2 * radius), 0.0, 1.0);
+        const auto f = force_on(now);
+        std::printf("%d R %.2f height %.2f share %.3f force %.3f over %.3f side %.3f\n", int(sunk.method), radius, height,
+                    dip * dip * (3 - 2 * dip), f[1], f[1] / (dip * dip * (3 - 2 * dip)), f[0]);
+      }
+}
 }  // namespace

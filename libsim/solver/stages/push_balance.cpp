@@ -39,99 +39,26 @@ struct SumPush {
 };
 
 /// rho_0 q A of the cells at a wall along its normal: the sum of -rho_0 grad q over the water.
-template <class Boundary>
 struct SumWalls {
   PressureFrame frame;
   GridView grid;
-  Boundary boundary;
   float unit_volume;  ///< of m_*, m3
   PushBalance* out;
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
     MassWay sum{};
     const float push = grid.q[i] / unit_volume;
-    for_wall_faces(frame, grid, boundary, i,
-                   [&](int, Vec3 normal, float area) { sum.add(push * area, normal); });
+    for_wall_faces(frame, grid, i, [&](int, Vec3 normal, float area) { sum.add(push * area, normal); });
     if (sum.x | sum.y | sum.z) out->walls.add_at_once(sum);
   }
 };
 
-/// What obstacles give: rho_0 grad q over the part of them that counts as water, and rho_0 q A beside the
-/// part that is solid.
+/// What obstacles give: the displaced water's weight in the field, up to the level beside them.
 struct SumBodies {
   static constexpr int samples = 4;  ///< of a cell along an edge
-  PressureFrame frame;
-  GridView grid;
-  Solids solids;
-  BodyListener to;  ///< without sums nobody listens
-  float unit_volume;
-  PushBalance* out;
-
-  SIM_FN void operator()(int i) const {
-    if (grid.kind[i] != CellKind::Fluid) return;
-    const CellBlock& block = grid.block;
-    const int x = i % block.nx;
-    const int y = i / block.nx % block.ny;
-    const int z = i / (block.nx * block.ny);
-    const Vec3 centre = middle_of(frame, x, y, z);
-    int body;
-    const float away = solids.nearest_body(centre, body);
-    if (away > length(frame.edge)) return;
-    const Vec3 e = frame.edge;
-    const float inside = e.x * e.y * e.z * share(centre, away);
-    const Vec3 beside{e.y * e.z * solid_sides(i, x, y, z, 1, 0, 0),
-                      e.x * e.z * solid_sides(i, x, y, z, 0, 1, 0),
-                      e.x * e.y * solid_sides(i, x, y, z, 0, 0, 1)};
-    const Vec3 slope{rise(i, x, y, z, 1, 0, 0) / e.x, rise(i, x, y, z, 0, 1, 0) / e.y,
-                     rise(i, x, y, z, 0, 0, 1) / e.z};
-    const Vec3 push = (1 / unit_volume) * (inside * slope + beside);
-    if (push.x == 0 && push.y == 0 && push.z == 0) return;
-    MassWay sum{};
-    sum.add(1, push);
-    out->walls.add_at_once(sum);
-    if (to.sums) to.add(body, centre, push);
-  }
-  /// Of the cell inside obstacles.
-  SIM_FN float share(Vec3 centre, float away) const {
-    const float reach = 0.5f * length(frame.edge);
-    if (away > reach) return 0;
-    if (away < -reach) return 1;
-    int count = 0;
-    for (int k = 0; k < samples * samples * samples; ++k) {
-      const Vec3 at{offset(k % samples), offset(k / samples % samples), offset(k / (samples * samples))};
-      count += solids.nearest_body(centre +
-                                   Vec3{frame.edge.x * at.x, frame.edge.y * at.y, frame.edge.z * at.z}) < 0;
-    }
-    return static_cast<float>(count) / (samples * samples * samples);
-  }
-  SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
-  /// Change of q over the cell as its faces have it: none on one that is shut.
-  SIM_FN float rise(int i, int x, int y, int z, int dx, int dy, int dz) const {
-    float sum = 0;
-    if (grid.kind_at(x + dx, y + dy, z + dz) != CellKind::Solid)
-      sum += grid.q_at(x + dx, y + dy, z + dz) - grid.q[i];
-    if (grid.kind_at(x - dx, y - dy, z - dz) != CellKind::Solid)
-      sum += grid.q[i] - grid.q_at(x - dx, y - dy, z - dz);
-    return 0.5f * sum;
-  }
-  /// q on the low side less q on the high side, where an obstacle's solid cells are.
-  SIM_FN float solid_sides(int i, int x, int y, int z, int dx, int dy, int dz) const {
-    float sum = 0;
-    if (solid(x - dx, y - dy, z - dz)) sum += grid.q[i];
-    if (solid(x + dx, y + dy, z + dz)) sum -= grid.q[i];
-    return sum;
-  }
-  SIM_FN bool solid(int x, int y, int z) const {
-    return grid.kind_at(x, y, z) == CellKind::Solid && body_has(solids, frame, grid, x, y, z);
-  }
-};
-
-/// What bodies that may float give: the displaced water's weight in the field, up to the level beside them.
-struct SumAfloat {
-  static constexpr int samples = 4;
   CoarseSlope slope;
   Waterline waterline;
-  BodyListener to;
+  BodyListener to;     ///< without sums nobody listens
   std::uint64_t* wet;  ///< ObstacleState::wet
   float unit_volume;
   PushBalance* out;
@@ -149,9 +76,9 @@ struct SumAfloat {
     if (level <= 0) return;
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
     for (int k = 0; k < samples * samples * samples; ++k) {
-      const float up = SumBodies::offset(k / samples % samples);
-      const Vec3 at = centre + Vec3{e.x * SumBodies::offset(k % samples), e.y * up,
-                                    e.z * SumBodies::offset(k / (samples * samples))};
+      const float up = offset(k / samples % samples);
+      const Vec3 at =
+          centre + Vec3{e.x * offset(k % samples), e.y * up, e.z * offset(k / (samples * samples))};
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
       // A sample is a layer of its own height, which the level may cut.
@@ -165,6 +92,7 @@ struct SumAfloat {
       if (to.sums) to.add(body, at, push);
     }
   }
+  SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
 };
 
 template <class Boundary>
@@ -190,37 +118,25 @@ struct Balance {
   }
 };
 
-template <class Boundary>
-void sum_walls(FluidState& state, Boundary boundary) {
+void sum_walls(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
   for_each("sum walls", grid.block.size(),
-           SumWalls<Boundary>{.frame = coarse.frame,
-                              .grid = grid,
-                              .boundary = boundary,
-                              .unit_volume = mass_of(state.finest_support, 1),
-                              .out = coarse.balance.data()});
+           SumWalls{.frame = coarse.frame,
+                    .grid = grid,
+                    .unit_volume = mass_of(state.finest_support, 1),
+                    .out = coarse.balance.data()});
 }
 
 void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
-  if (state.obstacles.free.size() > 0) {
-    state.obstacles.wet.zero();
-    for_each("sum obstacles", grid.block.size(),
-             SumAfloat{.slope = {coarse.frame, grid, state.walls},
-                       .waterline = state.waterline(),
-                       .to = state.body_listener(1),
-                       .wet = state.obstacles.wet.data(),
-                       .unit_volume = mass_of(state.finest_support, 1),
-                       .out = coarse.balance.data()});
-    return;
-  }
+  state.obstacles.wet.zero();
   for_each("sum obstacles", grid.block.size(),
-           SumBodies{.frame = coarse.frame,
-                     .grid = grid,
-                     .solids = state.solids(),
+           SumBodies{.slope = {coarse.frame, grid, state.walls},
+                     .waterline = state.waterline(),
                      .to = state.body_listener(1),
+                     .wet = state.obstacles.wet.data(),
                      .unit_volume = mass_of(state.finest_support, 1),
                      .out = coarse.balance.data()});
 }
@@ -252,7 +168,7 @@ void balance_push(FluidState& state, ClampView p) {
                           .n = p.size(),
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
-    state.obstacles.there() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
+    sum_walls(state);
   }
   if (state.obstacles.there() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
   state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
