@@ -48,11 +48,18 @@ SIM_FN Vec3 middle_of(const PressureFrame& frame, int x, int y, int z) {
   const auto middle = [](int cell) { return static_cast<float>(cell) + 0.5f; };
   return frame.in_metres({middle(x), middle(y), middle(z)});
 }
+/// Is a solid cell an obstacle's and no wall's?
+SIM_FN bool body_has(const Walls&, const PressureFrame&, const GridView&, int, int, int) { return false; }
+SIM_FN bool body_has(const Solids& solids, const PressureFrame& frame, const GridView& grid, int x, int y,
+                     int z) {
+  return grid.block.holds(x, y, z) && solids.walls.holds(middle_of(frame, x, y, z));
+}
 
 /// Gives hear(wall, inward normal, area in m2) what is shut of each face of a cell that lies on a wall, in
 /// the order of Walls.
-template <class Hear>
-SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, int cell, Hear hear) {
+template <class Boundary, class Hear>
+SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, const Boundary& boundary,
+                           int cell, Hear hear) {
   const CellBlock& block = grid.block;
   const int x = cell % block.nx;
   const int y = cell / block.nx % block.ny;
@@ -60,7 +67,7 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, int
   const float across_x = frame.edge.y * frame.edge.z;
   const float across_z = frame.edge.x * frame.edge.y;
   const auto face = [&](int wall, int nx, int ny, int nz, Vec3 normal, float area) {
-    if (grid.kind_at(nx, ny, nz) != CellKind::Solid) return;
+    if (grid.kind_at(nx, ny, nz) != CellKind::Solid || body_has(boundary, frame, grid, nx, ny, nz)) return;
     const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
     hear(wall, normal, shut * area);
   };

@@ -111,7 +111,11 @@ struct ClassifyRound {
     grid.kind[i] = waterline.solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
     if (grid.kind[i] == CellKind::Solid || sum.volume > 0) return;
     if (waterline.solids.nearest_body(at) > 0.5f * frame.edge.y) return;
-    if (waterline.beside(x, y, z) > 0.5f) grid.kind[i] = CellKind::Fluid;
+    const LevelBeside level = waterline.beside(x, y, z);
+    if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
+    // A wall between water and none holds the water: air in it would draw it in.
+    else if (level.most == 1)
+      grid.kind[i] = CellKind::Solid;
   }
 };
 

@@ -39,21 +39,25 @@ struct SumPush {
 };
 
 /// rho_0 q A of the cells at a wall along its normal: the sum of -rho_0 grad q over the water.
+template <class Boundary>
 struct SumWalls {
   PressureFrame frame;
   GridView grid;
+  Boundary boundary;
   float unit_volume;  ///< of m_*, m3
   PushBalance* out;
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
     MassWay sum{};
     const float push = grid.q[i] / unit_volume;
-    for_wall_faces(frame, grid, i, [&](int, Vec3 normal, float area) { sum.add(push * area, normal); });
+    for_wall_faces(frame, grid, boundary, i,
+                   [&](int, Vec3 normal, float area) { sum.add(push * area, normal); });
     if (sum.x | sum.y | sum.z) out->walls.add_at_once(sum);
   }
 };
 
-/// What obstacles give: the displaced water's weight in the field, up to the level beside them.
+/// What obstacles give: the displaced water's weight in the field, up to the level beside them, and rho_0 q A
+/// where they are solid.
 struct SumBodies {
   static constexpr int samples = 4;  ///< of a cell along an edge
   CoarseSlope slope;
@@ -71,8 +75,15 @@ struct SumBodies {
     const Vec3 e = slope.frame.edge;
     const Vec3 centre = middle_of(slope.frame, x, y, z);
     const Solids& solids = waterline.solids;
-    if (solids.nearest_body(centre) > 0.5f * length(e)) return;
-    const float level = waterline.beside(x, y, z);
+    int nearest;
+    const float away = solids.nearest_body(centre, nearest);
+    if (away > length(e)) return;
+    if (slope.grid.kind[i] == CellKind::Fluid) {
+      const Vec3 held = (slope.grid.q[i] / unit_volume) * solid_sides(x, y, z);
+      if (held.x != 0 || held.y != 0 || held.z != 0) give(nearest, centre, held);
+    }
+    if (away > 0.5f * length(e)) return;
+    const float level = waterline.beside(x, y, z).mean;
     if (level <= 0) return;
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
     for (int k = 0; k < samples * samples * samples; ++k) {
@@ -85,12 +96,26 @@ struct SumBodies {
       const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
       if (below == 0) continue;
       atomic_add(&wet[body], static_cast<std::uint64_t>(below * share * CellWater::fixed_point));
-      const Vec3 push = -(below * share) * slope.down(at);
-      MassWay sum{};
-      sum.add(1, push);
-      out->walls.add_at_once(sum);
-      if (to.sums) to.add(body, at, push);
+      give(body, at, -(below * share) * slope.down(at));
     }
+  }
+  SIM_FN void give(int body, Vec3 at, Vec3 push) const {
+    MassWay sum{};
+    sum.add(1, push);
+    out->walls.add_at_once(sum);
+    if (to.sums) to.add(body, at, push);
+  }
+  /// Areas of the faces before an obstacle's solid cells, m2, along the way out of them.
+  SIM_FN Vec3 solid_sides(int x, int y, int z) const {
+    const Vec3 e = slope.frame.edge;
+    return {e.y * e.z * (solid(x - 1, y, z) - solid(x + 1, y, z)),
+            e.x * e.z * (solid(x, y - 1, z) - solid(x, y + 1, z)),
+            e.x * e.y * (solid(x, y, z - 1) - solid(x, y, z + 1))};
+  }
+  SIM_FN float solid(int x, int y, int z) const {
+    const bool held = slope.grid.kind_at(x, y, z) == CellKind::Solid &&
+                      body_has(waterline.solids, slope.frame, slope.grid, x, y, z);
+    return held ? 1.0f : 0.0f;
   }
   SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
 };
@@ -118,14 +143,16 @@ struct Balance {
   }
 };
 
-void sum_walls(FluidState& state) {
+template <class Boundary>
+void sum_walls(FluidState& state, Boundary boundary) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
   for_each("sum walls", grid.block.size(),
-           SumWalls{.frame = coarse.frame,
-                    .grid = grid,
-                    .unit_volume = mass_of(state.finest_support, 1),
-                    .out = coarse.balance.data()});
+           SumWalls<Boundary>{.frame = coarse.frame,
+                              .grid = grid,
+                              .boundary = boundary,
+                              .unit_volume = mass_of(state.finest_support, 1),
+                              .out = coarse.balance.data()});
 }
 
 void sum_bodies(FluidState& state) {
@@ -168,7 +195,7 @@ void balance_push(FluidState& state, ClampView p) {
                           .n = p.size(),
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
-    sum_walls(state);
+    state.obstacles.there() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
   }
   if (state.obstacles.there() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
   state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);

@@ -129,9 +129,11 @@ void hear_missing_density(FluidState& state, ConstraintView p) {
 
 /// The pressure of the cells at a wall, as push_balance.cpp counts it. Gauges may be smaller than a cell:
 /// within a face the pressure follows its neighbours, on patches that sum up to the face.
+template <class Boundary>
 struct WallCells {
   PressureFrame frame;
   GridView grid;
+  Boundary boundary;
   WallListener to;
   float unit_volume;  ///< of m_*, m3
 
@@ -146,7 +148,7 @@ struct WallCells {
     const float q = grid.q[i];
     const Vec3 slope{slope_of(q, x, y, z, 1, 0, 0), slope_of(q, x, y, z, 0, 1, 0),
                      slope_of(q, x, y, z, 0, 0, 1)};
-    for_wall_faces(frame, grid, i, [&](int wall, Vec3 normal, float area) {
+    for_wall_faces(frame, grid, boundary, i, [&](int wall, Vec3 normal, float area) {
       const float share = area / (unit_volume * patches * patches);
       for (int a = 0; a < patches; ++a) {
         for (int b = 0; b < patches; ++b) {
@@ -174,13 +176,18 @@ struct WallCells {
   static constexpr int patches = 4;
 };
 
-void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+template <class Boundary>
+void wall_cells(FluidState& state, Boundary boundary) {
   const GridView grid = state.coarse.multigrid.finest();
   for_each("hear wall cells", grid.block.size(),
-           WallCells{.frame = state.coarse.frame,
-                     .grid = grid,
-                     .to = state.impulse.listener(),
-                     .unit_volume = mass_of(state.finest_support, 1)});
+           WallCells<Boundary>{.frame = state.coarse.frame,
+                               .grid = grid,
+                               .boundary = boundary,
+                               .to = state.impulse.listener(),
+                               .unit_volume = mass_of(state.finest_support, 1)});
+}
+void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  state.obstacles.there() ? wall_cells(state, state.solids()) : wall_cells(state, state.walls);
 }
 
 template <class Boundary, class Hearer>
