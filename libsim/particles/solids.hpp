@@ -108,9 +108,11 @@ struct Solids {
   SIM_FN float nearest(Vec3 x) const { return at_most(nearest_body(x), walls.nearest(x)); }
   SIM_FN bool holds(Vec3 x, float gap = 0) const { return walls.holds(x, gap) && nearest_body(x) >= gap; }
 
-  /// As Walls::hold_back. A body counts its distance from a particle as if that had ridden with it.
+  /// As Walls::hold_back. A body counts its distance from a particle as if that had ridden with it. Where a
+  /// body stands on a wall, the way out of it may lead into the wall: who finds no other stays where it was.
   template <class Heard = NobodyHears>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
+    const Vec3 from = x;
     bool held = false;
     for (int b = 0; b < count; ++b) {
       const Body& body = bodies[b];
@@ -122,10 +124,12 @@ struct Solids {
       to += beyond * after.normal;
       held = true;
     }
-    return walls.hold_back(x, to, gap, heard) || held;
+    if (!walls.hold_back(x, to, gap, heard)) return held;
+    if (held) stay_out(x, from, heard);
+    return true;
   }
 
-  /// As Walls::project; walls have the last word.
+  /// As Walls::project; walls have the last word, but for who lay outside and would lie in a body.
   template <class Heard = NobodyHears>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
     bool moved = false;
@@ -137,7 +141,18 @@ struct Solids {
       x += depth * at.normal;
       moved = true;
     }
-    return walls.project(x, from, gap, heard) || moved;
+    if (!walls.project(x, from, gap, heard)) return moved;
+    if (moved) stay_out(x, from, heard);
+    return true;
+  }
+
+ private:
+  template <class Heard>
+  SIM_FN void stay_out(Vec3& x, Vec3 from, Heard heard) const {
+    int body;
+    if (nearest_body(x, body) >= 0 || !holds(from)) return;
+    heard.body(body, x, from - x);
+    x = from;
   }
 };
 

@@ -81,7 +81,7 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, con
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
-  Array<std::uint64_t> volume;  ///< of all particles in a cell, as CellSum has it; only where bodies are free
+  Array<std::uint64_t> volume;  ///< of all particles in a cell, as CellSum has it; only beside obstacles
   Array<PushBalance> balance;
   Multigrid multigrid;
 

@@ -28,6 +28,12 @@ struct CellWater {
   }
 };
 
+/// How far up a cell's height water stands beside a body: 0 dry, 1 below the surface.
+struct LevelBeside {
+  float mean;  ///< of the sides that have one
+  float most;
+};
+
 /// Looks from a cell along the level, out of the bodies that hold it, on four sides.
 struct Waterline {
   CellWater water;
@@ -36,8 +42,7 @@ struct Waterline {
   const CellSum* sums;
   const std::uint64_t* volume;  ///< of all particles, those that rest included
 
-  /// Share of the cell's height up to which water stands beside the body: 0 dry, 1 below the surface.
-  SIM_FN float beside(int x, int y, int z) const {
+  SIM_FN LevelBeside beside(int x, int y, int z) const {
     const Vec3 at = middle_of(water.frame, x, y, z);
     int body;
     solids.nearest_body(at, body);
@@ -45,6 +50,7 @@ struct Waterline {
     const float away = sqrtf(from.x * from.x + from.z * from.z);
     const Vec3 out = away > 1e-6f ? Vec3{from.x / away, 0, from.z / away} : Vec3{1, 0, 0};
     float sum = 0;
+    float most = 0;
     int sides = 0;
     for (int side = 0; side < 4; ++side) {
       const Vec3 way = side == 0   ? out
@@ -53,10 +59,12 @@ struct Waterline {
                                    : Vec3{-out.z, 0, out.x};
       const Vec3 place = outside(at, way);
       if (solids.nearest_body(place) < 0) continue;
-      sum += height_at(place);
+      const float height = height_at(place);
+      sum += height;
+      most = at_least(most, height);
       ++sides;
     }
-    return sides > 0 ? sum / static_cast<float>(sides) : 0;
+    return {sides > 0 ? sum / static_cast<float>(sides) : 0, most};
   }
   /// The place from which on no body reaches into a cell, most of the time; the last one before a wall where
   /// the gap is narrower.

@@ -60,6 +60,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   if (o.obstacles.empty()) return;
   o.bodies.from_host(bodies_at(o.obstacles, time_s, 0));
   place_meshes(o);
+  o.wet.resize(o.bodies.size());
+  o.wet.zero();
   if (any_free(o.obstacles)) {
     if (time_s > 0)
       throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
@@ -67,8 +69,6 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);
-    o.wet.resize(free.size());
-    o.wet.zero();
     told = true;
   }
   if (!told) return;

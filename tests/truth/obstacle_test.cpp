@@ -10,7 +10,8 @@ struct Sunk {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 512;
   double radius = 0.25;
-  bool mixed = false;  ///< level 0 on one side, 3 on the other
+  double height = 0.5;  ///< of its centre, m
+  bool mixed = false;   ///< level 0 on one side, 3 on the other
   double beta = 1;
   Backend backend = Backend::Cpu;
 };
@@ -21,7 +22,7 @@ Vec3d force_on(const Sunk& sunk) {
   scene.v_ref_m_s = 3;
   sim::Obstacle sphere;
   sphere.radius_m = sunk.radius;
-  sphere.start.centre_m = {0.5, 0.5, 0.5};
+  sphere.start.centre_m = {0.5, sunk.height, 0.5};
   scene.obstacles = {sphere};
   sim::SimulationOptions options;
   options.backend = sunk.backend;
@@ -74,6 +75,61 @@ TEST(SunkSphere, FeelsItsDisplacedWaterAtMixedLevels) { feels_its_displaced_wate
 TEST(SunkSphere, FeelsItsDisplacedWaterWithTemporalAcceleration) {
   feels_its_displaced_water(with(finest, 0.67, Backend::Cpu));
 }
+/// The level lies some 2 % low, which is 3 % of the half that is below it.
+void is_carried_by_its_half_below(Sunk sunk) {
+  sunk.height = 1;
+  const double share = force_on(sunk)[1] / 0.5;
+  EXPECT_GE(share, 0.65);
+  EXPECT_LE(share, 1.05);
+}
+TEST(SunkSphere, StandsOutOfTheWaterAtLevel0) { is_carried_by_its_half_below(finest); }
+TEST(SunkSphere, StandsOutOfTheWaterAtLevel3) { is_carried_by_its_half_below(coarsest); }
+TEST(SunkSphere, StandsOutOfTheWaterAtMixedLevels) { is_carried_by_its_half_below(both); }
+
+/// A box across the tank, on its floor, with water on one side.
+void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = Backend::Cpu) {
+  auto scene = fluid_test::tank({2, 1.5, 1}, {0.8, 1, 1}, 60);
+  scene.v_ref_m_s = 3;
+  sim::Obstacle dam;
+  dam.shape = sim::ObstacleShape::Box;
+  dam.size_m = {0.4, 1.4, 1};
+  dam.start.centre_m = {1, 0.7, 0.5};
+  scene.obstacles = {dam};
+  sim::SimulationOptions options;
+  options.backend = backend;
+  options.method = method;
+  options.n_star = n_star;
+  options.wall_impulse = true;
+  const auto fluid = sim::make_simulation(scene, options);
+  double thrust = 0, squares = 0;
+  constexpr int frames = 90, settled = 60;
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid->step_frame();
+    const State state = fluid->read_state();
+    for (const auto& p : state)
+      ASSERT_GE(sim::signed_distance(dam, dam.start, place(p)), -1e-6) << "frame " << frame << ", " << p.id;
+    if (frame < settled) continue;
+    thrust -= fluid->momentum().obstacles.at(0).push[0];
+    squares += mean(state, [](auto& p) {
+      const Vec3d v = velocity(p);
+      return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    });
+  }
+  // rho g H^2 / 2 a metre.
+  const double given = 0.5 * 1000 * scene.gravity_m_s2 * (frames - settled) * scene.frame_dt_s;
+  EXPECT_NEAR(thrust / given, 1, 0.15);
+  EXPECT_LE(std::sqrt(squares / (frames - settled)), 0.07) << "m/s";
+}
+TEST(Dam, HoldsTheWaterAtLevel0) { holds_the_water(MethodKind::HiRes, 512); }
+TEST(Dam, HoldsTheWaterAtLevel3) { holds_the_water(MethodKind::LoRes, 2048); }
+TEST(Dam, HoldsTheWaterAtMixedLevels) { holds_the_water(MethodKind::Ours, 2048); }
+TEST(DamGpu, HoldsTheWater) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::LoRes, MethodKind::Ours}) {
+    SCOPED_TRACE(sim::method_name(method));
+    holds_the_water(method, method == MethodKind::HiRes ? 512 : 2048, Backend::Cuda);
+  }
+}
+
 TEST(SunkSphereGpu, FeelsItsDisplacedWater) {
   for (const double beta : {1.0, 0.67}) {
     for (const Sunk& sunk : {finest, coarsest, both}) {

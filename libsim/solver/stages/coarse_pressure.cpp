@@ -75,62 +75,21 @@ struct Classify {
   SIM_FN void operator()(int i) const {
     const CellSum sum = sums[i];
     grid.source[i] = 0;
-    if (sum.volume > 0) {
-      const auto excess =
-          static_cast<float>(static_cast<std::int64_t>(sum.excess)) / static_cast<float>(sum.volume);
-      if (excess > -CellWater::surface_deficit) {
-        grid.kind[i] = CellKind::Fluid;
-        grid.source[i] = frame.floor_area() * excess;
-        return;
-      }
-    }
-    const CellBlock& block = grid.block;
-    const auto centre = [](int cell) { return static_cast<float>(cell) + 0.5f; };
-    const Vec3 at{centre(i % block.nx), centre(i / block.nx % block.ny), centre(i / (block.nx * block.ny))};
-    grid.kind[i] = walls.holds(frame.in_metres(at)) ? CellKind::Air : CellKind::Solid;
-  }
-};
-
-/// The same with obstacles. Below the water's surface an obstacle's cells count as water at rest: its weight
-/// is what the pressure beside it carries, and that is all that cells so wide can tell of it. The particles'
-/// constraint keeps the water out. Cells that look out of the water are solid.
-struct ClassifyRound {
-  PressureFrame frame;
-  GridView grid;
-  Solids solids;
-  const CellSum* sums;
-  float unit_volume;
-
-  SIM_FN void operator()(int i) const {
-    const CellBlock& block = grid.block;
-    const Vec3 at = middle_of(frame, i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny));
-    grid.source[i] = 0;
-    if (is_water(sums[i])) {
+    if (CellWater::is_water(sum)) {
       grid.kind[i] = CellKind::Fluid;
-      grid.source[i] = frame.floor_area() * filled(sums[i]) * mean_excess(sums[i]);
+      grid.source[i] = frame.floor_area() * CellWater::mean_excess(sum);
       return;
     }
-    grid.kind[i] = solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
-    int body;
-    const float away = solids.nearest_body(at, body);
-    const float wide = frame.edge.y;
-    if (grid.kind[i] == CellKind::Solid || away > 0.5f * wide || sums[i].volume > 0) return;
-    const Vec3 outside = at + (0.75f * wide - away) * solids.near(body, at).normal;
-    const Vec3 there = frame.in_cells(outside);
-    const int x = static_cast<int>(floorf(there.x));
-    const int y = static_cast<int>(floorf(there.y));
-    const int z = static_cast<int>(floorf(there.z));
-    const bool wet = block.holds(x, y, z) && is_water(sums[block.index(x, y, z)]);
-    if (wet || away < 0) grid.kind[i] = wet ? CellKind::Fluid : CellKind::Solid;
+    const CellBlock& block = grid.block;
+    const Vec3 at = middle_of(frame, i % block.nx, i / block.nx % block.ny, i / (block.nx * block.ny));
+    grid.kind[i] = walls.holds(at) ? CellKind::Air : CellKind::Solid;
   }
-  SIM_FN static float mean_excess(const CellSum& sum) { return CellWater::mean_excess(sum); }
-  SIM_FN static bool is_water(const CellSum& sum) { return CellWater::is_water(sum); }
-  SIM_FN float filled(const CellSum& sum) const { return CellWater{frame, unit_volume}.filled(sum.volume); }
 };
 
-/// The same with bodies that may float: their cells count as water up to the level beside them and as air
-/// above, as if the water that they displace were there.
-struct ClassifyAfloat {
+/// The same with obstacles: their cells count as water at rest up to the level beside them and as air above,
+/// as if the water that they displace were there. Its weight is what the pressure beside an obstacle carries,
+/// and that is all that cells so wide can tell of it. The particles' constraint keeps the water out.
+struct ClassifyRound {
   PressureFrame frame;
   GridView grid;
   Waterline waterline;
@@ -152,7 +111,11 @@ struct ClassifyAfloat {
     grid.kind[i] = waterline.solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
     if (grid.kind[i] == CellKind::Solid || sum.volume > 0) return;
     if (waterline.solids.nearest_body(at) > 0.5f * frame.edge.y) return;
-    if (waterline.beside(x, y, z) > 0.5f) grid.kind[i] = CellKind::Fluid;
+    const LevelBeside level = waterline.beside(x, y, z);
+    if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
+    // A wall between water and none holds the water: air in it would draw it in.
+    else if (level.most == 1)
+      grid.kind[i] = CellKind::Solid;
   }
 };
 
@@ -211,7 +174,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                              .block = grid.block,
                              .sums = coarse.sums.data(),
                              .unit_volume = mass_of(state.lightest_support, 1)});
-  if (state.obstacles.free.size() > 0) {
+  if (state.obstacles.there()) {
     coarse.volume.resize(coarse.sums.size());
     coarse.volume.zero();
     for_each("gather volume", p.size(),
@@ -221,14 +184,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                           .volume = coarse.volume.data(),
                           .unit_volume = mass_of(state.lightest_support, 1)});
     for_each("classify cells", grid.block.size(),
-             ClassifyAfloat{coarse.frame, grid, state.waterline(), coarse.sums.data()});
-  } else if (state.obstacles.there()) {
-    for_each("classify cells", grid.block.size(),
-             ClassifyRound{.frame = coarse.frame,
-                           .grid = grid,
-                           .solids = state.solids(),
-                           .sums = coarse.sums.data(),
-                           .unit_volume = mass_of(state.lightest_support, 1)});
+             ClassifyRound{coarse.frame, grid, state.waterline(), coarse.sums.data()});
   } else {
     for_each("classify cells", grid.block.size(),
              Classify{coarse.frame, grid, state.walls, coarse.sums.data()});

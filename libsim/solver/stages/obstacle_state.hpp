@@ -13,7 +13,7 @@ struct ObstacleState {
   double frame_begin_s = 0;  ///< since frame 0
   Array<Body> bodies;        ///< where they are at the end of this substep
   Array<BodySum> sums;       ///< of this frame; none while nobody asks what they give
-  /// Volume of each below the water's level, over that of m_*, as CellWater counts; only with free ones.
+  /// Volume of each below the water's level, over that of m_*, as CellWater counts.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
   // None while no obstacle is a mesh:

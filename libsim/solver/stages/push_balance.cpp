@@ -56,82 +56,13 @@ struct SumWalls {
   }
 };
 
-/// What obstacles give: rho_0 grad q over the part of them that counts as water, and rho_0 q A beside the
-/// part that is solid.
+/// What obstacles give: the displaced water's weight in the field, up to the level beside them, and rho_0 q A
+/// where they are solid.
 struct SumBodies {
   static constexpr int samples = 4;  ///< of a cell along an edge
-  PressureFrame frame;
-  GridView grid;
-  Solids solids;
-  BodyListener to;  ///< without sums nobody listens
-  float unit_volume;
-  PushBalance* out;
-
-  SIM_FN void operator()(int i) const {
-    if (grid.kind[i] != CellKind::Fluid) return;
-    const CellBlock& block = grid.block;
-    const int x = i % block.nx;
-    const int y = i / block.nx % block.ny;
-    const int z = i / (block.nx * block.ny);
-    const Vec3 centre = middle_of(frame, x, y, z);
-    int body;
-    const float away = solids.nearest_body(centre, body);
-    if (away > length(frame.edge)) return;
-    const Vec3 e = frame.edge;
-    const float inside = e.x * e.y * e.z * share(centre, away);
-    const Vec3 beside{e.y * e.z * solid_sides(i, x, y, z, 1, 0, 0),
-                      e.x * e.z * solid_sides(i, x, y, z, 0, 1, 0),
-                      e.x * e.y * solid_sides(i, x, y, z, 0, 0, 1)};
-    const Vec3 slope{rise(i, x, y, z, 1, 0, 0) / e.x, rise(i, x, y, z, 0, 1, 0) / e.y,
-                     rise(i, x, y, z, 0, 0, 1) / e.z};
-    const Vec3 push = (1 / unit_volume) * (inside * slope + beside);
-    if (push.x == 0 && push.y == 0 && push.z == 0) return;
-    MassWay sum{};
-    sum.add(1, push);
-    out->walls.add_at_once(sum);
-    if (to.sums) to.add(body, centre, push);
-  }
-  /// Of the cell inside obstacles.
-  SIM_FN float share(Vec3 centre, float away) const {
-    const float reach = 0.5f * length(frame.edge);
-    if (away > reach) return 0;
-    if (away < -reach) return 1;
-    int count = 0;
-    for (int k = 0; k < samples * samples * samples; ++k) {
-      const Vec3 at{offset(k % samples), offset(k / samples % samples), offset(k / (samples * samples))};
-      count += solids.nearest_body(centre +
-                                   Vec3{frame.edge.x * at.x, frame.edge.y * at.y, frame.edge.z * at.z}) < 0;
-    }
-    return static_cast<float>(count) / (samples * samples * samples);
-  }
-  SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
-  /// Change of q over the cell as its faces have it: none on one that is shut.
-  SIM_FN float rise(int i, int x, int y, int z, int dx, int dy, int dz) const {
-    float sum = 0;
-    if (grid.kind_at(x + dx, y + dy, z + dz) != CellKind::Solid)
-      sum += grid.q_at(x + dx, y + dy, z + dz) - grid.q[i];
-    if (grid.kind_at(x - dx, y - dy, z - dz) != CellKind::Solid)
-      sum += grid.q[i] - grid.q_at(x - dx, y - dy, z - dz);
-    return 0.5f * sum;
-  }
-  /// q on the low side less q on the high side, where an obstacle's solid cells are.
-  SIM_FN float solid_sides(int i, int x, int y, int z, int dx, int dy, int dz) const {
-    float sum = 0;
-    if (solid(x - dx, y - dy, z - dz)) sum += grid.q[i];
-    if (solid(x + dx, y + dy, z + dz)) sum -= grid.q[i];
-    return sum;
-  }
-  SIM_FN bool solid(int x, int y, int z) const {
-    return grid.kind_at(x, y, z) == CellKind::Solid && body_has(solids, frame, grid, x, y, z);
-  }
-};
-
-/// What bodies that may float give: the displaced water's weight in the field, up to the level beside them.
-struct SumAfloat {
-  static constexpr int samples = 4;
   CoarseSlope slope;
   Waterline waterline;
-  BodyListener to;
+  BodyListener to;     ///< without sums nobody listens
   std::uint64_t* wet;  ///< ObstacleState::wet
   float unit_volume;
   PushBalance* out;
@@ -144,27 +75,49 @@ struct SumAfloat {
     const Vec3 e = slope.frame.edge;
     const Vec3 centre = middle_of(slope.frame, x, y, z);
     const Solids& solids = waterline.solids;
-    if (solids.nearest_body(centre) > 0.5f * length(e)) return;
-    const float level = waterline.beside(x, y, z);
+    int nearest;
+    const float away = solids.nearest_body(centre, nearest);
+    if (away > length(e)) return;
+    if (slope.grid.kind[i] == CellKind::Fluid) {
+      const Vec3 held = (slope.grid.q[i] / unit_volume) * solid_sides(x, y, z);
+      if (held.x != 0 || held.y != 0 || held.z != 0) give(nearest, centre, held);
+    }
+    if (away > 0.5f * length(e)) return;
+    const float level = waterline.beside(x, y, z).mean;
     if (level <= 0) return;
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
     for (int k = 0; k < samples * samples * samples; ++k) {
-      const float up = SumBodies::offset(k / samples % samples);
-      const Vec3 at = centre + Vec3{e.x * SumBodies::offset(k % samples), e.y * up,
-                                    e.z * SumBodies::offset(k / (samples * samples))};
+      const float up = offset(k / samples % samples);
+      const Vec3 at =
+          centre + Vec3{e.x * offset(k % samples), e.y * up, e.z * offset(k / (samples * samples))};
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
       // A sample is a layer of its own height, which the level may cut.
       const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
       if (below == 0) continue;
       atomic_add(&wet[body], static_cast<std::uint64_t>(below * share * CellWater::fixed_point));
-      const Vec3 push = -(below * share) * slope.down(at);
-      MassWay sum{};
-      sum.add(1, push);
-      out->walls.add_at_once(sum);
-      if (to.sums) to.add(body, at, push);
+      give(body, at, -(below * share) * slope.down(at));
     }
   }
+  SIM_FN void give(int body, Vec3 at, Vec3 push) const {
+    MassWay sum{};
+    sum.add(1, push);
+    out->walls.add_at_once(sum);
+    if (to.sums) to.add(body, at, push);
+  }
+  /// Areas of the faces before an obstacle's solid cells, m2, along the way out of them.
+  SIM_FN Vec3 solid_sides(int x, int y, int z) const {
+    const Vec3 e = slope.frame.edge;
+    return {e.y * e.z * (solid(x - 1, y, z) - solid(x + 1, y, z)),
+            e.x * e.z * (solid(x, y - 1, z) - solid(x, y + 1, z)),
+            e.x * e.y * (solid(x, y, z - 1) - solid(x, y, z + 1))};
+  }
+  SIM_FN float solid(int x, int y, int z) const {
+    const bool held = slope.grid.kind_at(x, y, z) == CellKind::Solid &&
+                      body_has(waterline.solids, slope.frame, slope.grid, x, y, z);
+    return held ? 1.0f : 0.0f;
+  }
+  SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
 };
 
 template <class Boundary>
@@ -205,22 +158,12 @@ void sum_walls(FluidState& state, Boundary boundary) {
 void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
-  if (state.obstacles.free.size() > 0) {
-    state.obstacles.wet.zero();
-    for_each("sum obstacles", grid.block.size(),
-             SumAfloat{.slope = {coarse.frame, grid, state.walls},
-                       .waterline = state.waterline(),
-                       .to = state.body_listener(1),
-                       .wet = state.obstacles.wet.data(),
-                       .unit_volume = mass_of(state.finest_support, 1),
-                       .out = coarse.balance.data()});
-    return;
-  }
+  state.obstacles.wet.zero();
   for_each("sum obstacles", grid.block.size(),
-           SumBodies{.frame = coarse.frame,
-                     .grid = grid,
-                     .solids = state.solids(),
+           SumBodies{.slope = {coarse.frame, grid, state.walls},
+                     .waterline = state.waterline(),
                      .to = state.body_listener(1),
+                     .wet = state.obstacles.wet.data(),
                      .unit_volume = mass_of(state.finest_support, 1),
                      .out = coarse.balance.data()});
 }
