@@ -324,8 +324,8 @@ bool NeighbourList::grow(Need met) {
     store_.resize(std::min<std::size_t>(most_store, 2 * met.stored));
     grew = true;
   }
-  if (met.longest >= capacity_ && capacity_ < most_capacity) {
-    capacity_ = std::min(most_capacity, (met.longest + 1) * 5 / 4);
+  if (met.stored > count_.size() / most_stored && capacity_ < most_capacity) {
+    capacity_ = std::min({most_capacity, (met.longest + 1) * 5 / 4, capacity_ * 5 / 4});
     grew = true;
   }
   if (grew) need_.zero();
