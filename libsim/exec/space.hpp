@@ -106,7 +106,7 @@ class Sorter {
   Array<unsigned char> scratch_;
 };
 
-/// sums[i] = values[0] + ... + values[i].
+/// sums[i] = values[0] + ... + values[i]; both may be the same array.
 class Scanner {
  public:
   void inclusive_sum(const Array<int>& values, Array<int>& sums);

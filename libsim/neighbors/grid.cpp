@@ -178,17 +178,19 @@ void Grid::sort(Particles& particles, bool by_level) {
   const int n = particles.size();
   // Once for all sizes to come.
   const auto room = static_cast<std::size_t>(particles.capacity());
-  for (auto* column : {&cell_of_, &arrival_, &placed_, &order_}) {
+  for (auto* column : {&cell_of_, &placed_, &order_}) {
     column->reserve(room);
     column->resize(static_cast<std::size_t>(n));
   }
-  counts_.resize(static_cast<std::size_t>(size()) + 1);
-  counts_.zero();
+  begin_.resize(static_cast<std::size_t>(size()) + 1);
+  begin_.zero();
+  // Who came as which is done with when the order is written.
+  int* const arrival = order_.data();
   for_each("count cells", n,
-           CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, counts_.data(), cell_of_.data(),
-                      arrival_.data()});
-  scanner_.inclusive_sum(counts_, begin_);
-  for_each("place by cell", n, Place{begin_.data(), cell_of_.data(), arrival_.data(), placed_.data()});
+           CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, begin_.data(), cell_of_.data(),
+                      arrival});
+  scanner_.inclusive_sum(begin_, begin_);
+  for_each("place by cell", n, Place{begin_.data(), cell_of_.data(), arrival, placed_.data()});
   for_each("order within cells", n,
            OrderWithinCells{begin_.data(), cell_of_.data(), placed_.data(), p.id(), order_.data()});
   particles.reorder(order_);

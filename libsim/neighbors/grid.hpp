@@ -47,7 +47,7 @@ class Grid {
 
   Scanner scanner_;
   CellTable shape_{};  ///< but for what its arrays hold
-  Array<int> begin_, counts_, cell_of_, arrival_, placed_, order_;
+  Array<int> begin_, cell_of_, placed_, order_;
   Array<int> present_;  ///< 1 = the block has particles of the level; levels of a block lie side by side
   Array<std::uint8_t> met_;
 };

@@ -1,7 +1,9 @@
 #include "libsim/neighbors/neighbour_list.hpp"
 
 #include <algorithm>
+#include <atomic>
 
+#include "libsim/neighbors/candidates.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -26,6 +28,7 @@ struct ListNeighbours {
   NeighbourList::Need* need;
   Witness witness;
   float margin;
+  std::uint64_t build;  ///< differs from one build to the next
 
 #ifdef SIM_CUDA
   /// As measured on an H200. In the grids of several levels a particle walks more lines, and shares them
@@ -139,34 +142,23 @@ struct ListNeighbours {
     return own < 32 ? out & ~(1u << own) : out;
   }
 #else
-  /// First who is near, several at once; then the list, one by one.
+  /// Goes through what particles of one cell share.
   template <class Team>
   int look(int slot, int i, Vec4 self, Team) const {
-    constexpr int most = 32;
-    int near_ones[most];
+    thread_local Candidates shared[LevelSupports::most];
     int* const own = entry + list.place(slot, 0);
     const int last = list.capacity - 1;
     int place = 0;
-    cells.around(self, margin, [&](int begin, int end) {
-      for (int first = begin; first < end; first += most) {
-        const int size = end - first < most ? end - first : most;
-        const Vec4* const other = predicted + first;
-        const float half = 0.5f * margin;
-#pragma omp simd
-        for (int k = 0; k < size; ++k) {
-          const float dx = self.x - other[k].x;
-          const float dy = self.y - other[k].y;
-          const float dz = self.z - other[k].z;
-          const float radius = half * (self.w + other[k].w);
-          near_ones[k] = dx * dx + dy * dy + dz * dz < radius * radius;
-        }
-        for (int k = 0; k < size; ++k) {
-          // Stored in any case and kept by the count: a branch here is mispredicted every third time.
-          own[place < last ? place : last] = first + k;
-          place += near_ones[k] & (first + k != i);
-        }
-      }
-    });
+    for (int l = 0; l < cells.levels; ++l) {
+      if (!cells.meets(self, l)) continue;
+      const float radius = margin * 0.5f * (self.w + cells.level[l].support);
+      shared[l].gather(cells, l, self, margin, predicted, build);
+      shared[l].each_near(self, radius * radius, [&](int j) {
+        if (j == i) return;
+        own[place < last ? place : last] = j;
+        ++place;
+      });
+    }
     return place;
   }
 #endif
@@ -219,6 +211,9 @@ struct ListNeighbours {
   }
 };
 
+/// Of all lists, so that what a thread holds of one is no other's.
+std::atomic<std::uint64_t> builds = 0;
+
 }  // namespace
 
 template <class Selection>
@@ -243,7 +238,7 @@ void NeighbourList::list(PredictedView particles, const Grid& grid, Selection se
   for_each_team(
       "list neighbours", particles.size(),
       ListNeighbours<Selection>{select, particles.predicted(), cells, view(), entry_.data(), count_.data(),
-                                store_.data(), store_.size(), need_.data(), witness, margin});
+                                store_.data(), store_.size(), need_.data(), witness, margin, ++builds});
 }
 
 void NeighbourList::build(PredictedView particles, const Grid& grid, Witness witness) {
@@ -324,8 +319,8 @@ bool NeighbourList::grow(Need met) {
     store_.resize(std::min<std::size_t>(most_store, 2 * met.stored));
     grew = true;
   }
-  if (met.longest >= capacity_ && capacity_ < most_capacity) {
-    capacity_ = std::min(most_capacity, (met.longest + 1) * 5 / 4);
+  if (met.stored > count_.size() / most_stored && capacity_ < most_capacity) {
+    capacity_ = std::min({most_capacity, (met.longest + 1) * 5 / 4, capacity_ * 5 / 4});
     grew = true;
   }
   if (grew) need_.zero();

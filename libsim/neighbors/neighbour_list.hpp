@@ -92,8 +92,8 @@ class NeighbourList {
     int longest;           ///< since the lists grew last
     std::uint64_t stored;  ///< entries of the store that the last build asked for
   };
-  /// Reads the need back and makes room for it: at most `most_capacity` entries a list, and the store. True
-  /// when it grew.
+  /// Reads the need back and makes room for it: the store holds what was asked of it, and lists get a quarter
+  /// more room, up to `most_capacity` entries, where much was. True when it grew.
   bool grow();
   /// The same with the need as need() had it.
   bool grow(Need met);
@@ -122,8 +122,14 @@ class NeighbourList {
   }
 
  private:
-  /// A coarse particle among the finest has 113 within the support, some 150 within the margin.
-  static constexpr int mixed_capacity = 192;
+  /// Of water of one size: a particle has 40 within the margin, and 55 where it piles up.
+  static constexpr int usual_capacity = 56;
+  /// A coarse particle among the finest has 113 within the support and some 150 within the margin; where
+  /// levels change by one from neighbour to neighbour, lists have 108 at most.
+  static constexpr int mixed_capacity = 128;
+  /// The store may hold one entry for so many lists before all lists get more room: few long ones are read
+  /// from it at no cost that shows, and room of their own is room in every list.
+  static constexpr std::size_t most_stored = 4;
   /// A thousand particles in one place, 4 MB.
   static constexpr std::size_t least_store = 1 << 20;
   static constexpr std::size_t most_store = 1 << 26;
@@ -134,7 +140,7 @@ class NeighbourList {
   template <class Selection>
   void list(PredictedView particles, const Grid& grid, Selection select, Witness witness);
 
-  int capacity_ = 80;
+  int capacity_ = usual_capacity;
   Array<int> count_, entry_, store_;
   Array<Need> need_;
 };

@@ -184,6 +184,9 @@ void Particles::reorder(const Array<int>& order) {
   const auto ints = kept_columns<int>();
   const auto parts = kept_columns<SaliencyParts>();
   auto& c = columns_;
+  // What nothing reads after a sort is room to sort into.
+  auto& predicted_to = has(Column::PredictedNext) ? c.predicted_next : spare_b_;
+  auto& velocity_to = has(Column::VelocityNext) ? c.velocity_next : spare_c_;
   for_each("reorder", n,
            Gather{.order = order.data(),
                   .position_in = c.position.data(),
@@ -192,8 +195,8 @@ void Particles::reorder(const Array<int>& order) {
                   .id_in = c.id.data(),
                   .level_in = c.level.data(),
                   .position = room(spare_a_),
-                  .predicted = room(spare_b_),
-                  .velocity = room(spare_c_),
+                  .predicted = room(predicted_to),
+                  .velocity = room(velocity_to),
                   .id = room(spare_id_),
                   .level = room(spare_level_),
                   .bytes = extras(bytes, spare_bytes_),
@@ -201,8 +204,8 @@ void Particles::reorder(const Array<int>& order) {
                   .ints = extras(ints, spare_ints_),
                   .parts = extras(parts, spare_parts_)});
   c.position.swap(spare_a_);
-  c.predicted.swap(spare_b_);
-  c.velocity.swap(spare_c_);
+  c.predicted.swap(predicted_to);
+  c.velocity.swap(velocity_to);
   c.id.swap(spare_id_);
   c.level.swap(spare_level_);
   swap_extras(bytes, spare_bytes_);

@@ -1,0 +1,100 @@
+#pragma once
+/// Whom the particles of one cell look through, gathered once for all of them; the CPU's way to lists.
+
+#ifndef SIM_CUDA
+
+#include <bit>
+#include <vector>
+
+#include "libsim/neighbors/cell_table.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// 1 << k, read as a row: not every processor has lanes that shift by their own number.
+struct BitRow {
+  std::uint32_t of[32];
+  constexpr BitRow() : of{} {
+    for (int k = 0; k < 32; ++k) of[k] = std::uint32_t{1} << k;
+  }
+};
+inline constexpr BitRow bit_row{};
+
+/// The particles of a window of one grid, a row for each coordinate, so that distances are taken in lanes.
+class Candidates {
+ public:
+  /// Those that can be near `self`, in ascending order. What the last call gathered is kept where it is the
+  /// same: particles follow each other by cells. `build`: differs where cells or places do.
+  void gather(const CellTable& cells, int l, Vec4 self, float margin, const Vec4* predicted,
+              std::uint64_t build) {
+    const LevelCells& grid = cells.level[l];
+    const CellTable::Window look = cells.window(grid, self, margin);
+    const Window window{build,
+                        grid.along(look.at.x - look.reach, grid.nx),
+                        grid.along(look.at.x + look.reach, grid.nx),
+                        look.first_y,
+                        look.last_y,
+                        look.first_z,
+                        look.last_z};
+    if (window == held_) return;
+    held_ = window;
+    const auto cell = [&](int x, int y, int z) { return grid.first + (y * grid.nz + z) * grid.nx + x; };
+    who_.clear();
+    for (int y = window.first_y; y <= window.last_y; ++y) {
+      for (int z = window.first_z; z <= window.last_z; ++z) {
+        const int end = cells.begin[cell(window.last_x, y, z) + 1];
+        for (int j = cells.begin[cell(window.first_x, y, z)]; j < end; ++j) who_.push_back(j);
+      }
+    }
+    const std::size_t groups = (who_.size() + at_once - 1) / at_once;
+    const std::size_t rows = groups * at_once;
+    if (x_.size() < rows) {
+      for (auto* row : {&x_, &y_, &z_}) row->resize(rows);
+    }
+    for (std::size_t k = 0; k < who_.size(); ++k) {
+      const Vec4 p = predicted[who_[k]];
+      x_[k] = p.x;
+      y_[k] = p.y;
+      z_[k] = p.z;
+    }
+    for (std::size_t k = who_.size(); k < rows; ++k) x_[k] = y_[k] = z_[k] = far;
+    rows_ = static_cast<int>(rows);
+  }
+
+  /// hear(j) for all within the root of `square`, m2, of a place.
+  template <class Hear>
+  void each_near(Vec4 at, float square, Hear hear) const {
+    for (int first = 0; first < rows_; first += at_once) {
+      const float* const x = x_.data() + first;
+      const float* const y = y_.data() + first;
+      const float* const z = z_.data() + first;
+      std::uint32_t near_ones = 0;
+#pragma omp simd reduction(| : near_ones)
+      for (int k = 0; k < at_once; ++k) {
+        const float dx = at.x - x[k];
+        const float dy = at.y - y[k];
+        const float dz = at.z - z[k];
+        near_ones |= dx * dx + dy * dy + dz * dz < square ? bit_row.of[k] : 0;
+      }
+      for (; near_ones != 0; near_ones &= near_ones - 1) {
+        hear(who_[static_cast<std::size_t>(first + std::countr_zero(near_ones))]);
+      }
+    }
+  }
+
+ private:
+  static constexpr int at_once = 32;
+  static constexpr float far = 1e18f;
+  struct Window {
+    std::uint64_t build;
+    int first_x, last_x, first_y, last_y, first_z, last_z;
+    bool operator==(const Window&) const = default;
+  };
+  Window held_{};
+  std::vector<int> who_;
+  std::vector<float> x_, y_, z_;
+  int rows_ = 0;
+};
+
+}  // namespace sim::SIM_BACKEND
+
+#endif
