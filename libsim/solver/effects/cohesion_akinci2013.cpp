@@ -3,20 +3,11 @@
 /// terms come from energies that are constant inside.
 
 #include "libsim/solver/effects/loops/surface_normals.hpp"
+#include "libsim/solver/effects/surface_energy.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
-
-/// Of both terms in units of sigma: calibrated together by the period of one drop of level 0
-/// (docs/solver_notes.md). Tests measure sigma back from others.
-constexpr float pull_strength = 12;
-constexpr float smoothing_strength = 2.6f;
-/// What is denser than 1 - skin_depth in units of rho_0 pulls less.
-constexpr float skin_depth = 0.2f;
-
-/// How much a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
-SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_depth, 0.0f), 1.0f); }
 
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
