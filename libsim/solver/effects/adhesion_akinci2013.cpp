@@ -9,7 +9,7 @@ namespace {
 
 /// What the pull makes of its own work: calibrated by the contact angles of drops of level 0
 /// (docs/solver_notes.md).
-constexpr float pull_share = 0.8f;
+constexpr float pull_share = 0.75f;
 
 /// A wall is water that stays: tension's pairs act between it and the water before it, where only the latter
 /// has a surface. For a plane their sum over the half space behind is

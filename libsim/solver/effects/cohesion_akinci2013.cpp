@@ -13,8 +13,8 @@ namespace {
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
 /// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling
-/// with sigma a length. Particles that are not solved count as inside: those of a surface always are
-/// (surface_density).
+/// with sigma a length. Pairs with particles that are not solved are left out: no pressure of theirs answers
+/// the pull, and they would not give it back.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;
@@ -40,7 +40,8 @@ struct Cohesion {
     const float dy = me.at.y - other.y;
     const float dz = me.at.z - other.z;
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
-    const float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
+    float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
+    if constexpr (!Selection::everyone) weight *= select.moves(j);
     const float skins = me.skin + skin(density[j]);
     const Vec4 n = normal[j];
     const float even = smoothing_strength * weight;
