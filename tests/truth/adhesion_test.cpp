@@ -98,6 +98,15 @@ double contact_angle(double steep) {
   return low;
 }
 
+/// The drop without what it threw off, which flies for good.
+State within_reach(const Drop& drop, State state) {
+  std::erase_if(state, [&](const auto& p) {
+    const double middle = 3 * drop.radius();
+    return std::hypot(place(p)[0] - middle, place(p)[1], place(p)[2] - middle) > 2 * drop.radius();
+  });
+  return state;
+}
+
 /// The work that the angle tells of, over what the scene lists; the angle is the mean of a last half period.
 double adhesion_back(const Drop& drop) {
   const auto fluid = start_of(drop);
@@ -107,7 +116,7 @@ double adhesion_back(const Drop& drop) {
   for (int k = 1; k <= frames; ++k) {
     fluid->step_frame();
     if (k <= frames - drop.frames() / 2 || k % 10) continue;
-    sum += contact_angle(steepness(fluid->read_state()));
+    sum += contact_angle(steepness(within_reach(drop, fluid->read_state())));
     ++count;
   }
   const double theta = sum / count;
@@ -116,11 +125,14 @@ double adhesion_back(const Drop& drop) {
   for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
   const double solved =
       static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
+  const State all = fluid->read_state();
+  const double thrown = 1 - total_mass(within_reach(drop, all)) / total_mass(all);
+  EXPECT_LT(thrown, 0.02);
   const double back = (1 + std::cos(theta)) / drop.share;
   std::printf(
-      "adhesion of %.2f sigma, level %d, beta %.2f, %.2f solved, by level%s: contact angle %.1f degrees, "
-      "%.3f of what was given\n",
-      drop.share, drop.level, drop.beta, solved, levels.c_str(), theta * 180 / pi, back);
+      "adhesion of %.2f sigma, level %d, beta %.2f, %.2f solved, by level%s: %.3f thrown off: "
+      "contact angle %.1f degrees, %.3f of what was given\n",
+      drop.share, drop.level, drop.beta, solved, levels.c_str(), thrown, theta * 180 / pi, back);
   return back;
 }
 
