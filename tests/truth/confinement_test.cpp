@@ -12,8 +12,10 @@ using sim::EffectOption;
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
-/// Of the motion that is measured: later the method's own viscosity has its share of what was gained.
-constexpr int frames = 2;
+/// Of the motion that is measured: the later it is, the larger the share of what was gained that the method's
+/// own viscosity has taken.
+constexpr std::array frames{2, 6};
+using Gains = std::array<double, frames.size()>;
 
 /// A pool a third as deep as it is wide. Speeds go as the root of its size, so that pools of all sizes move
 /// alike.
@@ -112,47 +114,55 @@ double spin(const Pool& pool, const State& state) {
   return along / norm;
 }
 
-double confinement_back(const Pool& pool) {
+/// Over what the scene lists, for each of `frames`.
+Gains confinement_back(const Pool& pool) {
   const State start = pool.turning();
-  double gained[2];
+  Gains gained[2];
   std::string levels;
-  double time = 0, solved = 1;
+  double solved = 1;
   for (const bool on : {false, true}) {
     const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
     // Who rests is chosen by what the last frames were like.
     for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
     fluid->put(start);
-    for (int k = 0; k < frames; ++k) fluid->step_frame();
-    gained[on] = spin(pool, fluid->read_state());
-    time = frames * sim::Scene{}.frame_dt_s;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      for (int frame = k ? frames[k - 1] : 0; frame < frames[k]; ++frame) fluid->step_frame();
+      gained[on][k] = spin(pool, fluid->read_state());
+    }
     levels.clear();
     const auto report = fluid->report();
     for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
     solved = static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
   }
-  const double back = (gained[1] - gained[0]) / (time * pool.given());
-  std::printf("level %d, beta %.2f, %.2f solved, by level%s: confinement %.3f of what was given\n",
-              pool.level, pool.beta, solved, levels.c_str(), back);
+  Gains back{};
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    back[k] = (gained[1][k] - gained[0][k]) / (frames[k] * sim::Scene{}.frame_dt_s * pool.given());
+    std::printf(
+        "level %d, beta %.2f, %.2f solved, by level%s, %d frames: confinement %.3f of what was given\n",
+        pool.level, pool.beta, solved, levels.c_str(), frames[k], back[k]);
+  }
   return back;
 }
 
 constexpr double within = 0.15;
 sim::TargetRegion half_fine() { return {{-0.5, 0, 0}, 0.5, 0, 3}; }
 
+void gains(const Pool& pool) {
+  for (const double back : confinement_back(pool)) EXPECT_NEAR(back, 1, within);
+}
+
 void vortices_of_one_level(Backend backend) {
   NEEDS_EFFECTS;
-  EXPECT_NEAR(confinement_back({.backend = backend}), 1, within);
-  EXPECT_NEAR(confinement_back({.level = 3, .method = MethodKind::LoRes, .backend = backend}), 1, within);
+  gains({.backend = backend});
+  gains({.level = 3, .method = MethodKind::LoRes, .backend = backend});
 }
 void a_vortex_of_mixed_levels(Backend backend) {
   NEEDS_EFFECTS;
-  EXPECT_NEAR(
-      confinement_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}),
-      1, within);
+  gains({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend});
 }
 void a_vortex_that_rests_in_turns(Backend backend) {
   NEEDS_EFFECTS;
-  EXPECT_NEAR(confinement_back({.beta = 0.67, .backend = backend}), 1, within);
+  gains({.beta = 0.67, .backend = backend});
 }
 
 double energy(const State& state) {
@@ -189,13 +199,13 @@ void energy_is_bounded(Backend backend) {
   const State start = pool.turning();
   const auto fluid = run_of(pool, start, 1, usual);
   double most = 0;
-  for (int k = 0; k < 150; ++k) {
+  for (int k = 0; k < 240; ++k) {
     fluid->step_frame();
     if (k % 10 == 0) most = std::max(most, energy(fluid->read_state()) / energy(start));
   }
   const double last = energy(fluid->read_state()) / energy(start);
-  std::printf("confinement of 1 m/s for 2.5 s: energy %.2f at most, %.2f at last\n", most, last);
-  EXPECT_LT(most, 1.8);
+  std::printf("confinement of 1 m/s for 4 s: energy %.2f at most, %.2f at last\n", most, last);
+  EXPECT_LT(most, 3);
   EXPECT_LT(last, most);
 }
 

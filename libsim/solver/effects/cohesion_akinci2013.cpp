@@ -3,27 +3,18 @@
 /// terms come from energies that are constant inside.
 
 #include "libsim/solver/effects/loops/surface_normals.hpp"
+#include "libsim/solver/effects/surface_energy.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Of both terms in units of sigma: calibrated together by the period of one drop of level 0
-/// (docs/solver_notes.md). Tests measure sigma back from others.
-constexpr float pull_strength = 12;
-constexpr float smoothing_strength = 2.6f;
-/// What is denser than 1 - skin_depth in units of rho_0 pulls less.
-constexpr float skin_depth = 0.2f;
-
-/// How much a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
-SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_depth, 0.0f), 1.0f); }
-
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
 /// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling
-/// with sigma a length. Particles that are not solved count as inside: those of a surface always are
-/// (surface_density).
+/// with sigma a length. Pairs with particles that are not solved are left out: no pressure of theirs answers
+/// the pull, and they would not give it back.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;
@@ -49,7 +40,8 @@ struct Cohesion {
     const float dy = me.at.y - other.y;
     const float dz = me.at.z - other.z;
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
-    const float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
+    float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
+    if constexpr (!Selection::everyone) weight *= select.moves(j);
     const float skins = me.skin + skin(density[j]);
     const Vec4 n = normal[j];
     const float even = smoothing_strength * weight;

@@ -9,29 +9,57 @@ namespace {
 /// Where the slope of |omega| over h is less than this share of |omega| it has no direction.
 constexpr float least_slope = 0.03f;
 
-/// dv / dt = c f N x omega with N = grad |omega| over its length: c is a speed, so that the force on a volume
-/// does not depend on its particles. A Lamb-Oseen vortex gains c omega(r) round its axis. f feeds what turns
-/// faster than `from` and no faster than `most`, so that still water stays still and swirl stays bounded.
-/// Momentum is accounted (Change::Effects); spin is gained.
+/// The mean of omega over those around, itself among them, by poly6's slope over its way; |of it| in w. Curls
+/// scatter, most where levels meet, and slopes of what scatters point anywhere.
+struct Smooth {
+  static constexpr int sums = 4;
+  static constexpr bool of_all = false;
+  const Vec4* curl;
+  Vec4* smooth;
+
+  using Self = Vec4;  ///< its own omega
+  SIM_FN Self self(int i) const { return curl[i]; }
+  SIM_FN void add(const NeighbourPair& pair, Self, float& x, float& y, float& z, float& whole) const {
+    const Vec4 there = curl[pair.j];
+    const float weight = there.w < 0 ? 0.0f : pair.slope;
+    x += weight * there.x;
+    y += weight * there.y;
+    z += weight * there.z;
+    whole += weight;
+  }
+  SIM_FN void finish(int i, Vec4 at, Self own, float x, float y, float z, float whole) const {
+    const float weight = Kernel(at.w).poly6 * at.w * at.w * at.w * at.w;
+    const Vec3 mean = (1 / (whole + weight)) * (Vec3{x, y, z} + weight * xyz(own));
+    smooth[i] = with_w(mean, length(mean));
+  }
+  SIM_FN void skip(int i) const { smooth[i] = {0, 0, 0, Curl::unknown}; }
+};
+
+/// dv / dt = c f N x omega with N = grad |omega| over its length, omega there the mean above: c is a speed,
+/// so that the force on a volume does not depend on its particles. A Lamb-Oseen vortex gains c omega(r) round
+/// its axis. f feeds what turns faster than `from` and no faster than `most`, so that still water stays still
+/// and swirl stays bounded. Momentum is accounted (Change::Effects); spin is gained.
 struct Confine {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;
   const Vec4* curl;
+  const Vec4* smooth;
   Vec4* velocity;
   float kick;  ///< c dt, m
   float from, most;
 
-  using Self = Vec4;  ///< its own omega, and |omega| in w
-  SIM_FN Self self(int i) const { return curl[i]; }
+  using Self = float;  ///< its own |mean of omega|
+  SIM_FN Self self(int i) const { return smooth[i].w; }
   /// To grad |omega|, over 6 V_i.
   SIM_FN void add(const NeighbourPair& pair, Self own, float& x, float& y, float& z, float&) const {
-    const float there = curl[pair.j].w;
-    const float along = there < 0 ? 0.0f : pair.slope * (there - own.w);
+    const float there = smooth[pair.j].w;
+    const float along = there < 0 ? 0.0f : pair.slope * (there - own);
     x -= along * pair.x;
     y -= along * pair.y;
     z -= along * pair.z;
   }
-  SIM_FN void finish(int i, Vec4 at, Self omega, float x, float y, float z, float) const {
+  SIM_FN void finish(int i, Vec4 at, Self, float x, float y, float z, float) const {
+    const Vec4 omega = curl[i];
     const float share = omega.w > 0 ? fed(omega.w) : 0;
     if (!(share > 0)) return;
     const Vec3 slope = (6 * mass_of(at.w, 1) * at.w) * Vec3{x, y, z};
@@ -52,14 +80,22 @@ struct Confine {
 
 void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(p)); }
 
-using ConfineView =
-    ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours, Column::Normal),
-               columns(Column::Velocity)>;
+using SmoothView =
+    ColumnView<columns(Column::Position, Column::Neighbours, Column::Normal), columns(Column::VelocityNext)>;
+
+void smooth_curl(FluidState& state, SmoothView p) {
+  run_pair_loop("smooth curl", state, p, Smooth{.curl = p.normal(), .smooth = p.velocity_next()});
+}
+
+using ConfineView = ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours, Column::Normal,
+                                       Column::VelocityNext),
+                               columns(Column::Velocity)>;
 
 void confine(FluidState& state, ConfineView p) {
   const auto& k = state.parameters;
   run_pair_loop("confinement", state, p,
                 Confine{.curl = p.normal(),
+                        .smooth = p.velocity_next(),
                         .velocity = p.velocity(),
                         .kick = k.dt * k.effects[EffectKind::Vorticity],
                         .from = k.effects[EffectOption::VorticityFrom],
@@ -70,6 +106,7 @@ void confine(FluidState& state, ConfineView p) {
 
 std::vector<Stage> vorticity_stages() {
   return {stage_of<find_curl>({.name = "vorticity", .phase = Phase::SubstepEnd, .loop = SharedTerm::Curl}),
+          stage_of<smooth_curl>({.name = "smooth curl", .phase = Phase::SubstepEnd}),
           stage_of<confine>({.name = "confinement", .phase = Phase::SubstepEnd})};
 }
 

@@ -23,6 +23,34 @@ SIM_TEST(Cohesion, KeepsMomentumForMixedMasses) {
   for (const double p : momentum) EXPECT_LT(std::abs(p), 1e-6 * exchanged);
 }
 
+SIM_TEST(Cohesion, KeepsMomentumWhereSomeRest) {
+  NEEDS_EFFECTS;
+  const auto points = mixed_ball();
+  auto state = state_of(points, false);
+  state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
+  // The last ones rest, so that slots are particles.
+  const std::size_t solved = points.size() - 40;
+  std::vector<std::uint8_t> active(points.size(), 0);
+  std::fill_n(active.begin(), solved, std::uint8_t{1});
+  state.particles.all().active.from_host(active);
+  state.all_active = false;
+  state.activation.list_active(ActiveListView(state.particles));
+  const auto v = velocities_by(EffectKind::Cohesion, state);
+  double momentum[3] = {}, exchanged = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double m = mass(points[i]);
+    momentum[0] += m * static_cast<double>(v[i].x);
+    momentum[1] += m * static_cast<double>(v[i].y);
+    momentum[2] += m * static_cast<double>(v[i].z);
+    exchanged += m * static_cast<double>(length(xyz(v[i])));
+    if (i >= solved) {
+      EXPECT_EQ(length(xyz(v[i])), 0) << i;
+    }
+  }
+  ASSERT_GT(exchanged, 1.0);
+  for (const double p : momentum) EXPECT_LT(std::abs(p), 1e-6 * exchanged);
+}
+
 SIM_TEST(Cohesion, PullsAtASurfaceAndNowhereElse) {
   NEEDS_EFFECTS;
   constexpr int side = 9;
@@ -64,30 +92,76 @@ SIM_TEST(Cohesion, APairOfTwiceTheSizeIsPulledAQuarterAsFast) {
   EXPECT_NEAR(speed[1] / speed[0], 0.25f, 1e-4f);
 }
 
-SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWork) {
+/// Adhesion of this work beside a tension, on particles before a wall at x = 0.
+struct BesideAWall {
+  float tension, work;
+  float density = 1, normal = 0;  ///< of all; the latter along x
+
+  std::vector<Vec4> velocities(const std::vector<Vec4>& points, float& dt) const {
+    auto state = state_of(points, true);
+    dt = state.parameters.dt;
+    state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
+    state.parameters.effects.values[index_of(EffectKind::Cohesion)] = tension;
+    state.parameters.effects.values[index_of(EffectKind::Adhesion)] = work;
+    state.particles.all().density.from_host(std::vector<float>(points.size(), density));
+    state.particles.all().normal.from_host(std::vector<Vec4>(points.size(), Vec4{normal, 0.3f, 0, 0}));
+    for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
+    return state.particles.all().velocity.to_host();
+  }
+};
+
+SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWorkBeyondTension) {
   NEEDS_EFFECTS;
   // Particles of spacing d in a column before the wall, lifted together: the work over the area d^2 is
-  // rho_0 int s a(s) ds, whatever d: 0.17 of W is the pull's share.
-  constexpr float work = 30;
+  // rho_0 int s a(s) ds, whatever d: 0.75 of W - sigma is the pull's.
+  const BesideAWall wall{.tension = 20, .work = 50};
   for (const float d : {0.05f, 0.1f}) {
     const float h = 2 * d;
     constexpr int steps = 400;
-    std::vector<Vec4> points;
-    for (int k = 0; k < steps; ++k) points.push_back({h * (static_cast<float>(k) + 0.5f) / steps, 1, 1, h});
-    auto state = state_of(points, true);
-    state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
-    state.parameters.effects.values[index_of(EffectKind::Adhesion)] = work;
-    for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
-    const auto v = state.particles.all().velocity.to_host();
-    const auto x = state.particles.all().position.to_host();
+    std::vector<Vec4> x;
+    for (int k = 0; k < steps; ++k) x.push_back({h * (static_cast<float>(k) + 0.5f) / steps, 1, 1, h});
+    float dt = 0;
+    const auto v = wall.velocities(x, dt);
     double sum = 0;
     for (std::size_t k = 0; k < x.size(); ++k) {
       EXPECT_LE(v[k].x, 0) << "towards the wall";
       EXPECT_EQ(v[k].y, 0);
-      sum -= 1000.0 * static_cast<double>(x[k].x) * static_cast<double>(v[k].x / state.parameters.dt) *
+      sum -= 1000.0 * static_cast<double>(x[k].x) * static_cast<double>(v[k].x / dt) *
              static_cast<double>(h) / steps;
     }
-    EXPECT_NEAR(sum / (0.17 * static_cast<double>(work)), 1, 0.01) << d;
+    EXPECT_NEAR(sum / (0.75 * 30), 1, 0.01) << d;
+  }
+}
+
+/// The pair force of Cohesion, summed over still water behind the wall without skin or normal.
+SIM_TEST(Adhesion, AWallPullsAsTheStillWaterBehindItWould) {
+  NEEDS_EFFECTS;
+  constexpr double h = 0.2, skin = 0.5, normal = -0.7, tension = 20;
+  for (const double q : {0.1, 0.45, 0.8}) {
+    constexpr int steps = 60;
+    constexpr double cell = h / steps;
+    double force = 0;  // over sigma V_i
+    for (int a = 0; a < steps; ++a) {
+      for (int b = -steps; b < steps; ++b) {
+        for (int c = -steps; c < steps; ++c) {
+          const double x = q * h + (a + 0.5) * cell, y = (b + 0.5) * cell, z = (c + 0.5) * cell;
+          const double t = h * h - x * x - y * y - z * z;
+          if (t <= 0) continue;
+          const double w = 315 / (64 * 3.14159265 * std::pow(h, 9)) * t * cell * cell * cell;
+          force += 12 / h * skin * -6 * w * t * x - 2.6 * (24 * w * x * x - 6 * w * t) * normal;
+        }
+      }
+    }
+    for (const double share : {1.0, 0.5}) {
+      const BesideAWall wall{.tension = tension,
+                             .work = static_cast<float>(share * tension),
+                             .density = 0.9f,
+                             .normal = static_cast<float>(normal)};
+      float dt = 0;
+      const auto v = wall.velocities({{static_cast<float>(q * h), 1, 1, static_cast<float>(h)}}, dt);
+      const double expected = share * share * tension / 1000 * force;
+      EXPECT_NEAR(static_cast<double>(v[0].x / dt), expected, 0.02 * std::abs(expected)) << q;
+    }
   }
 }
 

@@ -113,6 +113,38 @@ SIM_TEST(Vorticity, AVortexIsTurnedOnByItsOwnCurl) {
   }
 }
 
+/// The same vortex among velocities that scatter: its slopes are those of the mean curl.
+SIM_TEST(Vorticity, AVortexInUnrestIsTurnedOnByItsOwnCurl) {
+  NEEDS_EFFECTS;
+  constexpr float d = 0.05f, core2 = 16 * d * d;
+  std::mt19937 random(3);
+  std::normal_distribution<float> jitter(0, 0.15f);
+  std::vector<Vec4> points, v;
+  for (int i = 0; i < 21 * 21 * 7; ++i) {
+    const Vec3 x{d * (static_cast<float>(i % 21) - 10.3f), d * static_cast<float>(i / 441),
+                 d * (static_cast<float>(i / 21 % 21) - 10.3f)};
+    const float r2 = x.x * x.x + x.z * x.z;
+    const float turn = 5 * core2 / r2 * (1 - std::exp(-r2 / core2));
+    points.push_back(with_w(x, 2 * d));
+    v.push_back({turn * x.z + jitter(random), jitter(random), -turn * x.x + jitter(random), 0});
+  }
+  auto state = state_of(points, true);
+  feed(state);
+  give(state, v);
+  const auto after = velocities_by(EffectKind::Vorticity, state);
+  double along = 0, norm = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec4 p = points[i];
+    const float r = std::hypot(p.x, p.z);
+    if (r > 6 * d || std::abs(p.y - 3 * d) > 0.5f * d) continue;
+    const double omega = 10 * std::exp(static_cast<double>(-r * r / core2));
+    const Vec3 gain = (1 / state.parameters.dt) * (xyz(after[i]) - xyz(v[i]));
+    along += omega * static_cast<double>((gain.x * p.z - gain.z * p.x) / r);
+    norm += omega * omega;
+  }
+  EXPECT_NEAR(along / norm, 1, 0.1);
+}
+
 SIM_TEST(Vorticity, WhatTurnsTooSlowlyOrTooFastIsLeftAsItIs) {
   NEEDS_EFFECTS;
   const auto points = mixed_ball();
