@@ -38,11 +38,12 @@ struct SumSurface {
 };
 
 /// n_i = -h_i sum_j V_j grad W_ij and the mean of |v_ij| (1 - v_ij x_ij) / r_ij (Eq. 2, over the distance).
+template <class Bounds>
 struct Surface {
   const Vec4* position;
   const Vec4* velocity;
   WaterRound water;
-  Walls walls;
+  Bounds bounds;
   Potential energy;
   const std::uint8_t* level;
   int coarsest_seen;
@@ -60,7 +61,7 @@ struct Surface {
     SumSurface sum{.self = self, .v = v, .i = i, .velocity = velocity};
     water.with_pairs(self, sum);
     Vec3 wall;
-    walls.missing(xyz(self), self.w, wall);
+    bounds.missing(xyz(self), self.w, wall);
     normal[i] = with_w(self.w * (sum.normal - wall), 0);
     // Inside the water the others' weights are 1 less the particle's own.
     approach[i] = sum.approach / (1 - mass_of(1, 1) * Kernel(1).density(0));
@@ -141,6 +142,7 @@ struct MarkFree {
 };
 
 /// Fills the free places in their order.
+template <class Bounds>
 struct Emit {
   const Vec4* position;
   const Vec4* velocity;
@@ -152,7 +154,7 @@ struct Emit {
   const int* free;
   const int* free_of;
   int capacity;
-  Walls walls;
+  Bounds bounds;
   FoamRules rules;
   std::uint32_t frame;
   Vec4* place;
@@ -204,7 +206,7 @@ struct Emit {
     const float angle = 2 * pi * draw(seed, 1);
     const Vec3 across = radius * (cosf(angle) * e1 + sinf(angle) * e2);
     Vec3 x = xyz(parent) + across - (rules.dt * draw(seed, 2)) * v;
-    walls.project(x, xyz(parent), 0);
+    bounds.project(x, xyz(parent), 0);
     place[slot] = with_w(x, rules.lifetime * (0.5f + draw(seed, 3)));
     foam_velocity[slot] = with_w(v + approach[i] * across, 1);
   }
@@ -225,18 +227,19 @@ struct Enter {
 
 }  // namespace
 
-void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+template <class Bounds>
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules) {
   for_each("foam surface", water.size(),
-           Surface{.position = water.position(),
-                   .velocity = water.velocity(),
-                   .water = {grid.cells(), water.position()},
-                   .walls = walls,
-                   .energy = rules.energy,
-                   .level = water.level(),
-                   .coarsest_seen = rules.coarsest_seen,
-                   .normal = water.normal(),
-                   .approach = pool.approach.data()});
+           Surface<Bounds>{.position = water.position(),
+                           .velocity = water.velocity(),
+                           .water = {grid.cells(), water.position()},
+                           .bounds = bounds,
+                           .energy = rules.energy,
+                           .level = water.level(),
+                           .coarsest_seen = rules.coarsest_seen,
+                           .normal = water.normal(),
+                           .approach = pool.approach.data()});
 }
 
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules) {
@@ -254,26 +257,27 @@ void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const F
                        .births = pool.births.data()});
 }
 
-void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules) {
+template <class Bounds>
+void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules) {
   pool.scanner.inclusive_sum(pool.births, pool.sums);
   for_each("free foam", pool.capacity(), MarkFree{pool.place.data(), pool.free.data()});
   pool.scanner.inclusive_sum(pool.free, pool.free_of);
   for_each("emit foam", pool.capacity(),
-           Emit{.position = water.position(),
-                .velocity = water.velocity(),
-                .id = water.id(),
-                .approach = pool.approach.data(),
-                .births = pool.births.data(),
-                .sums = pool.sums.data(),
-                .water = water.size(),
-                .free = pool.free.data(),
-                .free_of = pool.free_of.data(),
-                .capacity = pool.capacity(),
-                .walls = walls,
-                .rules = rules,
-                .frame = pool.frame,
-                .place = pool.place.data(),
-                .foam_velocity = pool.velocity.data()});
+           Emit<Bounds>{.position = water.position(),
+                        .velocity = water.velocity(),
+                        .id = water.id(),
+                        .approach = pool.approach.data(),
+                        .births = pool.births.data(),
+                        .sums = pool.sums.data(),
+                        .water = water.size(),
+                        .free = pool.free.data(),
+                        .free_of = pool.free_of.data(),
+                        .capacity = pool.capacity(),
+                        .bounds = bounds,
+                        .rules = rules,
+                        .frame = pool.frame,
+                        .place = pool.place.data(),
+                        .foam_velocity = pool.velocity.data()});
   for_each("enter foam", 1,
            Enter{.sums = pool.sums.data(),
                  .free_of = pool.free_of.data(),
@@ -281,5 +285,12 @@ void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRul
                  .capacity = pool.capacity(),
                  .ledger = pool.ledger.data()});
 }
+
+#define SIM_FOR_BOUNDS(Bounds)                                                                        \
+  template void find_foam_surface(FoamPool&, FoamView, const Grid&, const Bounds&, const FoamRules&); \
+  template void emit_foam(FoamPool&, FoamView, const Bounds&, const FoamRules&);
+SIM_FOR_BOUNDS(Walls)
+SIM_FOR_BOUNDS(Solids)
+#undef SIM_FOR_BOUNDS
 
 }  // namespace sim::SIM_BACKEND

@@ -5,7 +5,7 @@
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/particles/particles.hpp"
-#include "libsim/particles/walls.hpp"
+#include "libsim/particles/solids.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -35,14 +35,18 @@ struct FoamRules {
 using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                             columns(Column::Normal)>;
 
+// Bounds: Walls, or Solids in scenes with obstacles.
+
 /// Fills Normal (outwards, without unit: about 1 at a surface; 0 for water that is too slow to foam) and
 /// FoamPool::approach.
-void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+template <class Bounds>
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules);
 /// Fills FoamPool::births from both.
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules);
 /// Puts what was counted in free places, as many as there are, and enters it in the ledger. Of more than fit
 /// an even choice is dropped.
-void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules);
+template <class Bounds>
+void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules);
 
 }  // namespace sim::SIM_BACKEND
