@@ -179,7 +179,7 @@ TEST(FoamInSimulations, IsWhatProgramsRead) {
 }
 
 void stays_outside_obstacles(Backend backend) {
-  for (const auto method : {MethodKind::HiRes, MethodKind::OursTSp}) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::OursTsp}) {
     SCOPED_TRACE(sim::traits_of(method).name);
     auto scene = dam(4);
     sim::Obstacle post;
