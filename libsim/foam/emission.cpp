@@ -11,14 +11,11 @@ SIM_FN float draw(std::uint32_t seed, std::uint32_t which) { return uniform_of(r
 
 SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
 
-/// Two sums over the water round particle i.
+/// -sum_j V_j grad W_ij, outwards: -grad W points from j to i.
 struct SumSurface {
   Vec4 self;
-  Vec3 v;
   int i;
-  const Vec4* velocity;
   Vec3 normal{};
-  float approach = 0;
 
   SIM_FN void operator()(int j, Vec4 other) {
     const float h = 0.5f * (self.w + other.w);
@@ -28,16 +25,11 @@ struct SumSurface {
     const Kernel kernel(h);
     const float volume = mass_of(other.w, 1);
     const float t = kernel.h2 - r2;
-    // Outwards: -grad W points from j to i.
     normal += 6 * volume * kernel.poly6 * t * t * offset;
-    const float r = sqrtf(at_least(r2, coincident * coincident * kernel.h2));
-    const Vec3 along = v - xyz(velocity[j]);
-    // |v_ij| (1 - v_ij x_ij) of unit vectors: nothing where they part, twice the speed where they meet.
-    approach += volume * kernel.density(r2) * (length(along) - dot(along, offset) / r) / r;
   }
 };
 
-/// n_i = -h_i sum_j V_j grad W_ij and the mean of |v_ij| (1 - v_ij x_ij) / r_ij (Eq. 2, over the distance).
+/// n_i = -h_i sum_j V_j grad W_ij, and how water meets here.
 template <class Bounds>
 struct Surface {
   const Vec4* position;
@@ -47,6 +39,8 @@ struct Surface {
   Potential energy;
   const std::uint8_t* level;
   int coarsest_seen;
+  GridFrame cells;
+  const Vec4* meeting;
   Vec4* normal;
   float* approach;
 
@@ -55,16 +49,14 @@ struct Surface {
     approach[i] = 0;
     // Too coarse to emit, and to stand beside what does.
     if (level[i] > coarsest_seen) return;
-    const Vec3 v = xyz(velocity[i]);
-    if (!(energy(specific_energy(v)) > 0)) return;
+    if (!(energy(specific_energy(xyz(velocity[i]))) > 0)) return;
     const Vec4 self = position[i];
-    SumSurface sum{.self = self, .v = v, .i = i, .velocity = velocity};
+    SumSurface sum{.self = self, .i = i};
     water.with_pairs(self, sum);
     Vec3 wall;
     bounds.missing(xyz(self), self.w, wall);
     normal[i] = with_w(self.w * (sum.normal - wall), 0);
-    // Inside the water the others' weights are 1 less the particle's own.
-    approach[i] = sum.approach / (1 - mass_of(1, 1) * Kernel(1).density(0));
+    approach[i] = sample(meeting, 0, cells.corners(xyz(self))).x;
   }
 };
 
@@ -113,14 +105,14 @@ struct CountBirths {
     births[i] = 0;
     const float energy = rules.energy(specific_energy(xyz(velocity[i])));
     if (!(energy > 0) || level[i] > rules.coarsest) return;
-    const float potential =
-        energy * (rules.approach(approach[i]) + rules.crest_weight * rules.crest(crest(i)));
+    const float potential = energy * (rules.approach(approach[i]) + rules.crest_depth * crest(i));
     const float volume = rules.rate * rules.dt * potential * mass_of(position[i].w, 1);
     const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id[i]), frame, 0xf0a3u);
     births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
-  /// Curvature of a convex surface that is pushed on, 1/m; 0 elsewhere.
+  /// Potential of a convex surface that is pushed on, times its area over the particle's volume, 1/m; 0
+  /// elsewhere. Curvature grows with what is resolved, and so does no area of crests.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);
@@ -131,7 +123,7 @@ struct CountBirths {
     const Vec4 self = position[i];
     SumCurvature sum{.self = self, .out = out, .normal = normal};
     water.with_pairs(self, sum);
-    return sum.weight > 0 ? sum.curved / sum.weight : 0;
+    return sum.weight > 0 ? rules.crest(sum.curved / sum.weight) * size / self.w : 0;
   }
 };
 
@@ -238,6 +230,8 @@ void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const B
                            .energy = rules.energy,
                            .level = water.level(),
                            .coarsest_seen = rules.coarsest_seen,
+                           .cells = pool.cells.grid,
+                           .meeting = pool.cells.meeting.data(),
                            .normal = water.normal(),
                            .approach = pool.approach.data()});
 }

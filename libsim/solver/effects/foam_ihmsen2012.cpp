@@ -17,7 +17,7 @@ FoamRules rules_of(const FluidState& state) {
           .rate = e[EffectKind::Foam],
           .approach = {e[EffectOption::FoamApproachFrom], e[EffectOption::FoamApproachSpan]},
           .crest = {e[EffectOption::FoamCrestFrom], e[EffectOption::FoamCrestSpan]},
-          .crest_weight = e[EffectOption::FoamCrestWeight],
+          .crest_depth = e[EffectOption::FoamCrestWeight] * state.foam.cells.grid.frame.edge,
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
           .coarsest = coarsest,
           // Graded levels of neighbours differ by one.
@@ -34,6 +34,7 @@ void foam(FluidState& state, FoamView p, const Bounds& bounds) {
   const FoamRules rules = rules_of(state);
   if (p.size() > 0) {
     pool.approach.resize(static_cast<std::size_t>(p.size()));
+    find_meeting(pool.cells, p);
     find_foam_surface(pool, p, state.grid, bounds, rules);
     count_foam_births(pool, p, state.grid, rules);
     emit_foam(pool, p, bounds, rules);
