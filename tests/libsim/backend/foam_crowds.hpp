@@ -42,7 +42,7 @@ struct Water {
     find_neighbours(state, NeighboursView(p));
     state.finest_support = one_level && !points.empty() ? points[0].w : 0.2f;
     state.foam.begin(most, static_cast<int>(points.size()));
-    state.foam.cells.lay(state.domain, 0.25f, state.finest_support);
+    state.foam.cells.lay(state.domain, 0.4f, state.finest_support);
     state.foam.approach.resize(points.size());
     rules.dt = 0.02f;
     rules.rate = 1;
