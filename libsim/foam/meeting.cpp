@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// A cell, the 26 round it, and the way to each in edges.
-constexpr int round = 27;
+constexpr int nearby = 27;
 constexpr int middle = 13;
 SIM_FN Vec3 way_to(int k) {
   return {static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1), static_cast<float>(k / 9 - 1)};
@@ -47,7 +47,7 @@ struct GradientFit {
     const Vec3 gy = row(by);
     const Vec3 gz = row(bz);
     float sum = 0;
-    for (int k = middle + 1; k < round; ++k) {
+    for (int k = middle + 1; k < nearby; ++k) {
       const Vec3 way = way_to(k);
       const Vec3 e = (1 / length(way)) * way;
       sum += length(Vec3{dot(gx, e), dot(gy, e), dot(gz, e)});
@@ -79,7 +79,7 @@ struct Meet {
     const CellBlock& block = grid.block;
     GradientFit fit;
     float whole = 0;
-    for (int k = 0; k < round; ++k) {
+    for (int k = 0; k < nearby; ++k) {
       const int x = cell % block.nx + k % 3 - 1;
       const int y = cell / block.nx % block.ny + k / 3 % 3 - 1;
       const int z = cell / (block.nx * block.ny) + k / 9 - 1;

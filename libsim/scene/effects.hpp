@@ -57,8 +57,8 @@ inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind:
 inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
-// is absent, least, most). A wall_k of 0 stands for walls that insulate, a
-// length_m of 0 for a sixth of the edge of a cube that holds the water.
+// is absent, least, most). A wall_k of 0 stands for walls that insulate, a length_m of 0 for a sixth of the
+// edge of a cube that holds the water.
 #define SIM_EFFECT_OPTIONS(OPTION)                                  \
   OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)           \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
