@@ -11,14 +11,11 @@ SIM_FN float draw(std::uint32_t seed, std::uint32_t which) { return uniform_of(r
 
 SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
 
-/// Two sums over the water round particle i.
+/// -sum_j V_j grad W_ij, outwards: -grad W points from j to i.
 struct SumSurface {
   Vec4 self;
-  Vec3 v;
   int i;
-  const Vec4* velocity;
   Vec3 normal{};
-  float approach = 0;
 
   SIM_FN void operator()(int j, Vec4 other) {
     const float h = 0.5f * (self.w + other.w);
@@ -28,24 +25,22 @@ struct SumSurface {
     const Kernel kernel(h);
     const float volume = mass_of(other.w, 1);
     const float t = kernel.h2 - r2;
-    // Outwards: -grad W points from j to i.
     normal += 6 * volume * kernel.poly6 * t * t * offset;
-    const float r = sqrtf(at_least(r2, coincident * coincident * kernel.h2));
-    const Vec3 along = v - xyz(velocity[j]);
-    // |v_ij| (1 - v_ij x_ij) of unit vectors: nothing where they part, twice the speed where they meet.
-    approach += volume * kernel.density(r2) * (length(along) - dot(along, offset) / r) / r;
   }
 };
 
-/// n_i = -h_i sum_j V_j grad W_ij and the mean of |v_ij| (1 - v_ij x_ij) / r_ij (Eq. 2, over the distance).
+/// n_i = -h_i sum_j V_j grad W_ij, and how water meets here.
+template <class Bounds>
 struct Surface {
   const Vec4* position;
   const Vec4* velocity;
   WaterRound water;
-  Walls walls;
+  Bounds bounds;
   Potential energy;
   const std::uint8_t* level;
   int coarsest_seen;
+  GridFrame cells;
+  const Vec4* meeting;
   Vec4* normal;
   float* approach;
 
@@ -54,16 +49,14 @@ struct Surface {
     approach[i] = 0;
     // Too coarse to emit, and to stand beside what does.
     if (level[i] > coarsest_seen) return;
-    const Vec3 v = xyz(velocity[i]);
-    if (!(energy(specific_energy(v)) > 0)) return;
+    if (!(energy(specific_energy(xyz(velocity[i]))) > 0)) return;
     const Vec4 self = position[i];
-    SumSurface sum{.self = self, .v = v, .i = i, .velocity = velocity};
+    SumSurface sum{.self = self, .i = i};
     water.with_pairs(self, sum);
     Vec3 wall;
-    walls.missing(xyz(self), self.w, wall);
+    bounds.missing(xyz(self), self.w, wall);
     normal[i] = with_w(self.w * (sum.normal - wall), 0);
-    // Inside the water the others' weights are 1 less the particle's own.
-    approach[i] = sum.approach / (1 - mass_of(1, 1) * Kernel(1).density(0));
+    approach[i] = sample(meeting, 0, cells.corners(xyz(self))).x;
   }
 };
 
@@ -112,14 +105,14 @@ struct CountBirths {
     births[i] = 0;
     const float energy = rules.energy(specific_energy(xyz(velocity[i])));
     if (!(energy > 0) || level[i] > rules.coarsest) return;
-    const float potential =
-        energy * (rules.approach(approach[i]) + rules.crest_weight * rules.crest(crest(i)));
+    const float potential = energy * (rules.approach(approach[i]) + rules.crest_depth * crest(i));
     const float volume = rules.rate * rules.dt * potential * mass_of(position[i].w, 1);
     const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id[i]), frame, 0xf0a3u);
     births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
-  /// Curvature of a convex surface that is pushed on, 1/m; 0 elsewhere.
+  /// Potential of a convex surface that is pushed on, times its area over the particle's volume, 1/m; 0
+  /// elsewhere. Curvature grows with what is resolved, and so does no area of crests.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);
@@ -130,7 +123,7 @@ struct CountBirths {
     const Vec4 self = position[i];
     SumCurvature sum{.self = self, .out = out, .normal = normal};
     water.with_pairs(self, sum);
-    return sum.weight > 0 ? sum.curved / sum.weight : 0;
+    return sum.weight > 0 ? rules.crest(sum.curved / sum.weight) * size / self.w : 0;
   }
 };
 
@@ -141,6 +134,7 @@ struct MarkFree {
 };
 
 /// Fills the free places in their order.
+template <class Bounds>
 struct Emit {
   const Vec4* position;
   const Vec4* velocity;
@@ -152,7 +146,7 @@ struct Emit {
   const int* free;
   const int* free_of;
   int capacity;
-  Walls walls;
+  Bounds bounds;
   FoamRules rules;
   std::uint32_t frame;
   Vec4* place;
@@ -204,7 +198,7 @@ struct Emit {
     const float angle = 2 * pi * draw(seed, 1);
     const Vec3 across = radius * (cosf(angle) * e1 + sinf(angle) * e2);
     Vec3 x = xyz(parent) + across - (rules.dt * draw(seed, 2)) * v;
-    walls.project(x, xyz(parent), 0);
+    bounds.project(x, xyz(parent), 0);
     place[slot] = with_w(x, rules.lifetime * (0.5f + draw(seed, 3)));
     foam_velocity[slot] = with_w(v + approach[i] * across, 1);
   }
@@ -225,18 +219,21 @@ struct Enter {
 
 }  // namespace
 
-void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+template <class Bounds>
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules) {
   for_each("foam surface", water.size(),
-           Surface{.position = water.position(),
-                   .velocity = water.velocity(),
-                   .water = {grid.cells(), water.position()},
-                   .walls = walls,
-                   .energy = rules.energy,
-                   .level = water.level(),
-                   .coarsest_seen = rules.coarsest_seen,
-                   .normal = water.normal(),
-                   .approach = pool.approach.data()});
+           Surface<Bounds>{.position = water.position(),
+                           .velocity = water.velocity(),
+                           .water = {grid.cells(), water.position()},
+                           .bounds = bounds,
+                           .energy = rules.energy,
+                           .level = water.level(),
+                           .coarsest_seen = rules.coarsest_seen,
+                           .cells = pool.cells.grid,
+                           .meeting = pool.cells.meeting.data(),
+                           .normal = water.normal(),
+                           .approach = pool.approach.data()});
 }
 
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules) {
@@ -254,26 +251,27 @@ void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const F
                        .births = pool.births.data()});
 }
 
-void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules) {
+template <class Bounds>
+void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules) {
   pool.scanner.inclusive_sum(pool.births, pool.sums);
   for_each("free foam", pool.capacity(), MarkFree{pool.place.data(), pool.free.data()});
   pool.scanner.inclusive_sum(pool.free, pool.free_of);
   for_each("emit foam", pool.capacity(),
-           Emit{.position = water.position(),
-                .velocity = water.velocity(),
-                .id = water.id(),
-                .approach = pool.approach.data(),
-                .births = pool.births.data(),
-                .sums = pool.sums.data(),
-                .water = water.size(),
-                .free = pool.free.data(),
-                .free_of = pool.free_of.data(),
-                .capacity = pool.capacity(),
-                .walls = walls,
-                .rules = rules,
-                .frame = pool.frame,
-                .place = pool.place.data(),
-                .foam_velocity = pool.velocity.data()});
+           Emit<Bounds>{.position = water.position(),
+                        .velocity = water.velocity(),
+                        .id = water.id(),
+                        .approach = pool.approach.data(),
+                        .births = pool.births.data(),
+                        .sums = pool.sums.data(),
+                        .water = water.size(),
+                        .free = pool.free.data(),
+                        .free_of = pool.free_of.data(),
+                        .capacity = pool.capacity(),
+                        .bounds = bounds,
+                        .rules = rules,
+                        .frame = pool.frame,
+                        .place = pool.place.data(),
+                        .foam_velocity = pool.velocity.data()});
   for_each("enter foam", 1,
            Enter{.sums = pool.sums.data(),
                  .free_of = pool.free_of.data(),
@@ -281,5 +279,12 @@ void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRul
                  .capacity = pool.capacity(),
                  .ledger = pool.ledger.data()});
 }
+
+#define SIM_FOR_BOUNDS(Bounds)                                                                        \
+  template void find_foam_surface(FoamPool&, FoamView, const Grid&, const Bounds&, const FoamRules&); \
+  template void emit_foam(FoamPool&, FoamView, const Bounds&, const FoamRules&);
+SIM_FOR_BOUNDS(Walls)
+SIM_FOR_BOUNDS(Solids)
+#undef SIM_FOR_BOUNDS
 
 }  // namespace sim::SIM_BACKEND

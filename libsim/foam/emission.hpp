@@ -5,7 +5,7 @@
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/particles/particles.hpp"
-#include "libsim/particles/walls.hpp"
+#include "libsim/particles/solids.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -17,32 +17,36 @@ struct Potential {
 
 /// The effect's numbers as kernels take them.
 struct FoamRules {
-  float dt = 0;            ///< of the frame, s
-  float gravity = 0;       ///< along -y, m/s2
-  float rate = 0;          ///< volume of foam per second and volume of water at full potential, 1/s
-  Potential approach{};    ///< tau_ta, 1/s: speeds at which water meets water, over its distance
-  Potential crest{};       ///< tau_wc, 1/m: curvature of crests that are pushed on
-  float crest_weight = 1;  ///< k_wc / k_ta
-  Potential energy{};      ///< tau_k, J/kg: v^2 / 2
-  int coarsest = 3;        ///< level that still emits
-  int coarsest_seen = 3;   ///< of levels that may stand beside such water
-  float lifetime = 1;      ///< mean time on the water, s
-  float volume = 1;        ///< of a diffuse particle, m3
-  float air_drag = 0;      ///< of spray, 1/s
-  float rise = 0;          ///< speed of bubbles against the water in Earth's gravity, m/s
+  float dt = 0;           ///< of the frame, s
+  float gravity = 0;      ///< along -y, m/s2
+  float rate = 0;         ///< volume of foam per second and volume of water at full potential, 1/s
+  Potential approach{};   ///< tau_ta, 1/s: speeds at which water meets water, over its distance
+  Potential crest{};      ///< tau_wc, 1/m: curvature of crests that are pushed on
+  float crest_depth = 1;  ///< of full trapped air that makes as much as a full crest's surface, m
+  Potential energy{};     ///< tau_k, J/kg: v^2 / 2
+  int coarsest = 3;       ///< level that still emits
+  int coarsest_seen = 3;  ///< of levels that may stand beside such water
+  float lifetime = 1;     ///< mean time on the water, s
+  float volume = 1;       ///< of a diffuse particle, m3
+  float air_drag = 0;     ///< of spray, 1/s
+  float rise = 0;         ///< speed of bubbles against the water in Earth's gravity, m/s
 };
 
 using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                             columns(Column::Normal)>;
 
+// Bounds: Walls, or Solids in scenes with obstacles.
+
 /// Fills Normal (outwards, without unit: about 1 at a surface; 0 for water that is too slow to foam) and
-/// FoamPool::approach.
-void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Walls& walls,
+/// FoamPool::approach, from the cells that find_meeting() filled.
+template <class Bounds>
+void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules);
 /// Fills FoamPool::births from both.
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules);
 /// Puts what was counted in free places, as many as there are, and enters it in the ledger. Of more than fit
 /// an even choice is dropped.
-void emit_foam(FoamPool& pool, FoamView water, const Walls& walls, const FoamRules& rules);
+template <class Bounds>
+void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules);
 
 }  // namespace sim::SIM_BACKEND

@@ -6,6 +6,7 @@
 
 #include "libsim/exec/space.hpp"
 #include "libsim/exec/vec.hpp"
+#include "libsim/foam/meeting.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -32,6 +33,7 @@ struct FoamPool {
   std::uint32_t frame = 0;  ///< a counter of the random numbers
 
   // Scratch of one frame; lives on to keep its memory.
+  MeetingCells cells;
   Array<float> approach;     ///< of each water particle, 1/s
   Array<int> births, sums;   ///< of each water particle, and inclusive sums
   Array<int> free, free_of;  ///< 1 = the place is free, and inclusive sums
@@ -43,7 +45,7 @@ struct FoamPool {
   int capacity() const { return static_cast<int>(place.size()); }
   std::size_t bytes() const {
     return place.bytes() + velocity.bytes() + ledger.bytes() + approach.bytes() + births.bytes() +
-           sums.bytes() + free.bytes() + free_of.bytes();
+           sums.bytes() + free.bytes() + free_of.bytes() + cells.bytes();
   }
   /// What outlives a frame (libsim/solver/state_archive.hpp).
   template <class Archive>

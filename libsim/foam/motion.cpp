@@ -27,10 +27,11 @@ struct SumWater {
   }
 };
 
+template <class Bounds>
 struct Move {
   const Vec4* water_velocity;
   WaterRound water;
-  Walls walls;
+  Bounds bounds;
   FoamRules rules;
   Vec4* place;
   Vec4* velocity;
@@ -45,9 +46,9 @@ struct Move {
     const float share = filled(round);
     Vec3 v = moved(xyz(velocity[slot]), share, round);
     Vec3 x = fused(from, rules.dt, v);
-    if (walls.project(x, from, 0)) v = (1 / rules.dt) * (x - from);
+    if (bounds.project(x, from, 0)) v = (1 / rules.dt) * (x - from);
     if (share >= FoamKinds::spray && share <= FoamKinds::bubble) at.w -= rules.dt;
-    const bool left = !all_finite(x) || walls.through(x);
+    const bool left = !all_finite(x) || tank(bounds).through(x);
     if (left || !(at.w > 0)) {
       atomic_add(left ? &ledger->left : &ledger->dissolved, std::uint64_t{1});
       at.w = 0;
@@ -56,11 +57,11 @@ struct Move {
     velocity[slot] = with_w(v, share);
   }
 
-  /// The share with what walls hide.
+  /// The share with what walls and obstacles hide.
   SIM_FN float filled(const SumWater& round) const {
     if (!(round.share > 0)) return 0;
     Vec3 unused;
-    const float missing = walls.missing(round.x, round.support / round.share, unused);
+    const float missing = bounds.missing(round.x, round.support / round.share, unused);
     return round.share / at_least(1 - missing, 0.1f);
   }
 
@@ -82,16 +83,20 @@ struct Move {
 
 }  // namespace
 
-void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Walls& walls,
+template <class Bounds>
+void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Bounds& bounds,
                const FoamRules& rules) {
   for_each("move foam", pool.capacity(),
-           Move{.water_velocity = water.velocity(),
-                .water = {grid.cells(), water.position()},
-                .walls = walls,
-                .rules = rules,
-                .place = pool.place.data(),
-                .velocity = pool.velocity.data(),
-                .ledger = pool.ledger.data()});
+           Move<Bounds>{.water_velocity = water.velocity(),
+                        .water = {grid.cells(), water.position()},
+                        .bounds = bounds,
+                        .rules = rules,
+                        .place = pool.place.data(),
+                        .velocity = pool.velocity.data(),
+                        .ledger = pool.ledger.data()});
 }
+
+template void move_foam(FoamPool&, FoamWaterView, const Grid&, const Walls&, const FoamRules&);
+template void move_foam(FoamPool&, FoamWaterView, const Grid&, const Solids&, const FoamRules&);
 
 }  // namespace sim::SIM_BACKEND

@@ -8,8 +8,10 @@ namespace sim::SIM_BACKEND {
 using FoamWaterView = Reads<Column::Position, Column::Velocity>;
 
 /// Moves the diffuse particles over a frame by the water round them, lets foam age, and enters in the ledger
-/// who dissolved or left. What lies behind the walls' openings has left.
-void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Walls& walls,
+/// who dissolved or left. What lies behind the walls' openings has left. Walls and obstacles hold back what
+/// comes to them; a moving one takes it along.
+template <class Bounds>
+void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Bounds& bounds,
                const FoamRules& rules);
 
 }  // namespace sim::SIM_BACKEND

@@ -57,28 +57,30 @@ inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind:
 inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
-// is absent, least, most). A wall_k of 0 stands for walls that insulate.
-#define SIM_EFFECT_OPTIONS(OPTION)                                   \
-  OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)            \
-  OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                  \
-  OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)          \
-  OPTION(VorticityFrom, Vorticity, from_per_s, 2, 0, 1e4)            \
-  OPTION(VorticityMost, Vorticity, most_per_s, 50, 1e-3, 1e6)        \
-  OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1)         \
-  OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)           \
-  OPTION(HeatWall, Heat, wall_k, 0, 0, 1e4)                          \
-  OPTION(FoamApproachFrom, Foam, approach_from_per_s, 0, 0, 1e4)     \
-  OPTION(FoamApproachSpan, Foam, approach_span_per_s, 20, 1e-3, 1e4) \
-  OPTION(FoamCrestFrom, Foam, crest_from_per_m, 0, 0, 1e6)           \
-  OPTION(FoamCrestSpan, Foam, crest_span_per_m, 4, 1e-6, 1e6)        \
-  OPTION(FoamCrestWeight, Foam, crest_weight, 10, 0, 1e3)            \
-  OPTION(FoamEnergyFrom, Foam, energy_from_j_kg, 5, 0, 1e6)          \
-  OPTION(FoamEnergySpan, Foam, energy_span_j_kg, 15, 1e-6, 1e6)      \
-  OPTION(FoamLifetime, Foam, lifetime_s, 3, 0.01, 1e4)               \
-  OPTION(FoamDiameter, Foam, diameter_m, 0.05, 1e-5, 1)              \
-  OPTION(FoamAirDrag, Foam, air_drag_per_s, 0.5, 0, 1e3)             \
-  OPTION(FoamRise, Foam, rise_m_s, 0.3, 1e-3, 10)                    \
-  OPTION(FoamMost, Foam, most_particles, 65536, 1, 1048576)          \
+// is absent, least, most). A wall_k of 0 stands for walls that insulate, a length_m of 0 for a sixth of the
+// edge of a cube that holds the water.
+#define SIM_EFFECT_OPTIONS(OPTION)                                  \
+  OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)           \
+  OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
+  OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)         \
+  OPTION(VorticityFrom, Vorticity, from_per_s, 2, 0, 1e4)           \
+  OPTION(VorticityMost, Vorticity, most_per_s, 50, 1e-3, 1e6)       \
+  OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1)        \
+  OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)          \
+  OPTION(HeatWall, Heat, wall_k, 0, 0, 1e4)                         \
+  OPTION(FoamApproachFrom, Foam, approach_from_per_s, 0, 0, 1e4)    \
+  OPTION(FoamApproachSpan, Foam, approach_span_per_s, 4, 1e-3, 1e4) \
+  OPTION(FoamCrestFrom, Foam, crest_from_per_m, 0, 0, 1e6)          \
+  OPTION(FoamCrestSpan, Foam, crest_span_per_m, 0.25, 1e-6, 1e6)    \
+  OPTION(FoamCrestWeight, Foam, crest_weight, 1.5, 0, 1e3)          \
+  OPTION(FoamLength, Foam, length_m, 0, 0, 1e3)                     \
+  OPTION(FoamEnergyFrom, Foam, energy_from_j_kg, 5, 0, 1e6)         \
+  OPTION(FoamEnergySpan, Foam, energy_span_j_kg, 15, 1e-6, 1e6)     \
+  OPTION(FoamLifetime, Foam, lifetime_s, 3, 0.01, 1e4)              \
+  OPTION(FoamDiameter, Foam, diameter_m, 0.05, 1e-5, 1)             \
+  OPTION(FoamAirDrag, Foam, air_drag_per_s, 0.5, 0, 1e3)            \
+  OPTION(FoamRise, Foam, rise_m_s, 0.3, 1e-3, 10)                   \
+  OPTION(FoamMost, Foam, most_particles, 65536, 1, 1048576)         \
   OPTION(FoamCoarsest, Foam, coarsest_level, 3, 0, 3)
 
 enum class EffectOption {

@@ -143,7 +143,7 @@ class FluidSimulation final : public Simulation {
     scene.effects = effects;
     check_effects(effects);
     const SolverParameters numbers = solver_parameters(scene, options_);
-    check_foam(numbers.effects, scene, frame_dt());
+    check_foam(state_, numbers.effects, scene, frame_dt());
     Schedule schedule = compile_schedule(demand_of(scene, options_, numbers));
     // From here on only memory can fail.
     scene_ = std::move(scene);
@@ -342,8 +342,8 @@ class FluidSimulation final : public Simulation {
     state_.walls = walls_of(scene_, false);
     begin_obstacles(state_, scene_, time_s(), options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
-    check_foam(state_.parameters.effects, scene_, frame_dt());
-    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_);
+    check_foam(state_, state_.parameters.effects, scene_, frame_dt());
+    if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_);
   }
 
   template <class Archive>

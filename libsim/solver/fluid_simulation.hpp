@@ -85,9 +85,10 @@ void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
 /// base::Error when foam's particles are so small that a frame may make more than an int counts.
-void check_foam(const EffectCoefficients& effects, const Scene& scene, double frame_dt_s);
+void check_foam(const FluidState& state, const EffectCoefficients& effects, const Scene& scene,
+                double frame_dt_s);
 /// The pool of the scene's foam, with nobody in it.
-void begin_foam(FluidState& state);
+void begin_foam(FluidState& state, const Scene& scene);
 /// What the effects keep, after others than before are in force: with these columns, and with the memory of
 /// those alone that the scene lists. What stays keeps its values.
 void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);

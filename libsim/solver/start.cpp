@@ -167,22 +167,43 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       {0, 0, 0}, {f(scene.tank_size_m[0]), 0, f(scene.tank_size_m[2])}, f(scene.recirculation_corner_m)};
 }
 
-void check_foam(const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
+namespace {
+
+/// Edge of the cells on which foam sees how water meets: the scene's length, but 1.5 spacings at least of the
+/// coarsest particles that a method may have at this n_*.
+float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
+  double volume = 1;
+  for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
+  const float asked = e[EffectOption::FoamLength];
+  return std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(volume) / 6),
+                  0.75f * state.supports.h[most_levels - 1]);
+}
+
+void lay_foam_cells(FluidState& state, const Scene& scene) {
+  state.foam.cells.lay(state.domain, foam_length(state, state.parameters.effects, scene),
+                       state.finest_support);
+}
+
+}  // namespace
+
+void check_foam(const FluidState& state, const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
   const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
   const Vec3d& tank = scene.tank_size_m;
-  // Approach and crest may both be at their full potential, in a tank full of water.
-  const double most = (1 + static_cast<double>(e[EffectOption::FoamCrestWeight])) *
-                      static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] * tank[1] * tank[2] /
-                      (0.52 * diameter * diameter * diameter);
+  // Approach and crest may both be at their full potential, in a tank full of water that is all surface.
+  const auto crest = static_cast<double>(e[EffectOption::FoamCrestWeight] * foam_length(state, e, scene) /
+                                         state.supports.h[0]);
+  const double most = (1 + 2 * crest) * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] *
+                      tank[1] * tank[2] / (0.52 * diameter * diameter * diameter);
   if (most > std::numeric_limits<int>::max()) {
     throw base::Error("effect foam", "its particles are too small: a frame may make more than can be counted",
                       "raise diameter_m, or lower emission_per_s");
   }
 }
 
-void begin_foam(FluidState& state) {
+void begin_foam(FluidState& state, const Scene& scene) {
   const EffectCoefficients& e = state.parameters.effects;
   state.foam.begin(static_cast<int>(e[EffectOption::FoamMost]), state.particles.capacity());
+  lay_foam_cells(state, scene);
 }
 
 void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) {
@@ -196,7 +217,9 @@ void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) 
   if (!(e[EffectKind::Foam] > 0)) {
     state.foam = {};
   } else if (state.foam.capacity() != static_cast<int>(e[EffectOption::FoamMost])) {
-    begin_foam(state);
+    begin_foam(state, scene);
+  } else {
+    lay_foam_cells(state, scene);
   }
 }
 

@@ -178,6 +178,50 @@ TEST(FoamInSimulations, IsWhatProgramsRead) {
   }
 }
 
+void stays_outside_obstacles(Backend backend) {
+  for (const auto method : {MethodKind::HiRes, MethodKind::OursTsp}) {
+    SCOPED_TRACE(sim::traits_of(method).name);
+    auto scene = dam(4);
+    sim::Obstacle post;
+    post.shape = sim::ObstacleShape::Box;
+    post.size_m = {0.4, 1.2, 0.4};
+    post.start.centre_m = {1.45, 0.6, 0.6};
+    sim::Obstacle paddle = post;
+    paddle.size_m = {0.5, 0.4, 0.8};
+    paddle.start.centre_m = {2.0, 0.4, 0.6};
+    paddle.motion = sim::ObstacleMotion::Turns;
+    paddle.about_m = paddle.start.centre_m;
+    paddle.axis = {0, 0, 1};
+    paddle.rate_rad_s = 3;
+    scene.obstacles = {post, paddle};
+    const auto fluid = sim::make_simulation(scene, options_of(backend, method));
+    int near = 0;
+    for (int k = 0; k < 8; ++k) {
+      run(*fluid, 5);
+      std::vector<sim::RenderParticle> foam;
+      fluid->read_foam(foam);
+      const auto poses = fluid->read_obstacles();
+      for (const auto& x : foam) {
+        double away = 1e9;
+        for (std::size_t b = 0; b < poses.size(); ++b)
+          away =
+              std::min(away, sim::signed_distance(scene.obstacles[b], poses[b].pose, {x.x_m, x.y_m, x.z_m}));
+        EXPECT_GT(away, -1e-4);
+        near += away < 0.05;
+      }
+    }
+    EXPECT_GT(near, 50);
+  }
+}
+TEST(FoamInSimulations, StaysOutsideObstacles) {
+  NEEDS_EFFECTS;
+  stays_outside_obstacles(Backend::Cpu);
+}
+TEST(FoamInSimulationsGpu, StaysOutsideObstacles) {
+  NEEDS_EFFECTS;
+  stays_outside_obstacles(Backend::Cuda);
+}
+
 TEST(FoamInSimulations, AsksForNoShorterSubsteps) {
   NEEDS_EFFECTS;
   auto scene = dam();

@@ -17,7 +17,7 @@ FoamRules rules_of(const FluidState& state) {
           .rate = e[EffectKind::Foam],
           .approach = {e[EffectOption::FoamApproachFrom], e[EffectOption::FoamApproachSpan]},
           .crest = {e[EffectOption::FoamCrestFrom], e[EffectOption::FoamCrestSpan]},
-          .crest_weight = e[EffectOption::FoamCrestWeight],
+          .crest_depth = e[EffectOption::FoamCrestWeight] * state.foam.cells.grid.frame.edge,
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
           .coarsest = coarsest,
           // Graded levels of neighbours differ by one.
@@ -28,17 +28,23 @@ FoamRules rules_of(const FluidState& state) {
           .rise = e[EffectOption::FoamRise]};
 }
 
-void run(FluidState& state, FoamView p) {
+template <class Bounds>
+void foam(FluidState& state, FoamView p, const Bounds& bounds) {
   FoamPool& pool = state.foam;
   const FoamRules rules = rules_of(state);
   if (p.size() > 0) {
     pool.approach.resize(static_cast<std::size_t>(p.size()));
-    find_foam_surface(pool, p, state.grid, state.walls, rules);
+    find_meeting(pool.cells, p);
+    find_foam_surface(pool, p, state.grid, bounds, rules);
     count_foam_births(pool, p, state.grid, rules);
-    emit_foam(pool, p, state.walls, rules);
+    emit_foam(pool, p, bounds, rules);
   }
-  move_foam(pool, p, state.grid, state.walls, rules);
+  move_foam(pool, p, state.grid, bounds, rules);
   ++pool.frame;
+}
+
+void run(FluidState& state, FoamView p) {
+  state.obstacles.there() ? foam(state, p, state.solids()) : foam(state, p, state.walls);
 }
 
 }  // namespace

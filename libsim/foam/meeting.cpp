@@ -1,0 +1,108 @@
+#include "libsim/foam/meeting.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+/// A cell, the 26 round it, and the way to each in edges.
+constexpr int nearby = 27;
+constexpr int middle = 13;
+SIM_FN Vec3 way_to(int k) {
+  return {static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1), static_cast<float>(k / 9 - 1)};
+}
+
+/// Least squares for the gradient of v: sum of w |dv - G dx|^2 / dx^2.
+struct GradientFit {
+  Vec3 bx{}, by{}, bz{};            // sum of w dv dx / dx^2, a row for each part of v
+  Vec3 diagonal{}, off_diagonal{};  // of the same with dx for dv; the second yz, xz, xy
+  float weight = 0;
+
+  SIM_FN void add(Vec3 dx, Vec3 dv, float w) {
+    const Vec3 e = (w / dot(dx, dx)) * dx;
+    bx += dv.x * e;
+    by += dv.y * e;
+    bz += dv.z * e;
+    diagonal += Vec3{e.x * dx.x, e.y * dx.y, e.z * dx.z};
+    off_diagonal += Vec3{e.y * dx.z, e.x * dx.z, e.x * dx.y};
+    weight += w;
+  }
+
+  /// Mean of |G e| - e G e over 13 directions that are alike on all sides.
+  SIM_FN float approach() const {
+    if (!(weight > 0)) return 0;
+    // Across a sheet there is nothing to fit: the least that keeps the system regular makes G 0 there.
+    const float least = 0.02f / 3 * weight;
+    const float xx = diagonal.x + least;
+    const float yy = diagonal.y + least;
+    const float zz = diagonal.z + least;
+    const float yz = off_diagonal.x;
+    const float xz = off_diagonal.y;
+    const float xy = off_diagonal.z;
+    const Vec3 cx{yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy};
+    const Vec3 cy{cx.y, xx * zz - xz * xz, xy * xz - xx * yz};
+    const Vec3 cz{cx.z, cy.z, xx * yy - xy * xy};
+    const float scale = 1 / (xx * cx.x + xy * cx.y + xz * cx.z);
+    const auto row = [&](Vec3 b) { return scale * Vec3{dot(cx, b), dot(cy, b), dot(cz, b)}; };
+    const Vec3 gx = row(bx);
+    const Vec3 gy = row(by);
+    const Vec3 gz = row(bz);
+    float sum = 0;
+    for (int k = middle + 1; k < nearby; ++k) {
+      const Vec3 way = way_to(k);
+      const Vec3 e = (1 / length(way)) * way;
+      sum += length(Vec3{dot(gx, e), dot(gy, e), dot(gz, e)});
+    }
+    return at_least(sum / middle - (gx.x + gy.y + gz.z) / 3, 0.0f);
+  }
+};
+
+struct Meet {
+  const MomentumSum* sums;
+  GridFrame grid;
+  float full;
+  Vec4* meeting;
+
+  SIM_FN MomentumSum of(int cell) const {
+    MomentumSum all{};
+    for (int level = 0; level < grid_levels; ++level) {
+      const MomentumSum& part = sums[level * grid.cells() + cell];
+      all = {all.mass + part.mass, all.x + part.x, all.y + part.y, all.z + part.z};
+    }
+    return all;
+  }
+
+  SIM_FN void operator()(int cell) const {
+    meeting[cell] = {0, 0, 0, value_unknown};
+    const MomentumSum own = of(cell);
+    if (own.mass == 0) return;
+    const Vec3 v = mean_velocity(own);
+    const CellBlock& block = grid.block;
+    GradientFit fit;
+    float whole = 0;
+    for (int k = 0; k < nearby; ++k) {
+      const int x = cell % block.nx + k % 3 - 1;
+      const int y = cell / block.nx % block.ny + k / 3 % 3 - 1;
+      const int z = cell / (block.nx * block.ny) + k / 9 - 1;
+      // Nothing is missing beyond the tank.
+      if (k == middle || !block.holds(x, y, z)) continue;
+      const Vec3 way = way_to(k);
+      const float weight = 1 / (dot(way, way) * dot(way, way));
+      whole += weight;
+      const MomentumSum other = of(block.index(x, y, z));
+      if (other.mass == 0) continue;
+      fit.add(way, mean_velocity(other) - v, weight * at_most(static_cast<float>(other.mass) / full, 1.0f));
+    }
+    const float share = whole > 0 ? fit.weight / whole : 0;
+    meeting[cell] = {share * fit.approach() / grid.frame.edge, 0, 0, value_measured};
+  }
+};
+
+}  // namespace
+
+void find_meeting(MeetingCells& cells, MovingView water) {
+  add_momentum(water, nullptr, nullptr, cells.grid, cells.sums);
+  for_each("foam cells", cells.grid.cells(),
+           Meet{cells.sums.data(), cells.grid, cells.full, cells.meeting.data()});
+}
+
+}  // namespace sim::SIM_BACKEND
