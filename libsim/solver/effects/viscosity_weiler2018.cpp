@@ -306,7 +306,7 @@ using LoosenView =
     ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
 
 template <class Selection>
-void loosen(FluidState& state, LoosenView p, Selection select) {
+void loosen(LoosenView p, Selection select) {
   for_each(
       "loosen", p.size(),
       Loosen<Selection>{.select = select, .position = p.position(), .density = p.density(), .id = p.id()});
@@ -316,7 +316,7 @@ void loosen(FluidState& state, LoosenView p, Selection select) {
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
   if (k.gravity <= 0 && k.pull.strength <= 0) return;
-  state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
+  state.all_active ? loosen(p, AllParticles{}) : loosen(p, state.active());
 }
 
 void run(FluidState& state, Columns p) {
