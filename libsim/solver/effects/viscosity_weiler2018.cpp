@@ -312,10 +312,10 @@ void loosen(LoosenView p, Selection select) {
       Loosen<Selection>{.select = select, .position = p.position(), .density = p.density(), .id = p.id()});
 }
 
-/// Without gravity nothing presses.
+/// Without gravity nothing presses. Mixed sizes make no lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
-  if (k.gravity <= 0 && k.pull.strength <= 0) return;
+  if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;
   state.all_active ? loosen(p, AllParticles{}) : loosen(p, state.active());
 }
 

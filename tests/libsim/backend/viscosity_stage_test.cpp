@@ -100,12 +100,14 @@ SIM_TEST(Viscosity, LoosensWhatIsInsideUnderGravityByAShareOfASpacing) {
   }
 }
 
-SIM_TEST(Viscosity, LoosensNothingWithoutGravity) {
+SIM_TEST(Viscosity, LoosensNothingWithoutGravityOrWhereSizesMix) {
   NEEDS_EFFECTS;
   const auto points = cube(7, 0.05f);
-  auto state = state_of(points, true);
-  const auto after = loosened(state, 0);
-  EXPECT_EQ(std::memcmp(after.data(), points.data(), points.size() * sizeof(Vec4)), 0);
+  for (const bool one_level : {true, false}) {
+    auto state = state_of(points, one_level);
+    const auto after = loosened(state, one_level ? 0 : 9.81f);
+    EXPECT_EQ(std::memcmp(after.data(), points.data(), points.size() * sizeof(Vec4)), 0) << one_level;
+  }
 }
 
 SIM_TEST(Viscosity, LeavesAloneWhatTurnsAsAWhole) {
