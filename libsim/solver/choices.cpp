@@ -44,6 +44,15 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
   return out;
 }
 
+/// Shear, 1/s, below which a pool of one level resists by more than a quarter beyond its viscosity: 0.1 g h /
+/// nu, half of its height below the surface. The lattice of its particles carries a stress that grows with
+/// the pressure (docs/truth.md). 0 without the effect or gravity.
+double least_shear(const Scene& scene) {
+  const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
+  const double height = scene.fill_max_m[1] - scene.fill_min_m[1];
+  return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
+}
+
 }  // namespace
 
 std::string effects_in_words(const Scene& scene, const SimulationOptions& options) {
@@ -66,6 +75,10 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   out << "  scales: " << scales.length_m << " m, " << scales.speed_m_s << " m/s, " << scales.viscosity_m2_s
       << " m2/s; Reynolds " << scales.reynolds << ", Weber " << scales.weber << ", Bond " << scales.bond
       << "\n";
+  if (const double shear = least_shear(scene); shear > 0) {
+    out << "  viscosity: particles of one size resist shear slower than " << shear
+        << " /s by more than a quarter beyond it\n";
+  }
   return out.str();
 }
 

@@ -297,6 +297,23 @@ TEST(Effects, EachHasOneStageFileAndOneRowInTheDocs) {
   }
 }
 
+TEST(Effects, ExplainSaysBelowWhichShearAThickPoolResistsMore) {
+  NEEDS_EFFECTS;
+  auto scene = small_dam();
+  const auto says = [&] { return sim::make_simulation(scene, options_of())->explain(); };
+  const std::string words = "resist shear slower than ";
+  EXPECT_THAT(says(), Not(HasSubstr(words)));
+  scene.effects = {{EffectKind::Viscosity, 0.5}};
+  std::ostringstream shear;  // 0.1 g h / nu, half of the height below the surface
+  shear << 0.1 * scene.gravity_m_s2 * (scene.fill_max_m[1] - scene.fill_min_m[1]) / 2 / 0.5;
+  EXPECT_THAT(says(), HasSubstr(words + shear.str() + " /s by more than a quarter"));
+  scene.gravity_m_s2 = 0;
+  EXPECT_THAT(says(), Not(HasSubstr(words)));
+  scene.gravity_m_s2 = 9.81;
+  scene.effects = {{EffectKind::Viscosity, 0}};
+  EXPECT_THAT(says(), Not(HasSubstr(words)));
+}
+
 /// What the demo scenes say of themselves.
 TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   NEEDS_EFFECTS;

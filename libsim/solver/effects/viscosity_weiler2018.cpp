@@ -270,6 +270,55 @@ void solve_for(FluidState& state, Columns p, Selection select) {
   state.one_level ? solve<true>(state, p, select) : solve<false>(state, p, select);
 }
 
+/// Under pressure particles of one size lie on a lattice, which carries shear until it yields: fluid so thick
+/// that it calms its own jitter would stop on a slope. So each particle inside the fluid takes a random step,
+/// and the next projections make room again. Velocities stay, and so does momentum.
+constexpr float loosening = 0.06f;  ///< most of a step along each axis, spacings
+template <class Selection>
+struct Loosen {
+  Selection select;
+  Vec4* position;
+  const float* density;
+  const int* id;
+
+  SIM_FN void operator()(int slot) const {
+    const int i = select(slot);
+    if constexpr (!Selection::everyone) {
+      if (i < 0) return;
+    }
+    if (density[i] < inside) return;
+    const Vec4 at = position[i];
+    const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
+    position[i] = with_w(xyz(at) + (loosening / 2 * at.w) * step, at.w);
+  }
+  /// Uniform in [-1, 1). The place stands for the moment, so that a run that goes on from a saved state has
+  /// the same steps.
+  SIM_FN float along(int i, std::uint32_t axis, float place) const {
+    const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
+    return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
+  }
+  static constexpr float fine = 1048576;  ///< 1/m: places this near count as one
+  /// Share of rho_0: what is thinner is a part of the surface, which keeps still.
+  static constexpr float inside = 0.95f;
+};
+
+using LoosenView =
+    ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
+
+template <class Selection>
+void loosen(LoosenView p, Selection select) {
+  for_each(
+      "loosen", p.size(),
+      Loosen<Selection>{.select = select, .position = p.position(), .density = p.density(), .id = p.id()});
+}
+
+/// Without gravity nothing presses. Mixed sizes make no lattice.
+void run_loosen(FluidState& state, LoosenView p) {
+  const auto& k = state.parameters;
+  if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;
+  state.all_active ? loosen(p, AllParticles{}) : loosen(p, state.active());
+}
+
 void run(FluidState& state, Columns p) {
   state.all_active ? solve_for(state, p, AllParticles{}) : solve_for(state, p, state.active());
 }
@@ -277,7 +326,8 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 std::vector<Stage> viscosity_stages() {
-  return {stage_of<run>({.name = "viscosity", .phase = Phase::SubstepEnd})};
+  return {stage_of<run>({.name = "viscosity", .phase = Phase::SubstepEnd}),
+          stage_of<run_loosen>({.name = "loosening of the lattice", .phase = Phase::SubstepEnd})};
 }
 
 }  // namespace sim::SIM_BACKEND

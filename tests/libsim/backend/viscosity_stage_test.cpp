@@ -62,6 +62,54 @@ SIM_TEST(Viscosity, KeepsMomentumAndSpinForMixedMassesHoweverFewItsSteps) {
   }
 }
 
+/// Places of a crowd after the loosening.
+std::vector<Vec4> loosened(FluidState& state, float gravity) {
+  state.parameters.gravity = gravity;
+  state.parameters.effects.values[index_of(EffectKind::Viscosity)] = 1;
+  velocities_by(EffectKind::Viscosity, state);
+  return state.particles.all().position.to_host();
+}
+
+SIM_TEST(Viscosity, LoosensWhatIsInsideUnderGravityByAShareOfASpacing) {
+  NEEDS_EFFECTS;
+  for (const float d : {0.05f, 0.15f}) {
+    const auto points = cube(9, d);
+    auto state = state_of(points, true);
+    const auto after = loosened(state, 9.81f);
+    const auto density = state.particles.all().density.to_host();
+    const float most = 0.06f * d;
+    Vec3 sum{0, 0, 0};
+    float squares = 0;
+    float inside = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 step = xyz(after[i]) - xyz(points[i]);
+      EXPECT_EQ(after[i].w, points[i].w);
+      if (density[i] < 0.95f) {
+        EXPECT_EQ(length(step), 0) << "the surface keeps still";
+        continue;
+      }
+      ++inside;
+      for (const float one : {step.x, step.y, step.z}) EXPECT_LE(std::abs(one), 1.001f * most);
+      sum += step;
+      squares += dot(step, step);
+    }
+    ASSERT_GE(inside, 343);
+    // Uniform along each axis: a mean square of a third, and no way that all go.
+    EXPECT_NEAR(squares / inside, most * most, 0.15f * most * most);
+    EXPECT_LT(length(sum) / inside, 0.15f * most);
+  }
+}
+
+SIM_TEST(Viscosity, LoosensNothingWithoutGravityOrWhereSizesMix) {
+  NEEDS_EFFECTS;
+  const auto points = cube(7, 0.05f);
+  for (const bool one_level : {true, false}) {
+    auto state = state_of(points, one_level);
+    const auto after = loosened(state, one_level ? 0 : 9.81f);
+    EXPECT_EQ(std::memcmp(after.data(), points.data(), points.size() * sizeof(Vec4)), 0) << one_level;
+  }
+}
+
 SIM_TEST(Viscosity, LeavesAloneWhatTurnsAsAWhole) {
   NEEDS_EFFECTS;
   auto state = stirred(2, 16);

@@ -1,0 +1,133 @@
+/// Fluid as thick as honey in a tank under full gravity: a slope comes to level, and vortices decay. The
+/// lattice that its particles lie on would stop them.
+
+#include "libsim/scene/effects.hpp"
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+using sim::EffectKind;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+constexpr double d_fine = 0.05;  // of level 0
+
+/// Particles of one level in a tank whose walls let them slip.
+struct Tank {
+  int level = 0;                          ///< of the start
+  MethodKind method = MethodKind::HiRes;  ///< that holds this level
+  bool mixed = false;                     ///< half at level 0
+  double beta = 1;
+  Backend backend = Backend::Cpu;
+
+  double spacing() const { return d_fine * std::cbrt(1 << level); }
+};
+
+std::unique_ptr<sim::Simulation> fill(const Tank& tank, const Vec3d& size, double nu, State start) {
+  auto scene = fluid_test::tank({size[0], 2 * size[1], size[2]}, {});
+  scene.viscosity_m2_s = 0;
+  scene.effects = {{EffectKind::Viscosity, nu}};
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = 0;
+  for (auto& p : start) p.level = tank.level;
+  sim::SimulationOptions options;
+  options.backend = tank.backend;
+  options.method = tank.method;
+  options.substeps = 2;
+  options.n_star = static_cast<std::int64_t>(start.size() << tank.level) / 8 + 1;
+  scene.fill_max_m = {2 * d_fine * static_cast<double>(options.n_star), 2 * d_fine, 2 * d_fine};
+  if (tank.mixed)
+    options.forced_targets = sim::TargetRegion{{size[0] / 2, size[1] / 2, size[2]}, size[0] / 2, 0, 3};
+  if (tank.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(tank.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  options.start = std::move(start);
+  return sim::make_simulation(scene, options);
+}
+
+/// What is left of a slope, in spacings: 3 d high over 32 d, in fluid of 8 d, after two seconds at level 0.
+/// At first a swing with the rate 3.2 /s: less than 0.01 d would be left.
+double slope_left(const Tank& tank) {
+  const double d = tank.spacing(), length = 32 * d, depth = 8 * d, height = 3 * d;
+  const auto surface = [&](const Vec3d& x) { return depth + height * std::cos(pi * x[0] / length); };
+  const auto slope = [&](const State& state) {  // of a cosine, by the centre of mass
+    return (length / 2 - mean(state, [](auto& p) { return place(p)[0]; })) * pi * pi * depth /
+           (2 * length * d);
+  };
+  const double larger = d / d_fine;  // the same motion at every size
+  const auto fluid =
+      fill(tank, {length, 2 * depth, 8 * d}, 0.5 * std::pow(larger, 1.5),
+           lattice(
+               d, {length, 2 * depth, 8 * d}, [&](const Vec3d& x) { return x[1] < surface(x); },
+               [](const Vec3d&) { return Vec3d{}; }));
+  const double first = slope(fluid->read_state());
+  EXPECT_NEAR(first, 3, 0.2);
+  for (int k = 0; k < 120 * std::sqrt(larger); ++k) fluid->step_frame();
+  const double left = slope(fluid->read_state());
+  std::printf("level %d%s, beta %.2f: a slope of %.2f d, %.3f d of it left\n", tank.level,
+              tank.mixed ? ", mixed" : "", tank.beta, first, left);
+  return left;
+}
+
+constexpr double flat = 0.2;  ///< d
+
+TEST(TruthLevelling, ThickFluidOfOneLevelComesToLevel) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(slope_left({}), 0, flat);
+  EXPECT_NEAR(slope_left({.level = 3, .method = MethodKind::LoRes}), 0, flat);
+}
+TEST(TruthLevelling, ThickFluidThatRestsInTurnsComesToLevel) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(slope_left({.beta = 0.67}), 0, flat);
+}
+
+/// How fast a cell of Taylor and Green's vortices decays in a third of a second, over what its viscosity of
+/// 0.1 m2/s says.
+double cell_back(const Tank& tank, double speed) {
+  const double d = d_fine, length = 16 * d, k = pi / length, nu = 0.1;
+  const auto flow = [k](const Vec3d& x) {
+    return Vec3d{std::sin(k * x[0]) * std::cos(k * x[2]), 0, -std::cos(k * x[0]) * std::sin(k * x[2])};
+  };
+  const auto still = [](const Vec3d&) { return Vec3d{}; };
+  const auto fluid = fill(tank, {length, length, length}, nu,
+                          lattice(
+                              d, {length, length, length}, [](const Vec3d&) { return true; }, still));
+  for (int frame = 0; frame < 40; ++frame) fluid->step_frame();
+  fluid->put(moving(fluid->read_state(), [&](const Vec3d& x) {
+    Vec3d v = flow(x);
+    for (double& one : v) one *= speed;
+    return v;
+  }));
+  std::vector<double> time{0}, logs{std::log(speed)};
+  for (int frame = 1; frame <= 20; ++frame) {
+    fluid->step_frame();
+    double along = 0, norm = 0;
+    for (const auto& p : fluid->read_state()) {
+      const Vec3d v = velocity(p), e = flow(place(p));
+      along += mass(p) * (v[0] * e[0] + v[2] * e[2]);
+      norm += mass(p) * (e[0] * e[0] + e[2] * e[2]);
+    }
+    time.push_back(frame / 60.0);
+    logs.push_back(std::log(std::max(along / norm, 1e-9)));
+  }
+  const double back = -fit(time, logs).slope / (2 * nu * k * k);
+  std::printf("vortices at %.1f m/s%s: viscosity %.2f of what was given\n", speed,
+              tank.mixed ? ", mixed levels" : "", back);
+  return back;
+}
+
+/// Not within 15 % at level 0. Without the loosening 1.83.
+TEST(TruthLevelling, ACreepingVortexUnderGravityDecays) {
+  NEEDS_EFFECTS;
+  const double back = cell_back({}, 0.3);
+  EXPECT_GT(back, 0.85);
+  EXPECT_LT(back, 1.7);
+}
+TEST(TruthLevellingSlow, ACreepingVortexOfMixedLevelsDecays) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(cell_back({.method = MethodKind::Ours, .mixed = true}, 0.3), 1, 0.25);
+}
+
+}  // namespace
