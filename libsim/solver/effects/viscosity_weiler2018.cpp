@@ -273,7 +273,7 @@ void solve_for(FluidState& state, Columns p, Selection select) {
 /// Under pressure particles of one size lie on a lattice, which carries shear until it yields: fluid so thick
 /// that it calms its own jitter would stop on a slope. So each particle inside the fluid takes a random step,
 /// and the next projections make room again. Velocities stay, and so does momentum.
-constexpr float loosening = 0.06f;  ///< most of a step along each axis, spacings
+constexpr float loosening = 0.04f;  ///< most of a step along each axis, spacings
 template <class Selection>
 struct Loosen {
   Selection select;

@@ -77,7 +77,7 @@ SIM_TEST(Viscosity, LoosensWhatIsInsideUnderGravityByAShareOfASpacing) {
     auto state = state_of(points, true);
     const auto after = loosened(state, 9.81f);
     const auto density = state.particles.all().density.to_host();
-    const float most = 0.06f * d;
+    const float most = 0.04f * d;
     Vec3 sum{0, 0, 0};
     float squares = 0;
     float inside = 0;
