@@ -64,25 +64,28 @@ struct WallContact {
   }
   SIM_FN void stop() const {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+      bool met = false;
       for (int k = 0; k < walls.count; ++k) {
         for (int c = 0; c < corners(); ++c)
-          stop(walls.planes[k].normal, walls.distance(k, body.centre), arm(c));
+          met = stop(walls.planes[k].normal, walls.distance(k, body.centre), arm(c)) || met;
       }
+      if (!met) return;
     }
   }
-  /// The contact may come as near as the wall within dt.
-  SIM_FN void stop(Vec3 normal, float away, Vec3 arm) const {
+  /// The contact may come as near as the wall within dt; was it to be stopped?
+  SIM_FN bool stop(Vec3 normal, float away, Vec3 arm) const {
     const float gap = away + dot(normal, arm) - body.radius;
     const Vec3 lever = cross(arm, normal);
     const Vec3 turns = spin_of(free, body.turn, lever);
     const Vec3 spin = spin_of(free, body.turn, free.spin);
     const float speed = dot(normal, (1 / free.mass) * free.momentum + cross(spin, arm));
     const float excess = -speed - at_least(gap, 0.0f) / dt;
-    if (excess <= 0) return;
+    if (excess <= 0) return false;
     const float push = excess / (1 / free.mass + dot(lever, turns));
     free.momentum += push * normal;
     free.by_walls += push * normal;
     free.spin += push * lever;
+    return true;
   }
   /// How far beyond the walls the body is, as the way back.
   SIM_FN Vec3 way_back() const {

@@ -23,8 +23,15 @@ struct BodyListener {
   /// `push` in m_* m at a place.
   SIM_FN void add(int body, Vec3 at, Vec3 push) const {
     BodySum sum{};
+    add_to(sum, body, at, push);
+    add_at_once(body, sum);
+  }
+  /// The same, first to a sum of one's own.
+  SIM_FN void add_to(BodySum& sum, int body, Vec3 at, Vec3 push) const {
     sum.push.add(times, push);
     sum.moment.add(times, cross(at - bodies[body].centre, push));
+  }
+  SIM_FN void add_at_once(int body, const BodySum& sum) const {
     sums[body].push.add_at_once(sum.push);
     sums[body].moment.add_at_once(sum.moment);
   }

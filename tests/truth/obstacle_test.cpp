@@ -101,7 +101,7 @@ void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = B
   options.n_star = n_star;
   options.wall_impulse = true;
   const auto fluid = sim::make_simulation(scene, options);
-  double thrust = 0, squares = 0;
+  double thrust = 0, lift = 0, squares = 0;
   constexpr int frames = 90, settled = 60;
   for (int frame = 0; frame < frames; ++frame) {
     fluid->step_frame();
@@ -109,7 +109,9 @@ void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = B
     for (const auto& p : state)
       ASSERT_GE(sim::signed_distance(dam, dam.start, place(p)), -1e-6) << "frame " << frame << ", " << p.id;
     if (frame < settled) continue;
-    thrust -= fluid->momentum().obstacles.at(0).push[0];
+    const Vec3d push = fluid->momentum().obstacles.at(0).push;
+    thrust -= push[0];
+    lift -= push[1];
     squares += mean(state, [](auto& p) {
       const Vec3d v = velocity(p);
       return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -118,6 +120,7 @@ void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = B
   // rho g H^2 / 2 a metre.
   const double given = 0.5 * 1000 * scene.gravity_m_s2 * (frames - settled) * scene.frame_dt_s;
   EXPECT_NEAR(thrust / given, 1, 0.15);
+  EXPECT_NEAR(lift / given, 0, 0.15) << "its face is upright";
   EXPECT_LE(std::sqrt(squares / (frames - settled)), 0.07) << "m/s";
 }
 TEST(Dam, HoldsTheWaterAtLevel0) { holds_the_water(MethodKind::HiRes, 512); }

@@ -80,12 +80,18 @@ struct SumBodies {
     if (away > length(e)) return;
     if (slope.grid.kind[i] == CellKind::Fluid) {
       const Vec3 held = (slope.grid.q[i] / unit_volume) * solid_sides(x, y, z);
-      if (held.x != 0 || held.y != 0 || held.z != 0) give(nearest, centre, held);
+      if (held.x != 0 || held.y != 0 || held.z != 0) {
+        Given given{.body = nearest};
+        add(given, centre, held);
+        tell(given);
+      }
     }
-    if (away > 0.5f * length(e)) return;
+    // What a solid cell gives stands in its neighbours' faces.
+    if (away > 0.5f * length(e) || solid(x, y, z) > 0) return;
     const float level = waterline.beside(x, y, z).mean;
     if (level <= 0) return;
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
+    Given given{};
     for (int k = 0; k < samples * samples * samples; ++k) {
       const float up = offset(k / samples % samples);
       const Vec3 at =
@@ -95,15 +101,32 @@ struct SumBodies {
       // A sample is a layer of its own height, which the level may cut.
       const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
       if (below == 0) continue;
-      atomic_add(&wet[body], static_cast<std::uint64_t>(below * share * CellWater::fixed_point));
-      give(body, at, -(below * share) * slope.down(at));
+      if (body != given.body) {
+        tell(given);
+        given = {.body = body};
+      }
+      given.wet += static_cast<std::uint64_t>(below * share * CellWater::fixed_point);
+      add(given, at, -(below * share) * slope.down(at));
     }
+    tell(given);
   }
-  SIM_FN void give(int body, Vec3 at, Vec3 push) const {
-    MassWay sum{};
-    sum.add(1, push);
-    out->walls.add_at_once(sum);
-    if (to.sums) to.add(body, at, push);
+
+  /// Of one body, so that all of a cell meet at its sums once.
+  struct Given {
+    int body = -1;
+    MassWay push{};
+    BodySum heard{};
+    std::uint64_t wet = 0;
+  };
+  SIM_FN void add(Given& given, Vec3 at, Vec3 push) const {
+    given.push.add(1, push);
+    if (to.sums) to.add_to(given.heard, given.body, at, push);
+  }
+  SIM_FN void tell(const Given& given) const {
+    if (given.body < 0) return;
+    out->walls.add_at_once(given.push);
+    if (given.wet > 0) atomic_add(&wet[given.body], given.wet);
+    if (to.sums) to.add_at_once(given.body, given.heard);
   }
   /// Areas of the faces before an obstacle's solid cells, m2, along the way out of them.
   SIM_FN Vec3 solid_sides(int x, int y, int z) const {
