@@ -145,7 +145,7 @@ TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
     EXPECT_EQ(text(within + inline_brick()), dam_with(within + inline_brick()));
     EXPECT_EQ(text(within + names + "\n"), dam_with(within + obj)) << quotes;
   }
-  const std::string four = "obj = '''\n" + brick + "# '''' # '''\n" + other;
+  const std::string four = "obj = '''\n" + brick + "# '''' # ''''\n" + other;
   EXPECT_EQ(text(four + names + "\n"), dam_with(four + obj)) << "a quote before those that close";
   for (const std::string keys : {"\"f\\u0069le\" = \"brick.obj\"\n", "\"file\" = \"brick.obj\"\n",
                                  "file = \"br\\u0069ck.obj\"\n", "file = '''brick.obj'''\n"}) {
