@@ -1,6 +1,6 @@
 // Obstacles that are meshes: signed distances at the nodes of grids, as the solver has them.
 layout(std430, binding = 5) readonly buffer ObstacleGrids {
-  // Eight words an obstacle: low corner, step, as floats; nodes, where its distances begin. Then these, as floats.
+  // Eight words an obstacle: low corner, step (floats), nodes, where its distances begin. Then these (floats).
   uint obstacle_grids[];
 };
 
