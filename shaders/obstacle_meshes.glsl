@@ -1,6 +1,7 @@
 // Obstacles that are meshes: signed distances at the nodes of grids, as the solver has them.
 layout(std430, binding = 5) readonly buffer ObstacleGrids {
-  float obstacle_grids[];  // eight words an obstacle: low corner, step; nodes, where its distances begin. Then these
+  // Eight words an obstacle: low corner, step (floats), nodes, where its distances begin. Then these (floats).
+  uint obstacle_grids[];
 };
 
 const int most_mesh_steps = 96;
@@ -13,12 +14,13 @@ struct MeshGrid {
   int first;
 };
 
+float grid_float(int at) { return uintBitsToFloat(obstacle_grids[at]); }
+
 MeshGrid mesh_grid(int k) {
   const int at = 8 * k;
-  const vec4 place = vec4(obstacle_grids[at], obstacle_grids[at + 1], obstacle_grids[at + 2], obstacle_grids[at + 3]);
-  const ivec4 size = floatBitsToInt(
-      vec4(obstacle_grids[at + 4], obstacle_grids[at + 5], obstacle_grids[at + 6], obstacle_grids[at + 7]));
-  return MeshGrid(place.xyz, place.w, size.xyz, size.w);
+  const vec3 low = vec3(grid_float(at), grid_float(at + 1), grid_float(at + 2));
+  const ivec3 nodes = ivec3(obstacle_grids[at + 4], obstacle_grids[at + 5], obstacle_grids[at + 6]);
+  return MeshGrid(low, grid_float(at + 3), nodes, int(obstacle_grids[at + 7]));
 }
 
 // Trilinear, at the nearest place of the grid.
@@ -28,9 +30,8 @@ float mesh_distance(MeshGrid grid, vec3 p) {
   const vec3 f = cells - vec3(cell);
   const int at = grid.first + (cell.z * grid.nodes.y + cell.y) * grid.nodes.x + cell.x;
   const int up = at + grid.nodes.x, back = at + grid.nodes.x * grid.nodes.y, both = back + grid.nodes.x;
-  const vec4 low = vec4(obstacle_grids[at], obstacle_grids[up], obstacle_grids[back], obstacle_grids[both]);
-  const vec4 high =
-      vec4(obstacle_grids[at + 1], obstacle_grids[up + 1], obstacle_grids[back + 1], obstacle_grids[both + 1]);
+  const vec4 low = vec4(grid_float(at), grid_float(up), grid_float(back), grid_float(both));
+  const vec4 high = vec4(grid_float(at + 1), grid_float(up + 1), grid_float(back + 1), grid_float(both + 1));
   const vec4 along = mix(low, high, f.x);
   const vec2 across = mix(along.xz, along.yw, f.y);
   return mix(across.x, across.y, f.z);
@@ -70,7 +71,7 @@ float meet_mesh(MeshGrid grid, vec3 o, vec3 d) {
       --halves_left;
       at = 0.5 * (before + inside_at);
     } else {
-      at += max(abs(away), 0.2 * grid.step);
+      at += max(abs(away), 0.5 * grid.step);
     }
   }
   return inside_at < never ? inside_at : -1.0;

@@ -18,6 +18,7 @@ struct MeshGrid {
   const float* values;   ///< m, x fastest; nullptr: the body is no mesh
   const Vec3* contacts;  ///< places of the surface that walls meet, in the body's own axes
   int contact_count;
+  Vec3 turns;  ///< 1 for each own axis about which pressure turns the body, 0 where it is round
 
   /// Between nodes the distance is trilinear, and the normal is its slope. Beyond the grid both are those
   /// from the place of the surface that the nearest point of the grid has. A call of its own: scenes whose

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 
 #include "libsim/render/gl_context.hpp"
@@ -56,22 +57,23 @@ std::string defines_of(const Scene& scene) {
 }
 
 /// The grids of meshes for shaders/obstacle_meshes.glsl; empty without any.
-std::vector<float> grids_of(const std::vector<Obstacle>& obstacles) {
-  std::vector<float> out;
+std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
+  std::vector<std::uint32_t> out;
   if (!any_mesh(obstacles)) return out;
   constexpr std::size_t head = 8;
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   out.resize(head * obstacles.size());
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (!obstacles[k].mesh) continue;
     const DistanceGrid& grid = obstacles[k].mesh->grid();
-    float* const row = &out[head * k];
+    std::uint32_t* const row = &out[head * k];
     for (std::size_t a = 0; a < 3; ++a) {
-      row[a] = static_cast<float>(grid.low_m[a]);
-      row[4 + a] = std::bit_cast<float>(static_cast<std::int32_t>(grid.nodes[a]));
+      row[a] = bits(static_cast<float>(grid.low_m[a]));
+      row[4 + a] = static_cast<std::uint32_t>(grid.nodes[a]);
     }
-    row[3] = static_cast<float>(grid.step_m);
-    row[7] = std::bit_cast<float>(static_cast<std::int32_t>(out.size()));
-    out.insert(out.end(), grid.values_m.begin(), grid.values_m.end());
+    row[3] = bits(static_cast<float>(grid.step_m));
+    row[7] = static_cast<std::uint32_t>(out.size());
+    std::transform(grid.values_m.begin(), grid.values_m.end(), std::back_inserter(out), bits);
   }
   return out;
 }
@@ -105,7 +107,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
   no_particles.reserve(16);
   glCreateVertexArrays(1, &vertex_array);
   place_obstacles(motions_at(obstacles, 0));
-  const std::vector<float> words = grids_of(obstacles);
+  const auto words = grids_of(obstacles);
   if (words.empty()) return;
   const auto bytes = static_cast<std::int64_t>(words.size() * sizeof words[0]);
   grids.reserve(bytes);

@@ -96,6 +96,29 @@ Settled settled(const Triangles& mesh) {
   return out;
 }
 
+/// Of a settled surface. Sums over the middles of edges are exact, as what is summed is quadratic.
+std::array<bool, 3> round_about(const Triangles& mesh) {
+  constexpr double most = 0.01;  ///< a long prism of 19 sides is round
+  Vector turning{}, from_axis{};
+  for (const auto& face : mesh.faces) {
+    const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(face[k % 3])]; };
+    const Vector normal = cross(minus(at(1), at(0)), minus(at(2), at(0)));
+    const double area = std::sqrt(dot(normal, normal));
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      Vector middle = at(edge);
+      for (std::size_t k = 0; k < 3; ++k) middle[k] = (middle[k] + at(edge + 1)[k]) / 2;
+      const Vector lever = cross(middle, normal);
+      for (std::size_t k = 0; k < 3; ++k) {
+        turning[k] += lever[k] * lever[k] / area;
+        from_axis[k] += area * (dot(middle, middle) - middle[k] * middle[k]);
+      }
+    }
+  }
+  std::array<bool, 3> out{};
+  for (std::size_t k = 0; k < 3; ++k) out[k] = turning[k] <= most * from_axis[k];
+  return out;
+}
+
 /// A row of nodes after another, each by whichever thread is free.
 void bake(const SurfaceTree& tree, DistanceGrid& out) {
   const auto [nx, ny, nz] = out.nodes;
@@ -114,11 +137,10 @@ void bake(const SurfaceTree& tree, DistanceGrid& out) {
       }
     }
   };
-  std::vector<std::thread> threads;
-  const unsigned count = std::clamp(std::thread::hardware_concurrency(), 1U, most_threads);
+  std::vector<std::jthread> threads;
+  const unsigned count = std::clamp(std::jthread::hardware_concurrency(), 1U, most_threads);
   for (unsigned k = 1; k < count; ++k) threads.emplace_back(work);
   work();
-  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace
@@ -164,6 +186,7 @@ Mesh::Mesh(const Triangles& mesh, double spacing_m)
         volume_m3_ = body.volume_m3;
         inertia_m2_ = body.inertia_m2;
         turn_ = body.turn;
+        round_about_ = sim::round_about(mesh_);
         return SurfaceTree(mesh_);
       }()) {
   low_m_ = high_m_ = mesh_.places[static_cast<std::size_t>(mesh_.faces[0][0])];

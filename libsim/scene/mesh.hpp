@@ -44,6 +44,9 @@ class Mesh {
   const std::array<double, 3>& inertia_m2() const { return inertia_m2_; }
   /// Unit quaternion x, y, z, w from its own axes to the file's.
   const std::array<double, 4>& turn() const { return turn_; }
+  /// Whether it is round about each of its own axes, but for facets: of (r x n)_k^2 over the surface, at most
+  /// 1 % of the square of the way from the axis.
+  const std::array<bool, 3>& round_about() const { return round_about_; }
   /// Of the box round it along its own axes.
   const std::array<double, 3>& low_m() const { return low_m_; }
   const std::array<double, 3>& high_m() const { return high_m_; }
@@ -67,6 +70,7 @@ class Mesh {
   double volume_m3_ = 0;
   std::array<double, 3> inertia_m2_{}, low_m_{}, high_m_{};
   std::array<double, 4> turn_{0, 0, 0, 1};
+  std::array<bool, 3> round_about_{};
   double farthest_m_ = 0, spacing_m_ = 0;
   std::string sha256_;
   SurfaceTree tree_;

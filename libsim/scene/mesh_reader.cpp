@@ -1,7 +1,6 @@
 #include "libsim/scene/mesh_reader.hpp"
 
 #include <algorithm>
-#include <regex>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -43,6 +42,60 @@ Triangles read_triangles(const base::TomlTable& table, const std::optional<std::
   return read_file(*beside / name);
 }
 
+/// What follows the blanks.
+std::string_view after_blanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+}
+
+/// The file that a line `file = "name"` or `file = 'name'` names; empty when the line is another.
+std::string_view file_named_by(std::string_view line) {
+  constexpr std::string_view key = "file";
+  line = after_blanks(line);
+  if (!line.starts_with(key)) return {};
+  line = after_blanks(line.substr(key.size()));
+  if (!line.starts_with('=')) return {};
+  line = after_blanks(line.substr(1));
+  if (line.empty() || (line[0] != '"' && line[0] != '\'')) return {};
+  const auto end = line.find(line[0], 1);
+  if (end == std::string_view::npos) return {};
+  const std::string_view name = line.substr(1, end - 1), rest = after_blanks(line.substr(end + 1));
+  if (line[0] == '"' && name.find('\\') != std::string_view::npos) return {};
+  return rest.empty() || rest[0] == '#' ? name : std::string_view{};
+}
+
+/// The quotes of the text that a line of TOML leaves open, if it goes on in the next line: three or none.
+/// open: those that the line before left.
+std::string_view left_open(std::string_view line, std::string_view open) {
+  constexpr std::string_view quotes[] = {"\"\"\"", "'''", "\"", "'"};
+  std::size_t k = 0;
+  while (k < line.size()) {
+    const std::string_view rest = line.substr(k);
+    if (open.empty()) {
+      if (rest[0] == '#') return {};
+      const auto* const found = std::find_if(std::begin(quotes), std::end(quotes),
+                                             [&](std::string_view quote) { return rest.starts_with(quote); });
+      if (found != std::end(quotes)) open = *found;
+      k += std::max<std::size_t>(open.size(), 1);
+    } else if (open[0] == '"' && rest[0] == '\\') {
+      k += 2;
+    } else if (rest.starts_with(open)) {
+      k += open.size();
+      // Three quotes that close a text may follow up to two that are of it.
+      for (int more = 0; open.size() == 3 && more < 2 && k < line.size() && line[k] == open[0]; ++more) ++k;
+      open = {};
+    } else {
+      ++k;
+    }
+  }
+  return open.size() == 3 ? open : std::string_view{};
+}
+
+bool names_a_file(std::string_view text, const std::filesystem::path& scene_file) {
+  const auto obstacles = base::parse_toml(text, scene_file.string()).tables("obstacle");
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const base::TomlTable& table) { return table.has("file"); });
+}
+
 }  // namespace
 
 std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range size_m,
@@ -72,31 +125,34 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
 }
 
 std::string with_meshes(std::string_view text, const std::filesystem::path& scene_file) {
-  static const std::regex names_file(R"re(\s*file\s*=\s*(?:"([^"\\]+)"|'([^']+)')\s*(?:#.*)?)re");
-  if (text.find("file") == std::string_view::npos) return std::string(text);
+  if (!names_a_file(text, scene_file)) return std::string(text);
   std::string out;
+  std::size_t bytes = text.size();
+  std::string_view open;
   while (!text.empty()) {
     const auto end = std::min(text.find('\n'), text.size() - 1);
-    const std::string line(text.substr(0, end + 1));
+    const std::string_view line = text.substr(0, end + 1);
     text.remove_prefix(end + 1);
-    std::smatch match;
-    const std::string bare = line.substr(0, line.find_last_not_of("\r\n") + 1);
-    if (!std::regex_match(bare, match, names_file)) {
+    const std::string_view name = open.empty() ? file_named_by(line) : "";
+    open = left_open(line, open);
+    if (name.empty()) {
       out += line;
       continue;
     }
-    const std::string name = match[1].matched ? match[1].str() : match[2].str();
-    out += "obj = '''\n" + obj_of(read_file(scene_file.parent_path() / name)) + "'''\n";
+    const auto mesh_file = scene_file.parent_path() / name;
+    const std::string mesh = "obj = '''\n" + obj_of(read_file(mesh_file)) + "'''\n";
+    out += mesh;
+    bytes += mesh.size() - line.size();
+    if (bytes > most_scene_bytes)
+      throw base::Error(mesh_file.string(),
+                        "takes the scene to " + std::to_string(bytes) + " bytes with its triangles",
+                        "use fewer triangles: a scene has at most " + std::to_string(most_scene_bytes) +
+                            " bytes, those of all its meshes included");
   }
-  for (const auto& table : base::parse_toml(out, scene_file.string()).tables("obstacle")) {
-    if (table.has("file"))
-      throw base::Error(scene_file.string(), "names the file of a mesh beside other keys",
-                        "write file = \"...\" on a line of its own");
-  }
-  if (out.size() > most_scene_bytes)
+  if (names_a_file(out, scene_file))
     throw base::Error(scene_file.string(),
-                      "has " + std::to_string(out.size()) + " bytes with the triangles of its meshes",
-                      "use fewer triangles: at most " + std::to_string(most_scene_bytes) + " bytes");
+                      "names the file of a mesh beside other keys, or in another notation",
+                      "write file = \"...\" on a line of its own, without escapes");
   return out;
 }
 

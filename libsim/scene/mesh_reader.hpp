@@ -19,8 +19,9 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
                                       const std::optional<std::filesystem::path>& beside);
 
 /// The scene's text with each `file` of a mesh replaced by its triangles as `obj`, so that it stands alone;
-/// without such a file the text as it is. Errors are base::Error: more than most_scene_bytes, a `file` that
-/// does not stand on a line of its own.
+/// where no obstacle has such a file the text as it is. Errors are base::Error: at the mesh's file when it
+/// takes the text beyond most_scene_bytes, at the scene's for a `file` that does not stand on a line of its
+/// own.
 std::string with_meshes(std::string_view text, const std::filesystem::path& scene_file);
 inline constexpr std::size_t most_scene_bytes = 1 << 20;
 

@@ -60,6 +60,7 @@ class Reader {
     check_edges();
     if (!(enclosed_volume(mesh_) > 0))
       fail_(0, "looks inwards: the volume that it encloses is not positive", "flip all of its faces");
+    leave_out_loose_places();
     return std::move(mesh_);
   }
 
@@ -125,6 +126,23 @@ class Reader {
               "close the surface; corners that share a place must share its number (merge by distance)");
     }
   }
+  /// Places that no face names are no part of the surface; the others keep their order.
+  void leave_out_loose_places() {
+    std::vector<int> number(mesh_.places.size(), -1);
+    for (const auto& face : mesh_.faces) {
+      for (const int corner : face) number[static_cast<std::size_t>(corner)] = 0;
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      if (number[k] < 0) continue;
+      number[k] = static_cast<int>(kept);
+      mesh_.places[kept++] = mesh_.places[k];
+    }
+    mesh_.places.resize(kept);
+    for (auto& face : mesh_.faces) {
+      for (int& corner : face) corner = number[static_cast<std::size_t>(corner)];
+    }
+  }
   std::string edge_text(const std::array<int, 2>& edge) const {
     return "has a hole or a seam: the edge from place " + std::to_string(edge[0] + 1) + " to " +
            std::to_string(edge[1] + 1);
@@ -140,6 +158,8 @@ class Reader {
 
 Triangles read_obj(std::string_view text, const ObjFailure& fail) {
   Reader reader(fail);
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   while (!text.empty()) {
     const auto end = std::min(text.find('\n'), text.size());
     reader.line(text.substr(0, end));

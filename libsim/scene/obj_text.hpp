@@ -16,15 +16,18 @@ struct Triangles {
   std::vector<std::array<int, 3>> faces;
 };
 
-inline constexpr std::size_t most_triangles = 1 << 16;
+/// What a scene's 1 MiB of text (most_scene_bytes) holds in places of few digits; in places of seven it holds
+/// fewer.
+inline constexpr std::size_t most_triangles = 1 << 15;
 
 /// Throws what a line of the text does wrong; line 0: all of it.
 using ObjFailure = std::function<void(int line, const std::string& problem, const std::string& mend)>;
 
 /// Lines `v x y z` and `f a b c ...`, of which f may name texture and normal behind a slash and count places
-/// back from the last one by negative numbers. Polygons become fans. Other lines are skipped. Failures: a
-/// number that is none, a place that is not there, a face without area, no face, too many, an edge that two
-/// faces do not meet in opposite directions, a surface that looks inwards.
+/// back from the last one by negative numbers. Polygons become fans. Other lines are skipped, and places that
+/// no face names are left out. Failures: a number that is none, a place that is not there, a face without
+/// area, no face, too many, an edge that two faces do not meet in opposite directions, a surface that looks
+/// inwards.
 Triangles read_obj(std::string_view text, const ObjFailure& fail);
 
 /// The same surface in few bytes: places and triangles alone, each on a line.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "libsim/scene/mesh_reader.hpp"
 #include "libsim/scene/obstacle.hpp"
@@ -111,6 +113,95 @@ TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   }
 }
 
+std::string text_error(const std::filesystem::path& scene_file) {
+  try {
+    sim::scene_text(scene_file);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// Whatever stands round it: only the `file` of an obstacle is replaced, and none is overlooked.
+TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
+  const test::TemporaryFolder folder;
+  const auto scene_file = folder.path() / "scene.toml";
+  base::write_file_atomically(folder.path() / "brick.obj", brick);
+  const auto text = [&](const std::string& keys) {
+    base::write_file_atomically(scene_file, dam_with(keys));
+    return sim::scene_text(scene_file);
+  };
+  const std::string obj = "obj = '''\n" + sim::obj_of(mesh_test::triangles(brick)) + "'''\n";
+  const std::string names = "file = \"brick.obj\"", blanks(300'000, ' ');
+  EXPECT_EQ(text(names + " #" + blanks + "file\n"), dam_with(obj));
+  EXPECT_EQ(text(blanks + "\n\t" + names + blanks + "\r\n"), dam_with(blanks + "\n" + obj));
+  EXPECT_EQ(text("  file='brick.obj'"), dam_with(obj));
+  // Within a text, after what looks like the beginning or the end of one.
+  const std::string other = "[[obstacle]]\nshape = \"mesh\"\ncentre_m = [1.0, 1.0, 1.0]\n";
+  const std::string three = "'''", doubled = "\"\"\"";
+  for (const auto& [quotes, others] : {std::pair{three, doubled}, std::pair{doubled, three}}) {
+    const std::string within = "# ''' \"\"\"\nobj = " + quotes + "\n# \\\" '' # " + others + "\n" + names +
+                               "\n" + brick + quotes + " # ''' \"\"\"\n" + other;
+    EXPECT_EQ(text(within + inline_brick()), dam_with(within + inline_brick()));
+    EXPECT_EQ(text(within + names + "\n"), dam_with(within + obj)) << quotes;
+  }
+  const std::string four = "obj = '''\n" + brick + "# '''' # ''''\n" + other;
+  EXPECT_EQ(text(four + names + "\n"), dam_with(four + obj)) << "a quote before those that close";
+  for (const std::string keys : {"\"f\\u0069le\" = \"brick.obj\"\n", "\"file\" = \"brick.obj\"\n",
+                                 "file = \"br\\u0069ck.obj\"\n", "file = '''brick.obj'''\n"}) {
+    base::write_file_atomically(scene_file, dam_with(keys));
+    EXPECT_THAT(text_error(scene_file), AllOf(HasSubstr("scene.toml"), HasSubstr("in another notation"),
+                                              HasSubstr("on a line of its own, without escapes")))
+        << keys;
+    EXPECT_THROW(sim::read_scene(scene_file), base::Error) << keys;
+  }
+}
+
+TEST(MeshObstacles, TooManyTrianglesForTheTextAreAnErrorOfTheirFile) {
+  const test::TemporaryFolder folder;
+  const auto scene_file = folder.path() / "scene.toml";
+  base::write_file_atomically(scene_file, dam_with("file = \"ball.obj\"\n"));
+  base::write_file_atomically(folder.path() / "ball.obj", mesh_test::ball_text(0.25, 90));
+  EXPECT_THAT(text_error(scene_file), AllOf(HasSubstr("ball.obj"), HasSubstr("bytes with its triangles"),
+                                            HasSubstr("use fewer triangles: a scene has at most 1048576")));
+  base::write_file_atomically(folder.path() / "ball.obj", mesh_test::ball_text(0.25, 40));
+  EXPECT_EQ(text_error(scene_file), "no error");
+}
+
+/// A mesh whose text has turned a box by 30 degrees about x, which the scene turns by 50 about y, and the box
+/// that both turn: the order of the two counts.
+TEST(MeshObstacles, AttitudesAreThoseOfTheFileThenOfTheScene) {
+  auto turned_text = mesh_test::triangles(brick);
+  const double x_turn = std::numbers::pi / 6, y_turn = std::numbers::pi / 3.6;
+  for (auto& at : turned_text.places)
+    at = {at[0], std::cos(x_turn) * at[1] - std::sin(x_turn) * at[2],
+          std::sin(x_turn) * at[1] + std::cos(x_turn) * at[2]};
+  const std::string turns =
+      "motion = \"turns\"\nabout_m = [2.0, 1.0, 1.5]\naxis = [0.0, 0.6, 0.8]\nrate_rad_s = 0.5\n";
+  const auto scene =
+      sim::parse_scene(dam_with("obj = '''\n" + sim::obj_of(turned_text) +
+                                "'''\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 50.0\n" + turns),
+                       "scene.toml");
+  const Obstacle& mesh = scene.obstacles.at(0);
+  Obstacle box = mesh;
+  box.shape = ObstacleShape::Box;
+  box.mesh.reset();
+  box.size_m = {0.6, 0.5, 0.4};
+  const double sx = std::sin(x_turn / 2), cx = std::cos(x_turn / 2);
+  const double sy = std::sin(y_turn / 2), cy = std::cos(y_turn / 2);
+  box.start.turn = {cy * sx, sy * cx, -sy * sx, cy * cx};
+  for (const double time : {0.0, 0.7, 3.0}) {
+    const sim::Pose of_mesh = sim::pose_at(mesh, time), of_box = sim::pose_at(box, time);
+    for (int k = 0; k < 500; ++k) {
+      const auto at = [&](std::size_t axis, double n) {
+        return of_box.centre_m[axis] + std::fmod(0.6180339887 * k * n, 1.0) - 0.5;
+      };
+      const sim::Vec3d p{at(0, 1), at(1, 3), at(2, 7)};
+      ASSERT_NEAR(sim::signed_distance(mesh, of_mesh, p), sim::signed_distance(box, of_box, p), 1e-6) << time;
+    }
+  }
+}
+
 /// A pool with a cube, as a box or as a mesh.
 sim::Scene pool(bool as_mesh, ObstacleMotion motion = ObstacleMotion::Fixed) {
   auto scene = fluid_test::tank({1, 1.5, 1}, {1, 0.75, 1}, 20);
@@ -197,6 +288,20 @@ std::vector<sim::ParticleState> run(const sim::Scene& scene, const sim::Simulati
 }
 bool same_bits(const std::vector<sim::ParticleState>& a, const std::vector<sim::ParticleState>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+TEST(MeshObstacles, NothingTurnsABallOfTriangles) {
+  for (const bool ball : {true, false}) {
+    auto scene = pool(true, ObstacleMotion::Free);
+    if (ball)
+      scene.obstacles[0].mesh =
+          std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
+    const auto fluid = sim::make_simulation(scene, options_of());
+    for (int frame = 0; frame < 30; ++frame) fluid->step_frame();
+    const auto spin = fluid->read_obstacles().at(0).spin_rad_s;
+    const double rate = std::hypot(spin[0], spin[1], spin[2]);
+    EXPECT_EQ(rate == 0, ball) << rate << " rad/s; a cube may turn";
+  }
 }
 
 TEST(MeshObstacles, ThreadsChangeNoBit) {

@@ -52,6 +52,17 @@ TEST(MeshText, PolygonsSlashesAndNegativeNumbersAreRead) {
   EXPECT_EQ(triangles(sim::obj_of(plain)).places, plain.places);
 }
 
+TEST(MeshText, LoosePlacesAndAByteOrderMarkAreNoPartOfIt) {
+  const auto plain = triangles(tetrahedron);
+  const std::string loose =
+      "v 7 7 7\nv 0 0 0\nv 1 0 0\nv 100 0 0\nv 0 1 0\nv 0 0 1\n"
+      "f 2 5 3\nf 2 3 6\nf 2 6 5\nf 3 5 6\nv 1e6 0 0\n";
+  for (const std::string& text : {loose, "\xEF\xBB\xBF" + tetrahedron}) {
+    EXPECT_EQ(triangles(text).places, plain.places);
+    EXPECT_EQ(triangles(text).faces, plain.faces);
+  }
+}
+
 TEST(MeshText, FailuresNameTheLineAndTheMend) {
   struct Case {
     std::string text, problem, mend;
@@ -139,6 +150,18 @@ TEST(Mesh, OwnAxesArePrincipal) {
     EXPECT_NEAR(own[k] + 2 * w * t[k] + 2 * tt[k] + centre[k], turned.places[7][k], 1e-9);
   EXPECT_EQ(sim::Mesh(triangles(box_text({0, 0, 0}, {3, 2, 1})), 0).turn(),
             (std::array<double, 4>{0, 0, 0, 1}));
+}
+
+TEST(Mesh, KnowsTheAxesAboutWhichItIsRound) {
+  const auto round = [](sim::Triangles mesh, double stretch) {
+    for (Vector& at : mesh.places) at[1] *= stretch;
+    return sim::Mesh(mesh, 0).round_about();
+  };
+  using Axes = std::array<bool, 3>;
+  EXPECT_EQ(round(triangles(ball_text(0.5, 12)), 1), (Axes{true, true, true}));
+  EXPECT_EQ(round(triangles(ball_text(0.5, 12)), 2), (Axes{false, true, false}));
+  EXPECT_EQ(round(triangles(ball_text(0.5, 6)), 2), (Axes{false, false, false})) << "twelve sides";
+  EXPECT_EQ(round(triangles(box_text({0, 0, 0}, {1, 1, 1})), 1), (Axes{false, false, false}));
 }
 
 TEST(Mesh, DistancesAreThoseOfTheShape) {

@@ -50,6 +50,7 @@ struct Move {
 struct Push {
   FreeBody* free;
   const Body* bodies;
+  const MeshGrid* meshes;  ///< as Solids has them
   const BodySum* sums;
   const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
   float per_dt2;             ///< of the sums' ways
@@ -62,7 +63,8 @@ struct Push {
     FreeBody& it = free[b];
     if (it.mass == 0) return;
     const Vec3 push = -per_dt2 * (sums[b].push - it.counted.push).value();
-    const Vec3 moment = turning(bodies[b], -per_dt2 * (sums[b].moment - it.counted.moment).value());
+    const Vec3 moment =
+        turning(bodies[b], mesh_of(meshes, b), -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
     const float water = wet ? static_cast<float>(wet[b]) / CellWater::fixed_point : it.volume;
     const float share = it.mass / (it.mass + added_mass * at_most(water, it.volume));
@@ -74,7 +76,11 @@ struct Push {
     left += given - force;
   }
   /// Pressure turns no body about an axis round which it is round; cells alone would.
-  SIM_FN static Vec3 turning(const Body& body, Vec3 moment) {
+  SIM_FN static Vec3 turning(const Body& body, const MeshGrid* mesh, Vec3 moment) {
+    if (mesh) {
+      const Vec3 own = turned(turned_back(body.turn), moment);
+      return turned(body.turn, {mesh->turns.x * own.x, mesh->turns.y * own.y, mesh->turns.z * own.z});
+    }
     if (body.radius == 0) return moment;
     if (body.half.y == 0) return {0, 0, 0};
     const Vec3 axis = turned(body.turn, {0, 1, 0});
@@ -103,6 +109,7 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   for_each("push bodies", o.count(),
            Push{.free = o.free.data(),
                 .bodies = o.bodies.data(),
+                .meshes = o.meshes.data(),
                 .sums = o.sums.data(),
                 .wet = state.parameters.coarse_cycles > 0 ? o.wet.data() : nullptr,
                 .per_dt2 = 1 / (dt * dt)});

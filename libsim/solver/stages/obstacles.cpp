@@ -83,6 +83,7 @@ void place_meshes(ObstacleState& state) {
     MeshGrid out{};
     if (const auto& mesh = state.obstacles[k].mesh) {
       const DistanceGrid& grid = mesh->grid();
+      const auto turns = [&](std::size_t axis) { return mesh->round_about()[axis] ? 0.0f : 1.0f; };
       const std::size_t end = k + 1 < begin.size() ? begin[k + 1][1] : contacts.size();
       out = {.low = vector(grid.low_m),
              .step = static_cast<float>(grid.step_m),
@@ -91,7 +92,8 @@ void place_meshes(ObstacleState& state) {
              .nz = grid.nodes[2],
              .values = state.distances.data() + begin[k][0],
              .contacts = state.mesh_contacts.data() + begin[k][1],
-             .contact_count = static_cast<int>(end - begin[k][1])};
+             .contact_count = static_cast<int>(end - begin[k][1]),
+             .turns = {turns(0), turns(1), turns(2)}};
     }
     meshes.push_back(out);
   }

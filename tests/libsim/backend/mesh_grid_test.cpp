@@ -28,7 +28,8 @@ struct OnHost {
             .nz = from.nodes[2],
             .values = from.values_m.data(),
             .contacts = contacts.data(),
-            .contact_count = static_cast<int>(contacts.size())};
+            .contact_count = static_cast<int>(contacts.size()),
+            .turns = {1, 1, 1}};
   }
   Mesh mesh;
   std::vector<Vec3> contacts;
