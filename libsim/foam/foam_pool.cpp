@@ -5,12 +5,36 @@
 
 namespace sim::SIM_BACKEND {
 
+namespace {
+
+/// Cells of `edge` along a length.
+float count_along(float length, float edge) { return std::max(1.0f, std::ceil(length / edge - 1e-4f)); }
+
+}  // namespace
+
+float MeetingCells::edge_of(const Domain& domain, float wish) {
+  const Vec3 size = domain.high - domain.low;
+  float edge = wish;
+  for (;;) {
+    const double cells = static_cast<double>(count_along(size.x, edge)) *
+                         static_cast<double>(count_along(size.y, edge)) *
+                         static_cast<double>(count_along(size.z, edge));
+    if (cells <= most_cells) return edge;
+    // In flat tanks cells are saved along two axes or one, and the cube root falls short.
+    edge *= static_cast<float>(std::max(1.01, std::cbrt(cells / most_cells)));
+  }
+}
+
 void MeetingCells::lay(const Domain& domain, float edge, float finest_support) {
-  const auto count = [&](float length) {
-    return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));
-  };
+  const auto count = [&](float length) { return static_cast<int>(count_along(length, edge)); };
   const Vec3 size = domain.high - domain.low;
   grid = {{domain.low, edge}, {count(size.x), count(size.y), count(size.z)}};
+  // What a length has lost to rounding cuts no cell.
+  const auto rest = [&](float length, int n) {
+    const float left = length / edge - static_cast<float>(n - 1);
+    return left > 0.9999f ? 1 : left;
+  };
+  last = {rest(size.x, grid.block.nx), rest(size.y, grid.block.ny), rest(size.z, grid.block.nz)};
   const float spacings = 2 * edge / finest_support;
   full = spacings * spacings * spacings;
   sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));

@@ -56,10 +56,16 @@ struct GradientFit {
   }
 };
 
+SIM_FN bool in_a_body(const Walls&, Vec3) { return false; }
+SIM_FN bool in_a_body(const Solids& solids, Vec3 x) { return solids.nearest_body(x) < 0; }
+
+template <class Bounds>
 struct Meet {
   const MomentumSum* sums;
   GridFrame grid;
+  Vec3 last;
   float full;
+  Bounds bounds;
   Vec4* meeting;
 
   SIM_FN MomentumSum of(int cell) const {
@@ -71,26 +77,43 @@ struct Meet {
     return all;
   }
 
+  /// Of a cell, in edges.
+  SIM_FN Vec3 sides(int x, int y, int z) const {
+    const CellBlock& block = grid.block;
+    return {x == block.nx - 1 ? last.x : 1, y == block.ny - 1 ? last.y : 1, z == block.nz - 1 ? last.z : 1};
+  }
+
   SIM_FN void operator()(int cell) const {
     meeting[cell] = {0, 0, 0, value_unknown};
     const MomentumSum own = of(cell);
     if (own.mass == 0) return;
     const Vec3 v = mean_velocity(own);
     const CellBlock& block = grid.block;
+    const int own_x = cell % block.nx;
+    const int own_y = cell / block.nx % block.ny;
+    const int own_z = cell / (block.nx * block.ny);
+    const Vec3 mine = sides(own_x, own_y, own_z);
     GradientFit fit;
     float whole = 0;
     for (int k = 0; k < nearby; ++k) {
-      const int x = cell % block.nx + k % 3 - 1;
-      const int y = cell / block.nx % block.ny + k / 3 % 3 - 1;
-      const int z = cell / (block.nx * block.ny) + k / 9 - 1;
+      const Vec3 to = way_to(k);
+      const int x = own_x + k % 3 - 1;
+      const int y = own_y + k / 3 % 3 - 1;
+      const int z = own_z + k / 9 - 1;
       // Nothing is missing beyond the tank.
       if (k == middle || !block.holds(x, y, z)) continue;
-      const Vec3 way = way_to(k);
-      const float weight = 1 / (dot(way, way) * dot(way, way));
-      whole += weight;
+      const Vec3 theirs = sides(x, y, z);
+      const float room = theirs.x * theirs.y * theirs.z;
+      const float weight = 1 / (dot(to, to) * dot(to, to));
       const MomentumSum other = of(block.index(x, y, z));
+      const float wet = at_most(static_cast<float>(other.mass) / full, room);
+      const Vec3 at{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+      const Vec3 centre = grid.frame.low + grid.frame.edge * (at + 0.5f * theirs);
+      // Nor in an obstacle.
+      whole += weight * (in_a_body(bounds, centre) ? wet : room);
       if (other.mass == 0) continue;
-      fit.add(way, mean_velocity(other) - v, weight * at_most(static_cast<float>(other.mass) / full, 1.0f));
+      const Vec3 both = 0.5f * (mine + theirs);
+      fit.add({to.x * both.x, to.y * both.y, to.z * both.z}, mean_velocity(other) - v, weight * wet);
     }
     const float share = whole > 0 ? fit.weight / whole : 0;
     meeting[cell] = {share * fit.approach() / grid.frame.edge, 0, 0, value_measured};
@@ -99,10 +122,14 @@ struct Meet {
 
 }  // namespace
 
-void find_meeting(MeetingCells& cells, MovingView water) {
+template <class Bounds>
+void find_meeting(MeetingCells& cells, MovingView water, const Bounds& bounds) {
   add_momentum(water, nullptr, nullptr, cells.grid, cells.sums);
   for_each("foam cells", cells.grid.cells(),
-           Meet{cells.sums.data(), cells.grid, cells.full, cells.meeting.data()});
+           Meet<Bounds>{cells.sums.data(), cells.grid, cells.last, cells.full, bounds, cells.meeting.data()});
 }
+
+template void find_meeting(MeetingCells&, MovingView, const Walls&);
+template void find_meeting(MeetingCells&, MovingView, const Solids&);
 
 }  // namespace sim::SIM_BACKEND

@@ -170,13 +170,14 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
 namespace {
 
 /// Edge of the cells on which foam sees how water meets: the scene's length, but 1.5 spacings at least of the
-/// coarsest particles that a method may have at this n_*.
+/// coarsest particles that a method may have at this n_*, and no more cells than there may be.
 float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
   double volume = 1;
   for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
   const float asked = e[EffectOption::FoamLength];
-  return std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(volume) / 6),
-                  0.75f * state.supports.h[most_levels - 1]);
+  const float wish = std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(volume) / 6),
+                              0.75f * state.supports.h[most_levels - 1]);
+  return MeetingCells::edge_of(state.domain, wish);
 }
 
 void lay_foam_cells(FluidState& state, const Scene& scene) {

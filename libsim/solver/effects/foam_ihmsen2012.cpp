@@ -34,7 +34,7 @@ void foam(FluidState& state, FoamView p, const Bounds& bounds) {
   const FoamRules rules = rules_of(state);
   if (p.size() > 0) {
     pool.approach.resize(static_cast<std::size_t>(p.size()));
-    find_meeting(pool.cells, p);
+    find_meeting(pool.cells, p, bounds);
     find_foam_surface(pool, p, state.grid, bounds, rules);
     count_foam_births(pool, p, state.grid, rules);
     emit_foam(pool, p, bounds, rules);

@@ -54,7 +54,7 @@ struct Water {
   FoamView view() { return FoamView(state.particles); }
   template <class Bounds>
   void find_surface(const Bounds& bounds) {
-    find_meeting(state.foam.cells, view());
+    find_meeting(state.foam.cells, view(), bounds);
     find_foam_surface(state.foam, view(), state.grid, bounds, rules);
   }
   std::vector<int> births() {

@@ -67,6 +67,28 @@ SIM_TEST(Foam, ObstaclesHideNoWater) {
   EXPECT_LT(normal_beside(solids), 0.2f);
 }
 
+SIM_TEST(Foam, AirIsShutInBesideObstaclesToo) {
+  auto points = cube(0.8f, 3.2f, 0.2f);
+  Body box = body(false);
+  box.half = {0.4f, 0.4f, 0.4f};
+  std::erase_if(points, [&](const Vec4& x) { return box.distance(xyz(x)) < 0; });
+  Water water(points, true, [](Vec3 x) { return Vec3{4 * x.z, 0, -4 * x.x}; });
+  const Solids solids = with_body(water, box);
+  water.rules.energy = {-1, 1e-6f};
+  const auto approach_beside = [&](const auto& bounds) {
+    water.find_surface(bounds);
+    const auto x = water.state.particles.all().position.to_host();
+    const auto approach = water.state.foam.approach.to_host();
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (length(xyz(x[i]) - Vec3{2.55f, 2, 2}) < length(xyz(x[nearest]) - Vec3{2.55f, 2, 2})) nearest = i;
+    }
+    return approach[nearest];
+  };
+  EXPECT_LT(approach_beside(water.state.walls), 0.9f * pi) << "to who knows of no obstacle";
+  EXPECT_NEAR(approach_beside(solids), pi, 0.15f);
+}
+
 SIM_TEST(Foam, IsBornOutsideObstacles) {
   auto points = cube(1, 3, 0.2f);
   const Body box = body(false);

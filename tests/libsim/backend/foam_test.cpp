@@ -56,6 +56,44 @@ SIM_TEST(Foam, WaterMeetsAsItsGradientSays) {
   }
 }
 
+SIM_TEST(Foam, CellsThatTheFarWallsCutAreNoDrierThanOthers) {
+  // Water turns in a corner of the tank, and in its mirror image. The last cells have 3 / 7 of an edge.
+  const auto approach_in_the_corner = [](bool high) {
+    auto points = cube(0, 1.5f, 0.1f);
+    if (high) {
+      for (Vec4& x : points) x = {4 - x.x, 4 - x.y, 4 - x.z, x.w};
+    }
+    Water water(points, true, [](Vec3 x) { return Vec3{4 * x.z, 0, -4 * x.x}; });
+    water.state.foam.cells.lay(water.state.domain, 0.35f, water.state.finest_support);
+    water.births();
+    const auto x = water.state.particles.all().position.to_host();
+    const auto approach = water.state.foam.approach.to_host();
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vec3 from_corner = high ? Vec3{4, 4, 4} - xyz(x[i]) : xyz(x[i]);
+      if (!(std::max({from_corner.x, from_corner.y, from_corner.z}) < 0.3f)) continue;
+      sum += static_cast<double>(approach[i]);
+      ++count;
+    }
+    return sum / count;
+  };
+  const double low = approach_in_the_corner(false);
+  EXPECT_NEAR(low, pi, 0.15);
+  EXPECT_NEAR(approach_in_the_corner(true), low, 0.01 * low);
+}
+
+SIM_TEST(Foam, ItsCellsAreNotTooManyInAnyTank) {
+  for (const Vec3 size : {Vec3{40, 40, 40}, Vec3{4000, 4000, 0.01f}, Vec3{1e6f, 0.001f, 0.001f}}) {
+    const Domain tank{{0, 0, 0}, size};
+    MeetingCells cells;
+    cells.lay(tank, MeetingCells::edge_of(tank, 0.001f), 0.2f);
+    EXPECT_LE(cells.grid.cells(), MeetingCells::most_cells);
+    EXPECT_GT(cells.grid.cells(), MeetingCells::most_cells / 2) << "no wider than need be";
+  }
+  EXPECT_EQ(MeetingCells::edge_of({{0, 0, 0}, {4, 4, 4}}, 0.4f), 0.4f);
+}
+
 SIM_TEST(Foam, ParticlesThatShakeAmongEachOtherAreNoWaterThatMeets) {
   const auto shaken = [](Vec3 x) {
     const auto odd = static_cast<int>(std::floor(10 * x.x + 0.25f) + std::floor(10 * x.y + 0.25f));

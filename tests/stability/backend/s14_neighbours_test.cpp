@@ -1,6 +1,10 @@
 #include "libsim/neighbors/cell_key.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 
+#ifndef SIM_CUDA
+#include <omp.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -204,6 +208,53 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   }
   expect_brute_force(points);
 }
+
+#ifndef SIM_CUDA
+/// libsim/neighbors/candidates.hpp keeps what a thread gathered last. Two simulations' lists are built by
+/// turns in one thread, and places change within their cells between builds: the windows are the same, and
+/// nobody in them is.
+SIM_TEST(S14NeighbourList, OfTwoSimulationsInOneThreadAreTheirOwn) {
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  // All are in the middle cell of 27, which is a little wider than the margin.
+  const Domain tank{{0, 0, 0}, {1, 1, 1}};
+  const float edge = NeighbourList::margin * finest;
+  const auto points_of = [&](unsigned seed) {
+    std::vector<Vec4> out = random_points(40, 0.47f * edge, finest, seed);
+    for (Vec4& p : out) p = {p.x + 1.5f * edge, p.y + 1.5f * edge, p.z + 1.5f * edge, p.w};
+    return out;
+  };
+  struct One {
+    Particles particles;
+    Grid grid;
+    NeighbourList neighbours;
+  };
+  One simulations[2];
+  Array<Guards> guards(1);
+  guards.zero();
+  unsigned seed = 1;
+  for (int turn = 0; turn < 3; ++turn) {
+    for (One& one : simulations) {
+      const std::vector<Vec4> points = points_of(seed++);
+      one.particles = particles_at(points);
+      do {
+        one.grid.build(one.particles, NeighbourList::margin, tank, finest);
+        one.neighbours.build(PredictedView(one.particles), one.grid,
+                             {guards.data(), one.particles.all().id.data(), 0});
+      } while (one.neighbours.grow());
+      const auto id = one.particles.all().id.to_host();
+      const auto lists = one.neighbours.lists();
+      std::vector<std::set<int>> found(points.size());
+      for (std::size_t i = 0; i < lists.size(); ++i) {
+        for (const int j : lists[i])
+          found[static_cast<std::size_t>(id[i])].insert(id[static_cast<std::size_t>(j)]);
+      }
+      EXPECT_EQ(found, brute_force(points));
+    }
+  }
+  omp_set_num_threads(threads);
+}
+#endif
 
 /// The first build of a list, whose room nothing has grown yet.
 struct FirstBuild {
