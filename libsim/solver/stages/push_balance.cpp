@@ -67,7 +67,11 @@ struct SumBodies {
   float unit_volume;
   PushBalance* out;
 
-  SIM_FN void operator()(int i) const {
+  /// Few cells have a body, and those have much to do.
+  int lanes(int) const { return 8; }
+
+  template <class Team>
+  SIM_FN void operator()(int i, Team team) const {
     const CellBlock& block = waterline.block;
     const int x = i % block.nx;
     const int y = i / block.nx % block.ny;
@@ -78,7 +82,7 @@ struct SumBodies {
     int nearest;
     const float away = solids.nearest_body(centre, nearest);
     if (away > length(e)) return;
-    if (slope.grid.kind[i] == CellKind::Fluid) {
+    if (slope.grid.kind[i] == CellKind::Fluid && team.rank() == 0) {
       const Vec3 held = (slope.grid.q[i] / unit_volume) * solid_sides(x, y, z);
       if (held.x != 0 || held.y != 0 || held.z != 0) {
         Given given{.body = nearest};
@@ -92,7 +96,7 @@ struct SumBodies {
     if (level <= 0) return;
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
     Given given{};
-    for (int k = 0; k < samples * samples * samples; ++k) {
+    for (int k = team.rank(); k < samples * samples * samples; k += Team::size) {
       const float up = offset(k / samples % samples);
       const Vec3 at =
           centre + Vec3{e.x * offset(k % samples), e.y * up, e.z * offset(k / (samples * samples))};
@@ -108,7 +112,9 @@ struct SumBodies {
       given.wet += static_cast<std::uint64_t>(below * share * CellWater::fixed_point);
       add(given, at, -(below * share) * slope.down(at));
     }
-    tell(given);
+    for (int body = 0; body < solids.count; ++body) {
+      if (team.any(given.body == body)) tell_together(given.body == body ? given : Given{.body = body}, team);
+    }
   }
 
   /// Of one body, so that all of a cell meet at its sums once.
@@ -121,6 +127,16 @@ struct SumBodies {
   SIM_FN void add(Given& given, Vec3 at, Vec3 push) const {
     given.push.add(1, push);
     if (to.sums) to.add_to(given.heard, given.body, at, push);
+  }
+  template <class Team>
+  SIM_FN void tell_together(const Given& mine, Team team) const {
+    const auto sum = [&](const MassWay& way) {
+      return MassWay{team.sum(way.x), team.sum(way.y), team.sum(way.z)};
+    };
+    Given all{.body = mine.body, .push = sum(mine.push)};
+    if (to.sums) all.heard = {sum(mine.heard.push), sum(mine.heard.moment)};
+    all.wet = team.sum(mine.wet);
+    if (team.rank() == 0) tell(all);
   }
   SIM_FN void tell(const Given& given) const {
     if (given.body < 0) return;
@@ -182,13 +198,13 @@ void sum_bodies(FluidState& state) {
   auto& coarse = state.coarse;
   const GridView grid = coarse.multigrid.finest();
   state.obstacles.wet.zero();
-  for_each("sum obstacles", grid.block.size(),
-           SumBodies{.slope = {coarse.frame, grid, state.walls},
-                     .waterline = state.waterline(),
-                     .to = state.body_listener(1),
-                     .wet = state.obstacles.wet.data(),
-                     .unit_volume = mass_of(state.finest_support, 1),
-                     .out = coarse.balance.data()});
+  for_each_team("sum obstacles", grid.block.size(),
+                SumBodies{.slope = {coarse.frame, grid, state.walls},
+                          .waterline = state.waterline(),
+                          .to = state.body_listener(1),
+                          .wet = state.obstacles.wet.data(),
+                          .unit_volume = mass_of(state.finest_support, 1),
+                          .out = coarse.balance.data()});
 }
 
 template <class Boundary>
