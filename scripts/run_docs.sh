@@ -37,7 +37,7 @@ docs/session.md|vip-study run protocols/task1.toml --db lab1.db|s/--console/--ob
 docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2e.ARerunKeepsWhatIsGoodAndMakesTheRestAgain
 docs/stability.md|vip-bench stability --case S9,S11,S12|s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|
 docs/stability.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
-docs/truth.md|vip-bench frame out/dam_foam.toml|s/8k/64/; s/frames 160/frames 2/|it takes minutes on two cores|
+docs/truth.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
 "
 outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview|cells|checkpoints-to)'
 

@@ -199,14 +199,18 @@ void energy_is_bounded(Backend backend) {
   const State start = pool.turning();
   const auto fluid = run_of(pool, start, 1, usual);
   double most = 0;
+  double mean[4] = {};  // of each second
   for (int k = 0; k < 240; ++k) {
     fluid->step_frame();
-    if (k % 10 == 0) most = std::max(most, energy(fluid->read_state()) / energy(start));
+    if (k % 10 > 0) continue;
+    const double now = energy(fluid->read_state()) / energy(start);
+    most = std::max(most, now);
+    mean[k / 60] += now / 6;
   }
-  const double last = energy(fluid->read_state()) / energy(start);
-  std::printf("confinement of 1 m/s for 4 s: energy %.2f at most, %.2f at last\n", most, last);
+  std::printf("confinement of 1 m/s for 4 s: energy %.2f at most, %.2f and %.2f in the last seconds\n", most,
+              mean[2], mean[3]);
   EXPECT_LT(most, 3);
-  EXPECT_LT(last, 2.4);
+  EXPECT_LT(mean[3], 1.15 * mean[2]);
 }
 
 /// rms speed after two seconds, m/s.
