@@ -124,8 +124,8 @@ class NeighbourList {
  private:
   /// Of water of one size: a particle has 40 within the margin, and 55 at most in SingleDam.
   static constexpr int usual_capacity = 56;
-  /// A coarse particle among the finest has 113 within the support and some 150 within the margin. The longest
-  /// list of the three scenes had 108 (Ours, n_* = 32k).
+  /// A coarse particle among the finest has 113 within the support and some 150 within the margin. The
+  /// longest list of the three scenes had 108 (Ours, n_* = 32k).
   static constexpr int mixed_capacity = 128;
   /// The store may hold one entry for so many lists before all lists get more room: few long ones are read
   /// from it at no cost that shows, and room of their own is room in every list.
