@@ -154,10 +154,10 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           number(quantile(run.frame_ms, 0.5), 3),
           number(step_ms, 3),
           number(quantile(run.step_ms, 0.99), 3),
-          number(quantile(run.saliency_ms, 0.5), 3),
-          number(quantile(run.levels_ms, 0.5), 3),
-          number(quantile(run.activation_ms, 0.5), 3),
-          number(quantile(run.solve_ms, 0.5), 3),
+          number(moments_of(run.saliency_ms).mean, 3),
+          number(moments_of(run.levels_ms).mean, 3),
+          number(moments_of(run.activation_ms).mean, 3),
+          number(moments_of(run.solve_ms).mean, 3),
           number(quantile(run.render_ms, 0.5), 3),
           number(run.seen_ms, 3),
           picture_way_name(run.seen_way),
@@ -185,7 +185,7 @@ const std::vector<std::string> head{"scene",        "n_star",         "method", 
 constexpr const char* columns_help =
     "ms_median is a frame: step and rendering. ms_step_mean and ms_step_p99 are the wall time of a step:\n"
     "the hand-over of the picture to saliency (ms_read_back is its mean), the step, and one wait at its\n"
-    "end. speedup is HiRes' ms_step_mean over the method's. The parts, ms_saliency to ms_solve, are medians\n"
+    "end. speedup is HiRes' ms_step_mean over the method's. The parts, ms_saliency to ms_solve, are means\n"
     "of a second run of the same frames under a clock that waits for the device between them: they may add\n"
     "up to more than a step.";
 

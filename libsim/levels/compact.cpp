@@ -73,6 +73,11 @@ struct PlaceChildren {
   }
 };
 
+struct GrowOlder {
+  std::uint8_t* age;
+  SIM_FN void operator()(int i) const { age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255); }
+};
+
 /// Room for this frame's scratch; nothing moves once it is there.
 void fit_scratch(LevelState& l, LevelView p) {
   const auto room = static_cast<std::size_t>(p.capacity());
@@ -89,6 +94,11 @@ void fit_scratch(LevelState& l, LevelView p) {
 }
 
 }  // namespace
+
+void grow_older(LevelState& l, const LevelView& p) {
+  l.changed = false;
+  for_each("grow older", p.size(), GrowOlder{p.age()});
+}
 
 void split_and_merge(LevelState& l, const LevelFluid& fluid, Particles& particles) {
   l.changed = false;

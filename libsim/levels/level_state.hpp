@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "libsim/exec/vec.hpp"
+#include "libsim/methods/level_turns.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/particles/free_ids.hpp"
@@ -87,6 +88,7 @@ struct LevelState {
   LevelRules rules;
   TargetSphere forced;
   std::uint32_t frame = 0;  ///< a counter of the random numbers
+  LevelTurns turns;         ///< of saliency, splits and merges
   bool changed = false;     ///< something split or merged this frame
   Array<LevelCounts> counts;
   /// Target, History, Age and Waiting of fresh particles; called once when a run begins.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "libsim/levels/joining.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -15,14 +17,18 @@ struct Remember {
   std::uint8_t* waiting;
   std::uint8_t* wish;
   std::uint8_t* gone;
+  int frames;  ///< since the last turn
   SIM_FN void operator()(int i) const {
-    history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
+    for (int k = 0; k < frames && k < 4; ++k)
+      history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
     age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255);
     gone[i] = 0;
     const bool paused = active && !active[i];
     wish[i] = !split_code[i] && !paused && least_of_history(history[i]) > level[i];
     if (paused) return;
-    waiting[i] = static_cast<std::uint8_t>(!wish[i] ? 0 : waiting[i] < 255 ? waiting[i] + 1 : 255);
+    waiting[i] = static_cast<std::uint8_t>(!wish[i]                    ? 0
+                                           : waiting[i] + frames < 255 ? waiting[i] + frames
+                                                                       : 255);
   }
 };
 
@@ -249,7 +255,8 @@ void merge_pairs(LevelState& l, const LevelFluid& fluid, const Descents& descent
                     .age = p.age(),
                     .waiting = p.waiting(),
                     .wish = l.wish.data(),
-                    .gone = l.gone.data()});
+                    .gone = l.gone.data(),
+                    .frames = std::max(1, l.turns.frames_since)});
   if (l.rules.merge_keeps_steps) {
     for_each_team("keep steps", n,
                   KeepSteps{.position = p.position(),

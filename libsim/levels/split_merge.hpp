@@ -55,6 +55,8 @@ void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents&
 /// Makes the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
 void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 
+/// A frame in which nothing splits or merges.
+void grow_older(LevelState& levels, const LevelView& particles);
 /// A whole frame's splits and merges; levels.changed says whether there were any.
 void split_and_merge(LevelState& levels, const LevelFluid& fluid, Particles& particles);
 

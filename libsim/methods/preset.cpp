@@ -25,6 +25,7 @@ Readings readings_of(Preset preset) {
   out.gradient = GradientReach::TwoSupports;
   out.temporal_follow = 1;
   out.temporal_period_frames = 1;
+  out.levels_period_frames = 1;
   out.calm_out_of_view = false;
   out.dimensionless = false;
   out.normalisation = Normalisation::MinMax;

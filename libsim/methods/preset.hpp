@@ -44,8 +44,8 @@ struct Readings {
   /// Eq. 6: share of the way to the new value that the temporal feature goes in a frame; 1 = all of it. In
   /// still water 0.3 makes a third fewer splits than 1, and 0.1 less than half as many.
   double temporal_follow = 0.2;
-  /// The temporal feature and the range of Eq. 9 are measured anew every so many frames, and followed as far
-  /// as in each of them; acuity and manifold are of every frame, so that a saccade tells at once. >= 1
+  /// The temporal feature and the range of Eq. 9 are measured anew after so many frames at the earliest, and
+  /// followed as far as in each of them; acuity and manifold are of every turn of the levels. >= 1
   int temporal_period_frames = 2;
   /// Eq. 6: differences times h_i, without unit; false leaves 1/m.
   bool dimensionless = true;
@@ -65,6 +65,12 @@ struct Readings {
   double gaze_hold_s = 0.5;
 
   // Algorithms 1 and 2: levels
+  /// Saliency, splits and merges have a turn in every so many frames. >= 1
+  int levels_period_frames = 4;
+  /// They have one at once, and in each of the next frames, when a gaze has turned by more than this since
+  /// the last turn: what is looked at becomes fine as soon as it can.
+  double saccade_deg = 2;
+  int saccade_frames = 8;
   /// Targets of neighbours differ by one level at most.
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for each split.

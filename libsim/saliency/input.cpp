@@ -62,6 +62,11 @@ Vec3d direction_of(const Gaze& gaze) {
 
 bool is_zero(const Vec3d& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
+Vec3d axis_of(const View& view) {
+  const Mat4 pose = rigid_inverse(view.view);
+  return {-pose[8], -pose[9], -pose[10]};
+}
+
 Vec3 narrow(const Vec3d& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
@@ -91,26 +96,27 @@ void SaliencyInput::OneEye::take(const GlPicture& shared) {
   picture = {depth.data(), normal.data(), 4, shared.width, shared.height, shared.radius_scale};
 }
 
-bool SaliencyInput::look(const Looks& looks) {
+bool SaliencyInput::look(const Looks& looks, bool pictures) {
   if (looks.eyes.empty() || looks.eyes.size() > Eyes::most) {
     throw base::Error("look", std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
   }
   for (const auto& look : looks.eyes) check(look);
-  for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
+  for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k) {
     const GlPicture* shared = looks.eyes[k].shared;
     if (shared && !eyes_[k].sharing.accept({shared->depth, shared->normal})) return false;
   }
   // All at once, before the copies: GL takes its turn once.
-  for (std::size_t k = 0; k < looks.eyes.size(); ++k)
+  for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k)
     if (looks.eyes[k].shared) eyes_[k].sharing.map();
   count_ = static_cast<int>(looks.eyes.size());
-  seen_ = {};
+  if (pictures) seen_ = {};
   for (std::size_t k = 0; k < looks.eyes.size(); ++k) {
     const EyeLook& look = looks.eyes[k];
     OneEye& eye = eyes_[k];
     eye.gaze = look.gaze;
     eye.view = look.view;
     eye.visual_scale = look.visual_scale;
+    if (!pictures) continue;
     eye.picture = {};
     const PictureWay way = way_of(look);
     if (way == PictureWay::None) continue;
@@ -124,6 +130,39 @@ bool SaliencyInput::look(const Looks& looks) {
     seen_.way = first ? way : std::max(seen_.way, way);
   }
   return true;
+}
+
+double SaliencyInput::OneEye::turned_deg(const Gaze& to, const View& by) const {
+  if (is_zero(marked)) return 180;
+  Vec3d now = direction_of(to);
+  if (is_zero(now)) {
+    if (marked_valid) return 0;
+    now = axis_of(by);
+  }
+  const double cosine = now[0] * marked[0] + now[1] * marked[1] + now[2] * marked[2];
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::acos(-1.0);
+}
+
+double SaliencyInput::turned_deg(const Looks& looks) const {
+  double most = 0;
+  for (std::size_t k = 0; k < looks.eyes.size() && k < eyes_.size(); ++k)
+    most = std::max(most, eyes_[k].turned_deg(looks.eyes[k].gaze, looks.eyes[k].view));
+  return most;
+}
+
+double SaliencyInput::turned_deg() const {
+  double most = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k)
+    most = std::max(most, eyes_[k].turned_deg(eyes_[k].gaze, eyes_[k].view));
+  return most;
+}
+
+void SaliencyInput::mark_gazes() {
+  for (auto& eye : eyes_) {
+    const Vec3d direction = direction_of(eye.gaze);
+    eye.marked_valid = !is_zero(direction);
+    eye.marked = eye.marked_valid ? direction : axis_of(eye.view);
+  }
 }
 
 void SaliencyInput::give_back() {

@@ -19,10 +19,16 @@ struct Eyes {
 
 class SaliencyInput {
  public:
-  /// Takes gazes and cameras and copies the pictures. False, and nothing is taken, when a picture lies in GL
-  /// buffers that cannot be shared. base::Error: no eye or more than two, a camera that is not finite, a
-  /// G-buffer whose arrays are not whole.
-  bool look(const Looks& looks);
+  /// Takes gazes and cameras and copies the pictures; without `pictures` the last ones stay. False, and
+  /// nothing is taken, when a picture lies in GL buffers that cannot be shared. base::Error: no eye or more
+  /// than two, a camera that is not finite, a G-buffer whose arrays are not whole.
+  bool look(const Looks& looks, bool pictures = true);
+  /// Degrees by which a gaze has turned since mark_gazes(), in these looks or in the last ones: the larger of
+  /// two eyes. Without a gaze the view's axis counts. One that gets lost has not turned; before the first
+  /// mark all have by 180.
+  double turned_deg(const Looks& looks) const;
+  double turned_deg() const;
+  void mark_gazes();
   /// Gives GL the buffers of the pictures back, which look() keeps. They must be back before GL draws.
   void give_back();
   /// The eye of a program that never calls look().
@@ -49,6 +55,8 @@ class SaliencyInput {
     Gaze gaze;
     View view;
     double visual_scale = 1;
+    Vec3d marked{};  ///< direction at the last mark; 0: there was none
+    bool marked_valid = false;
     Vec3d last_direction{};  ///< of the last valid gaze; 0 when there was none
     double lost_s = 0;       ///< since then
     View picture_view;
@@ -59,7 +67,7 @@ class SaliencyInput {
     template <class Archive>
     void keep(Archive& archive) {
       bool there = picture.depth != nullptr;
-      archive(gaze, view, visual_scale, last_direction, lost_s, picture_view, there);
+      archive(gaze, view, visual_scale, marked, marked_valid, last_direction, lost_s, picture_view, there);
       if (!there) return;
       archive(picture.normal_stride, picture.width, picture.height, picture.radius_scale, depth, normal);
       if constexpr (Archive::reads) {
@@ -72,6 +80,7 @@ class SaliencyInput {
         picture.normal = normal.data();
       }
     }
+    double turned_deg(const Gaze& to, const View& by) const;
     void take(const GBuffer& seen);
     void take(const GlPicture& shared);
   };

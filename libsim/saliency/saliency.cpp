@@ -1,5 +1,6 @@
 #include "libsim/saliency/saliency.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libsim/particles/calm.hpp"
@@ -36,8 +37,10 @@ struct FollowUnrest {
   }
 };
 
-/// The share of the way that one step goes instead of as many of `share` each.
-float in_one_step(double share, int steps) { return static_cast<float>(1 - std::pow(1 - share, steps)); }
+/// The share of the way that one step goes instead of as many of `share` each, at least one.
+float in_one_step(double share, int steps) {
+  return static_cast<float>(1 - std::pow(1 - share, std::max(steps, 1)));
+}
 
 /// f_T gamma_t of this frame, and what has been followed of it.
 void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
@@ -52,17 +55,22 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
                           .velocity = fluid.velocity,
                           .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
                                                static_cast<double>(fluid.finest_support) / 2),
-                          .share = in_one_step(p.temporal_follow, p.temporal_period_frames),
+                          .share = in_one_step(p.temporal_follow, state.frames_since),
                           .floor = static_cast<float>(p.calm_floor)});
   }
 }
 
 }  // namespace
 
+void SaliencyState::begin_frame(LevelTurns& turns, double dt_s) {
+  turns.begin_frame(readings, input.turned_deg());
+  look_around(dt_s);
+  if (turns.due) input.mark_gazes();
+}
+
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
   state.combined.resize(static_cast<std::size_t>(fluid.n));
-  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
   const bool anew = !fluid.unrest || state.due();
   if (anew) measure_unrest(state, fluid);
   const float* unrest = fluid.unrest ? fluid.unrest : state.temporal.data();
@@ -70,7 +78,7 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
                    fluid.n);
   if (anew) {
     state.normaliser.update(state.combined, fluid.level, fluid.n, p.normalisation,
-                            in_one_step(SaliencyNormaliser::follow, p.temporal_period_frames),
+                            in_one_step(SaliencyNormaliser::follow, state.frames_since),
                             static_cast<float>(p.saliency_floor));
   }
   state.frames_since = anew ? 1 : state.frames_since + 1;
@@ -80,7 +88,6 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
 
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
-  state.eyes = state.input.next_frame(static_cast<double>(fluid.frame_dt), p.gaze_hold_s);
   const float coarsest_support =
       fluid.finest_support * std::cbrt(std::exp2(static_cast<float>(state.levels - 1)));
   gaze_to_levels(feature_numbers(p).acuity, state.eyes, fluid.position, coarsest_support, state.levels,

@@ -2,6 +2,7 @@
 /// Visual saliency of particles, from eyes and fluid to target levels (paper 3.2): what persists between
 /// frames and the two ways to a level.
 
+#include "libsim/methods/level_turns.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/saliency/features.hpp"
 #include "libsim/saliency/gradients.hpp"
@@ -15,10 +16,14 @@ struct SaliencyState {
   SaliencyInput input;
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
-  Eyes eyes;                        ///< of the last evaluation
-  int frames_since = 0;             ///< the temporal feature was measured; 0 = it never was
+  Eyes eyes;                        ///< of the coming evaluation
+  int frames_since = 0;             ///< the temporal feature was measured; 0: it never was
   Array<float> temporal, combined;  ///< f_T gamma_t of this frame alone, and F
 
+  /// Where the eyes look in the coming frame of dt_s seconds.
+  void look_around(double dt_s) { eyes = input.next_frame(dt_s, readings.gaze_hold_s); }
+  /// The same, and whether levels have a turn in it.
+  void begin_frame(LevelTurns& turns, double dt_s);
   /// Does the coming evaluation measure the temporal feature?
   bool due() const { return frames_since == 0 || frames_since >= readings.temporal_period_frames; }
   std::size_t bytes() const {
@@ -36,7 +41,6 @@ struct SaliencyFluid {
   int n = 0;
   float finest_support = 0;  ///< h_*, m
   float gravity = 0;         ///< m/s2
-  float frame_dt = 0;        ///< s
   /// f_T gamma_t followed over frames, NaN where not known yet; nullptr: this frame's alone.
   float* unrest = nullptr;
   float* saliency = nullptr;

@@ -44,6 +44,7 @@ class FluidSimulation final : public Simulation {
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
     state_.levels.rules = LevelRules(options.readings, options.levels);
+    state_.levels.turns.every_frame = options.forced_targets.has_value();
     if (options.forced_targets) force_targets(*options.forced_targets);
     state_.activation.rules = ActivationRules(options.readings);
     state_.activation.seed = options.temporal.seed;
@@ -72,13 +73,9 @@ class FluidSimulation final : public Simulation {
     // GL has drawn: what the coming frame is drawn from changes hands now, not in a turn of its own.
     gl_.map_again();
     if (!follows_gaze()) return true;
-    if (follows_picture()) return state_.saliency.input.look(looks);
-    Looks gazes = looks;
-    for (EyeLook& eye : gazes.eyes) {
-      eye.seen = nullptr;
-      eye.shared = nullptr;
-    }
-    return state_.saliency.input.look(gazes);
+    SaliencyInput& input = state_.saliency.input;
+    return input.look(looks, follows_picture() && state_.levels.turns.would_be(state_.saliency.readings,
+                                                                               input.turned_deg(looks)));
   }
 
   bool follows_picture() const override {
@@ -94,6 +91,7 @@ class FluidSimulation final : public Simulation {
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
     set_substeps(substeps_taken_.taken);
+    if (follows_gaze()) state_.saliency.begin_frame(state_.levels.turns, frame_dt());
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
@@ -103,6 +101,7 @@ class FluidSimulation final : public Simulation {
     compression_.frame_ended(tally.extremes.compression());
     // Longer lists lie elsewhere: what they held is gone.
     if (state_.neighbours.grow(tally.lists)) state_.lists_hold = false;
+    state_.levels.turns.end_frame();
     ++frame_;
   }
 

@@ -32,7 +32,9 @@ void add(std::ostream& text, const Readings& r) {
        << r.saliency_floor << ' ' << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1]
        << ' ' << r.split_offset[2] << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap
        << ' ' << r.merge_dead_band << ' ' << r.kick_filter << ' ' << r.longest_rest_frames << ' '
-       << r.least_work_frames << ' ' << r.inherit_cell_spacings << ' ' << r.inactive_damping << '\n';
+       << r.least_work_frames << ' ' << r.inherit_cell_spacings << ' ' << r.inactive_damping << ' '
+       << r.levels_period_frames << ' ' << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed
+       << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
 }
 
 /// A scene that no file describes has no hash: what shapes a run stands here too.

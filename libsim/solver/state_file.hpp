@@ -11,7 +11,7 @@
 namespace sim {
 
 /// Another layout of the body has another number.
-inline constexpr int state_file_format = 2;
+inline constexpr int state_file_format = 3;
 
 /// SHA-256 over what a state belongs to: scene, method, n_*, back end, levels, readings and numbers of the
 /// solver. Two runs with one key go on alike from one state.

@@ -35,6 +35,7 @@ struct SolverParameters {
   CentralPull pull;           ///< beside gravity
   float dt = 1.0f / 180;      ///< substep, s
   int substeps = 3;           ///< a frame
+  double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;         ///< constraint projections a substep
   /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
   float relaxation = 0.01f;

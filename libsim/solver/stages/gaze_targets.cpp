@@ -5,11 +5,9 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 SaliencyFluid fluid_of(FluidState& state, Reads<Column::Position> p, float* saliency, std::uint8_t* target) {
-  const auto& k = state.parameters;
   return {.position = p.position(),
           .n = p.size(),
           .finest_support = state.finest_support,
-          .frame_dt = k.dt * static_cast<float>(k.substeps),
           .saliency = saliency,
           .target = target,
           .guards = state.guard()};
@@ -18,6 +16,7 @@ SaliencyFluid fluid_of(FluidState& state, Reads<Column::Position> p, float* sali
 using Columns = ColumnView<columns(Column::Position), columns(Column::Saliency, Column::Target)>;
 
 void run(FluidState& state, Columns p) {
+  if (!state.levels.turns.due) return;
   evaluate_gaze(state.saliency, fluid_of(state, p, p.saliency(), p.target()));
 }
 
@@ -29,6 +28,7 @@ void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& sali
   saliency.resize(size);
   target.resize(size);
   const Reads<Column::Position> p(state.particles);
+  observer.look_around(state.parameters.frame_s());
   evaluate_gaze(observer, fluid_of(state, p, saliency.data(), target.data()));
 }
 

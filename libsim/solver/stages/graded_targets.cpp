@@ -54,6 +54,7 @@ using Columns = ColumnView<columns(Column::Position, Column::Level, Column::Targ
                            columns(Column::Target), columns(Column::Saliency)>;
 
 void run(FluidState& state, Columns p) {
+  if (!state.levels.turns.due) return;
   auto& graded = state.levels.graded;
   const auto& rules = state.levels.rules;
   if (rules.dead_band > 0 && p.has(Column::Saliency)) {

@@ -19,7 +19,6 @@ SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
           .n = p.size(),
           .finest_support = state.finest_support,
           .gravity = k.gravity,
-          .frame_dt = k.dt * static_cast<float>(k.substeps),
           .guards = state.guard()};
 }
 
@@ -46,6 +45,10 @@ using Columns =
                SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target)>;
 
 void run(FluidState& state, Columns p) {
+  if (!state.levels.turns.due) {
+    ++state.saliency.frames_since;
+    return;
+  }
   recall_surroundings(state, p, state.saliency.due());
   SaliencyFluid fluid = fluid_of(state, p);
   fluid.unrest = p.unrest();
@@ -57,6 +60,7 @@ void run(FluidState& state, Columns p) {
 using PartsView = ColumnView<columns(Column::Position, Column::Unrest), columns(Column::SaliencyParts)>;
 
 void keep_parts(FluidState& state, PartsView p) {
+  if (!state.levels.turns.due) return;
   SaliencyState& s = state.saliency;
   combine_features(feature_numbers(s.readings), s.eyes, p.position(), p.unrest(), s.combined.data(),
                    p.saliency_parts(), p.size());
@@ -78,6 +82,7 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
   fluid.saliency = saliency.data();
   fluid.target = target.data();
   fluid.parts = parts.data();
+  observer.look_around(state.parameters.frame_s());
   evaluate_saliency(observer, fluid);
   state.lists_hold = false;
 }

@@ -6,6 +6,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 void run(FluidState& state, LevelView p) {
+  if (!state.levels.turns.due) return grow_older(state.levels, p);
   const LevelFluid fluid{.particles = p,
                          .neighbours = state.particle_neighbours(),
                          .last_active = state.last_active(),

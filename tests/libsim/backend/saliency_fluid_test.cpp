@@ -106,6 +106,7 @@ Seen prepare(const State& state, const Looking& from) {
 std::vector<int> levels_of(Seen& seen) {
   seen.looks.eyes[0].seen = &seen.picture;
   seen.fluid.saliency.input.look(seen.looks);
+  seen.fluid.saliency.look_around(1.0 / 60);
   evaluate_saliency(seen.fluid.saliency, seen.fluid.view());
   return seen.fluid.levels();
 }
@@ -148,6 +149,7 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
   seen.looks.eyes[0].seen = &seen.picture;
   const auto next = [&] {
     seen.fluid.saliency.input.look(seen.looks);
+    seen.fluid.saliency.look_around(1.0 / 60);
     evaluate_saliency(seen.fluid.saliency, fluid);
     return unrest.to_host();
   };

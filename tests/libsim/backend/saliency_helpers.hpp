@@ -156,7 +156,6 @@ struct Fluid {
             p.size(),
             state.finest_support,
             state.parameters.gravity,
-            1.0f / 60,
             nullptr,
             s.data(),
             target.data(),

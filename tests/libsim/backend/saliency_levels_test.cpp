@@ -182,6 +182,7 @@ SIM_TEST(GazeLevels, AreFinestInTheConeAndCoarsestBeyondItsBand) {
   Fluid fluid = fluid_of(points, std::vector<Vec4>(points.size(), Vec4{0, 0, 0, 0}), {}, 0.3f);
   // The sort has changed the order: judge by place.
   fluid.saliency.input.look({{{{{0, 0, 0}, {0, 0, -1}, true}, view, nullptr}}});
+  fluid.saliency.look_around(1.0 / 60);
   evaluate_gaze(fluid.saliency, fluid.view());
   const auto places = fluid.points();
   const auto levels = fluid.levels();
