@@ -70,7 +70,7 @@ struct Readings {
   /// They have one at once, and in each of the next frames, when a gaze has turned by more than this since
   /// the last turn: what is looked at becomes fine as soon as it can.
   double saccade_deg = 2;
-  int saccade_frames = 8;
+  int saccade_frames = 5;
   /// Targets of neighbours differ by one level at most.
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for each split.

@@ -78,7 +78,7 @@ void a_saccade_does_not_wait(Backend backend) {
     std::vector<double> shares[2];
     for (const int period : {1, 4}) {
       const auto fluid = make(backend, method, period);
-      for (int frame = 0; frame < 42; ++frame) {
+      for (int frame = 0; frame < 30; ++frame) {
         fluid->look({{eye_at(2)}});
         fluid->step_frame();
       }
