@@ -149,9 +149,17 @@ TEST(TruthFoam, Beta) {
   rate_comes_back({.beta = 0.67});
 }
 
+TEST(TruthFoamGpu, RateComesBack) {
+  NEEDS_EFFECTS;
+  rate_comes_back({.backend = Backend::Cuda});
+  rate_comes_back({.level = 3, .method = MethodKind::LoRes, .backend = Backend::Cuda});
+  rate_comes_back({.level = 3, .method = MethodKind::Ours, .targets = core, .backend = Backend::Cuda});
+  rate_comes_back({.beta = 0.67, .backend = Backend::Cuda});
+}
+
 /// Volume of foam of SingleDam at n_* = 1k over two seconds, m3, with the numbers that foam usually has. Runs
 /// part by chance: the mean of two that differ by a hundredth in their steps.
-double dam_volume(MethodKind method) {
+double dam_volume(MethodKind method, Backend backend) {
   double sum = 0;
   for (const double step : {0.995, 1.005}) {
     auto scene = sim::read_scene("data/scenes/single_dam.toml");
@@ -160,6 +168,7 @@ double dam_volume(MethodKind method) {
     scene.effects = {foam};
     sim::SimulationOptions options;
     options.method = method;
+    options.backend = backend;
     options.n_star = 1024;
     options.frame_dt_s = step * scene.frame_dt_s;
     if (sim::traits_of(method).temporal) options.temporal.fixed_tau = -6;
@@ -171,18 +180,25 @@ double dam_volume(MethodKind method) {
   return sum;
 }
 
-TEST(TruthFoamSlow, FineCoarseAndMixedWaterMakeTheSameVolume) {
-  NEEDS_EFFECTS;
-  const double hi = dam_volume(MethodKind::HiRes);
-  const double lo = dam_volume(MethodKind::LoRes);
-  const double ours = dam_volume(MethodKind::Ours);
-  const double tsp = dam_volume(MethodKind::OursTsp);
+void all_make_the_same_volume(Backend backend) {
+  const double hi = dam_volume(MethodKind::HiRes, backend);
+  const double lo = dam_volume(MethodKind::LoRes, backend);
+  const double ours = dam_volume(MethodKind::Ours, backend);
+  const double tsp = dam_volume(MethodKind::OursTsp, backend);
   std::printf("foam of SingleDam: HiRes %.2f m3; over it LoRes %.3f, Ours %.3f, Ours-TSp %.3f\n", hi, lo / hi,
               ours / hi, tsp / hi);
   EXPECT_GT(hi, 1);
   EXPECT_NEAR(lo / hi, 1, 0.2);
   EXPECT_NEAR(ours / hi, 1, 0.2);
   EXPECT_NEAR(tsp / hi, 1, 0.2);
+}
+TEST(TruthFoamSlow, FineCoarseAndMixedWaterMakeTheSameVolume) {
+  NEEDS_EFFECTS;
+  all_make_the_same_volume(Backend::Cpu);
+}
+TEST(TruthFoamGpu, FineCoarseAndMixedWaterMakeTheSameVolume) {
+  NEEDS_EFFECTS;
+  all_make_the_same_volume(Backend::Cuda);
 }
 
 }  // namespace

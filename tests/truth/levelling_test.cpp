@@ -83,6 +83,13 @@ TEST(TruthLevelling, ThickFluidThatRestsInTurnsComesToLevel) {
   EXPECT_NEAR(slope_left({.beta = 0.67}), 0, flat);
 }
 
+TEST(TruthLevellingGpu, ThickFluidComesToLevel) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(slope_left({.backend = Backend::Cuda}), 0, flat);
+  EXPECT_NEAR(slope_left({.level = 3, .method = MethodKind::LoRes, .backend = Backend::Cuda}), 0, flat);
+  EXPECT_NEAR(slope_left({.beta = 0.67, .backend = Backend::Cuda}), 0, flat);
+}
+
 /// How fast a cell of Taylor and Green's vortices decays in a third of a second, over what its viscosity of
 /// 0.1 m2/s says.
 double cell_back(const Tank& tank, double speed) {
