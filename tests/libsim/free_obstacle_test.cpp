@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "libsim/scene/effects.hpp"
 #include "libsim/scene/obstacle.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -17,6 +18,9 @@ using sim::ObstacleMotion;
 using sim::ObstacleShape;
 using testing::AllOf;
 using testing::HasSubstr;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 Obstacle free_sphere(double density) {
   Obstacle out;
@@ -122,36 +126,77 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
 }
 
 /// Water + body + walls: what the body gained is what the water and the walls gave it.
-TEST(FreeObstacles, MomentumIsTheWatersAndTheWalls) {
-  for (const double density : {100.0, 500.0, 3000.0}) {
-    const auto scene = pool_with(free_sphere(density));
-    auto options = options_of();
-    options.wall_impulse = true;
-    options.substeps = 3;
-    const auto fluid = sim::make_simulation(scene, options);
-    auto before = fluid->read_obstacles().at(0);
-    const double mass = mass_of(scene.obstacles[0]);
-    const double displaced = 1000 * sim::volume_m3(scene.obstacles[0]);
-    int walls = 0;
-    for (int frame = 0; frame < 40; ++frame) {
-      fluid->step_frame();
-      const auto now = fluid->read_obstacles().at(0);
-      const auto account = fluid->momentum();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double gained =
-            mass * (now.velocity_m_s[k] - before.velocity_m_s[k]) + now.owed_n_s[k] - before.owed_n_s[k];
-        const double weight = k == 1 ? -mass * 9.81 * scene.frame_dt_s : 0;
-        EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
-                    2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
-            << density << " frame " << frame;
-      }
-      EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
-      EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s)
-          << "it follows in the end";
-      walls += now.walls_n_s[1] != 0;
-      before = now;
+void momentum_is_the_waters_and_the_walls(const sim::Scene& scene) {
+  auto options = options_of();
+  options.wall_impulse = true;
+  options.substeps = 3;
+  const auto fluid = sim::make_simulation(scene, options);
+  auto before = fluid->read_obstacles().at(0);
+  const double density = scene.obstacles[0].density_kg_m3;
+  const double mass = mass_of(scene.obstacles[0]);
+  const double displaced = 1000 * sim::volume_m3(scene.obstacles[0]);
+  int walls = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    fluid->step_frame();
+    const auto now = fluid->read_obstacles().at(0);
+    const auto account = fluid->momentum();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double gained =
+          mass * (now.velocity_m_s[k] - before.velocity_m_s[k]) + now.owed_n_s[k] - before.owed_n_s[k];
+      const double weight = k == 1 ? -mass * 9.81 * scene.frame_dt_s : 0;
+      EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
+                  2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
+          << density << " frame " << frame;
     }
-    EXPECT_EQ(walls > 0, density > 1000) << "the heavy one reaches the floor";
+    EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
+    EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s) << "it follows in the end";
+    walls += now.walls_n_s[1] != 0;
+    before = now;
+  }
+  EXPECT_EQ(walls > 0, density > 1000 && scene.effects.empty()) << "the heavy one reaches the floor";
+}
+
+TEST(FreeObstacles, MomentumIsTheWatersAndTheWalls) {
+  for (const double density : {100.0, 500.0, 3000.0})
+    momentum_is_the_waters_and_the_walls(pool_with(free_sphere(density)));
+}
+TEST(FreeObstacles, MomentumIsThatOfHoneyThatHolds) {
+  NEEDS_EFFECTS;
+  for (const double viscosity : {0.5, 5.0}) {
+    for (const double density : {100.0, 500.0, 3000.0}) {
+      auto scene = pool_with(free_sphere(density));
+      scene.viscosity_m2_s = 0;
+      scene.effects = {{sim::EffectKind::Viscosity, viscosity}};
+      momentum_is_the_waters_and_the_walls(scene);
+    }
+  }
+}
+
+/// Honey that turns takes a ball of any weight along, and the ball never turns faster than what is round it.
+TEST(FreeObstacles, HoneyThatTurnsSpinsABall) {
+  NEEDS_EFFECTS;
+  for (const double density : {100.0, 1000.0}) {
+    auto scene = pool_with(free_sphere(density), 1);
+    scene.gravity_m_s2 = 0;
+    scene.obstacles[0].start.centre_m[1] = 0.5;
+    scene.viscosity_m2_s = 0;
+    scene.effects = {{sim::EffectKind::Viscosity, 1}};
+    const auto fluid = sim::make_simulation(scene, options_of());
+    double fastest = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      auto state = fluid->read_state();
+      for (auto& p : state) {
+        p.vx_m_s = p.z_m - 0.5f;
+        p.vz_m_s = 0.5f - p.x_m;
+      }
+      fluid->put(state);
+      fluid->step_frame();
+      fastest = std::max(fastest, fluid->read_obstacles().at(0).spin_rad_s[1]);
+    }
+    const auto spin = fluid->read_obstacles().at(0).spin_rad_s;
+    EXPECT_GT(spin[1], 0.8) << density;
+    EXPECT_LT(fastest, 1.05) << density;
+    EXPECT_LT(std::hypot(spin[0], spin[2]), 0.1) << density;
   }
 }
 

@@ -1,5 +1,6 @@
 /// Friction: walls and obstacles slow what slides along them.
 
+#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -23,14 +24,6 @@ SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
     v = slowed(v, {0, 0, 0}, walls.planes[k].normal, way / d);
   }
   return v;
-}
-
-/// Face of a body over that of its layer at x: round a sphere a layer is larger than the face below.
-SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
-  if (body.radius == 0) return 1;
-  const float share = body.radius / (body.radius + at_least(distance, 0.0f));
-  const bool on_side = fabsf(body.to_body(x).y) < body.half.y;
-  return on_side ? share : share * share;
 }
 
 SIM_FN Vec3 slowed_by(const Solids& solids, Vec4 at, Vec3 v, float way) {
