@@ -18,6 +18,18 @@ Drop on_the_floor(Drop drop) {
   drop.height = 0;
   return drop;
 }
+/// The same on a box, four spacings high, that leaves half a radius to the walls.
+Drop on_a_box(Drop drop) {
+  drop = on_the_floor(drop);
+  drop.height = 4 * drop.spacing();
+  sim::Obstacle box;
+  box.shape = sim::ObstacleShape::Box;
+  box.size_m = {5 * drop.radius(), *drop.height, 5 * drop.radius()};
+  box.start.centre_m = {drop.tank() / 2, *drop.height / 2, drop.tank() / 2};
+  drop.obstacles = {box};
+  return drop;
+}
+
 /// Mean height over root mean square of the distance from the axis, of the drop and of a cap: neither asks
 /// how densely the drop is filled.
 double steepness(const Drop& drop, const State& state) {
@@ -126,12 +138,21 @@ void drops_that_the_floor_holds_less(Backend backend) {
   for (const double work : {blunt, upright})
     EXPECT_NEAR(adhesion_back(on_the_floor({.work = work, .backend = backend})), 1, 0.3) << work;
 }
+/// A box is as good as the floor.
+void drops_on_a_box(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const double work : {weak, strong})
+    EXPECT_NEAR(adhesion_back(on_a_box({.work = work, .backend = backend})), 1, within) << work;
+}
+
 TEST(TruthAdhesion, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cpu); }
 TEST(TruthAdhesion, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cpu); }
 TEST(TruthAdhesion, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cpu); }
+TEST(TruthAdhesion, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cpu); }
 TEST(TruthAdhesionSlow, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cpu); }
 TEST(TruthAdhesionGpu, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cuda); }
+TEST(TruthAdhesionGpu, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cuda); }
 TEST(TruthAdhesionGpu, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cuda); }
 

@@ -1,5 +1,6 @@
-/// Adhesion: walls pull at water near them.
+/// Adhesion: walls and obstacles pull at water near them.
 
+#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/effects/surface_energy.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
@@ -20,12 +21,14 @@ constexpr float pull_share = 0.75f;
 /// The rest of the work is the printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q
 /// < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
 /// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the
-/// work w, whatever its particles.
+/// work w, whatever its particles. An obstacle does the same along its normal, per area of its own.
+template <class Bodies>
 struct Adhesion {
   const Vec4* position;
   const float* density;
   const Vec4* normal;
   Walls walls;
+  Bodies bodies;
   Vec4* velocity;
   float held;      ///< dt sigma / rho_0 times the share of the pairs, m3/s
   float strength;  ///< dt w / rho_0, m3/s
@@ -40,11 +43,22 @@ struct Adhesion {
     for (int k = 0; k < walls.count; ++k) {
       const float q = walls.distance_in_h(k, xyz(at), at.w);
       if (q >= 1) continue;
-      const Vec3 away = walls.planes[k].normal;
-      const float pull = strength * per_g * sampled(q) + held * tied(q, s, dot(n, away));
-      v += -(pull / (at.w * at.w)) * away;
+      v += -pull(at.w, q, s, n, walls.planes[k].normal) * walls.planes[k].normal;
+    }
+    if constexpr (Bodies::there) {
+      for_bodies_within(bodies.solids, xyz(at), at.w, [&](int b, const Body& body, const Body::Near& near) {
+        const float q = at_least(near.distance / at.w, 0.0f);
+        const float share = face_share(body, xyz(at), near.distance / 2);  // of what lies between
+        const Vec3 change = -(share * pull(at.w, q, s, n, near.normal)) * near.normal;
+        v += change;
+        bodies.hear(b, at, change);
+      });
     }
     velocity[i] = with_w(v, 0);
+  }
+  /// Change of a particle's speed towards a wall, m/s.
+  SIM_FN float pull(float h, float q, float skin, Vec3 n, Vec3 away) const {
+    return (strength * per_g * sampled(q) + held * tied(q, skin, dot(n, away))) / (h * h);
   }
 
   /// f' = -c (1 - q^2)^4 and f'' = 8 c q (1 - q^2)^3, c = 315 / 256.
@@ -74,7 +88,17 @@ struct Adhesion {
 using Columns = ColumnView<columns(Column::Position, Column::Density, Column::Normal, Column::Velocity),
                            columns(Column::Velocity)>;
 
-void run(FluidState& state, Columns p) {
+struct PullingBodies {
+  static constexpr bool there = true;
+  Solids solids;
+  BodyListener to;
+  SIM_FN void hear(int body, Vec4 at, Vec3 change) const {
+    if (to.sums) to.add(body, xyz(at), (solids.dt * mass_units_of(at.w, to.finest_support)) * change);
+  }
+};
+
+template <class Bodies>
+void launch(FluidState& state, Columns p, Bodies bodies) {
   // int_1/2^1 A and G in closed form: with B(x, y) Euler's beta function, A's moments about 3/4 are
   // B(1/2, 5/4) / (4 sqrt 2) and B(3/2, 5/4) / (64 sqrt 2); G = int A q^3 / 3.
   const double whole = std::beta(0.5, 1.25) / (4 * std::sqrt(2.0));
@@ -85,15 +109,21 @@ void run(FluidState& state, Columns p) {
   const float share = at_most(work / tension, 1.0f);
   const float rate = k.dt / k.rest_density;
   for_each("adhesion", p.size(),
-           Adhesion{.position = p.position(),
-                    .density = p.density(),
-                    .normal = p.normal(),
-                    .walls = state.walls,
-                    .velocity = p.velocity(),
-                    .held = share * share * tension * rate,
-                    .strength = pull_share * at_least(work - tension, 0.0f) * rate,
-                    .whole = static_cast<float>(whole),
-                    .per_g = static_cast<float>(1 / g)});
+           Adhesion<Bodies>{.position = p.position(),
+                            .density = p.density(),
+                            .normal = p.normal(),
+                            .walls = state.walls,
+                            .bodies = bodies,
+                            .velocity = p.velocity(),
+                            .held = share * share * tension * rate,
+                            .strength = pull_share * at_least(work - tension, 0.0f) * rate,
+                            .whole = static_cast<float>(whole),
+                            .per_g = static_cast<float>(1 / g)});
+}
+
+void run(FluidState& state, Columns p) {
+  if (!state.obstacles.there()) return launch(state, p, NoBodies{});
+  launch(state, p, PullingBodies{state.solids(), state.effects_listener()});
 }
 
 }  // namespace

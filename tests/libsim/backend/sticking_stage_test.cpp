@@ -1,4 +1,4 @@
-/// The effect viscosity at obstacles, on small crowds.
+/// The effects viscosity and adhesion at obstacles, on small crowds.
 
 #include <array>
 #include <cstring>
@@ -193,6 +193,73 @@ SIM_TEST(Sticking, AFreeBodyAndTheFluidKeepTheirMomentumHoweverFewTheSteps) {
         EXPECT_LT(length(v - ball().velocity), 0.2f);
       }
     }
+  }
+}
+
+/// Adhesion of this work beside a tension.
+void add_adhesion(FluidState& state, float tension, float work) {
+  state.parameters.effects.values[index_of(EffectKind::Cohesion)] = tension;
+  state.parameters.effects.values[index_of(EffectKind::Adhesion)] = work;
+}
+
+SIM_TEST(Sticking, AdhesionOfABoxIsThatOfAWall) {
+  NEEDS_EFFECTS;
+  for (const float s : {0.01f, 0.05f, 0.12f, 0.18f}) {
+    Vec3 v[2];
+    for (const bool wall : {false, true}) {
+      auto state = state_of({{s, 0, 0, 0.2f}}, true);
+      state.finest_support = 0.2f;
+      if (wall) {
+        state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
+      } else {
+        Body box = body_of({1, 1, 1}, 0);
+        box.centre = {-1, 0, 0};
+        state.obstacles.bodies.from_host({box});
+        state.obstacles.sums.resize(2);
+        state.obstacles.sums.zero();
+      }
+      add_adhesion(state, 20, 50);
+      state.particles.all().density.from_host({0.7f});
+      state.particles.all().normal.from_host({Vec4{0.4f, 0.3f, 0, 0}});
+      for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
+      v[wall] = xyz(state.particles.all().velocity.to_host()[0]);
+      if (wall) continue;
+      const BodySum told = state.obstacles.sums.to_host()[1];
+      EXPECT_NEAR(told.push.value().x, state.parameters.dt * v[0].x, 1e-6f);
+      EXPECT_NEAR(told.moment.value().z, 0, 1e-6f);
+    }
+    EXPECT_LT(v[1].x, 0);
+    EXPECT_LT(length(v[0] - v[1]), 1e-5f * length(v[1])) << s;
+  }
+}
+
+/// Taking water off a ball costs the work per face of the ball, whatever the particles: of what lies up to s
+/// rho_0 a(s) ((R + s)^3 - R^3) / (3 R^2) ds. 0.75 of it is the pull's.
+SIM_TEST(Sticking, TakingWaterOffABallCostsTheWorkPerItsFace) {
+  NEEDS_EFFECTS;
+  constexpr float radius = 0.3f, tension = 20, work = 50;
+  for (const float d : {0.05f, 0.1f}) {
+    constexpr int steps = 400;
+    const float h = 2 * d;
+    std::vector<Vec4> points;
+    for (int k = 0; k < steps; ++k)
+      points.push_back({0, radius + h * (static_cast<float>(k) + 0.5f) / steps, 0, h});
+    FluidState state;
+    auto& p = state.particles;
+    p.allocate(all_columns(), steps);
+    p.all().position.from_host(points);
+    p.all().velocity.zero();
+    p.all().density.from_host(std::vector<float>(steps, 1));
+    p.all().normal.zero();
+    state.obstacles.bodies.from_host({body_of({0, 0, 0}, radius)});
+    add_adhesion(state, tension, work);
+    for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
+    const auto v = p.all().velocity.to_host();
+    double sum = 0;
+    for (std::size_t i = 0; i < v.size(); ++i)
+      sum -= static_cast<double>(v[i].y / state.parameters.dt * h / steps *
+                                 (points[i].y * points[i].y * points[i].y - radius * radius * radius) / 3);
+    EXPECT_NEAR(1000 * sum / (0.09 * 0.75 * (work - tension)), 1, 0.02) << d;
   }
 }
 
