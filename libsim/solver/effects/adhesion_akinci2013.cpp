@@ -11,6 +11,33 @@ namespace {
 /// What the pull makes of its own work: calibrated by the contact angles of drops of level 0
 /// (docs/solver_notes.md).
 constexpr float pull_share = 0.75f;
+/// c of f below.
+constexpr float poly6_behind = 1.23046875f;
+
+/// What a round surface makes of a plane's f, whose second derivatives lie along the normal alone: with the
+/// curvature k = h / R about one axis or two, f' becomes f' (1 + k q)^(-1/2) or f' / (1 + k q), and f'' has
+/// f' k / (1 + k q) across the normal.
+struct Rounding {
+  float share = 1, share_slope = 0, turn = 0;
+  Vec3 straight{0, 0, 0};  ///< along which the surface is not round
+
+  SIM_FN Rounding(const Body& body, Vec3 x, float q, float h) {
+    if (body.radius == 0) return;
+    const float k = h / body.radius;
+    const float whole = 1 / (1 + k * q);
+    turn = k * whole;
+    const bool on_side = fabsf(body.to_body(x).y) < body.half.y;
+    share = on_side ? sqrtf(whole) : whole;
+    share_slope = (on_side ? -0.5f : -1.0f) * turn * share;
+    if (on_side) straight = turned(body.turn, {0, 1, 0});
+  }
+  SIM_FN Vec3 across(Vec3 n) const { return n - dot(n, straight) * straight; }
+};
+
+/// Change of a velocity by a body.
+struct Pulled {
+  Vec3 along, across;
+};
 
 /// A wall is water that stays: tension's pairs act between it and the water before it, where only the latter
 /// has a surface. For a plane their sum over the half space behind is
@@ -47,11 +74,7 @@ struct Adhesion {
     }
     if constexpr (Bodies::there) {
       for_bodies_within(bodies.solids, xyz(at), at.w, [&](int b, const Body& body, const Body::Near& near) {
-        const float q = at_least(near.distance / at.w, 0.0f);
-        const float share = face_share(body, xyz(at), near.distance / 2);  // of what lies between
-        const Vec3 change = -(share * pull(at.w, q, s, n, near.normal)) * near.normal;
-        v += change;
-        bodies.hear(b, at, change);
+        v += bodies.hear(b, at, pulled_by(body, at, near, s, n));
       });
     }
     velocity[i] = with_w(v, 0);
@@ -60,11 +83,28 @@ struct Adhesion {
   SIM_FN float pull(float h, float q, float skin, Vec3 n, Vec3 away) const {
     return (strength * per_g * sampled(q) + held * tied(q, skin, dot(n, away))) / (h * h);
   }
+  /// Change of its velocity by a body.
+  SIM_FN Pulled pulled_by(const Body& body, Vec4 at, const Body::Near& near, float skin, Vec3 n) const {
+    const float q = at_least(near.distance / at.w, 0.0f);
+    const Rounding round(body, xyz(at), q, at.w);
+    const float share = face_share(body, xyz(at), near.distance / 2);  // of what lies between
+    const float t = 1 - q * q;
+    const float slope = -poly6_behind * t * t * t * t;
+    const float bend = 8 * poly6_behind * q * t * t * t;
+    const float f1 = slope * round.share;
+    const float f2 = bend * round.share + slope * round.share_slope;
+    const float out = dot(n, near.normal);
+    const float along = -share * strength * per_g * sampled(q) +
+                        held * (pull_strength * skin * f1 - smoothing_strength * f2 * out);
+    const float scale = 1 / (at.w * at.w);
+    return {scale * along * near.normal,
+            -scale * held * smoothing_strength * f1 * round.turn * round.across(n - out * near.normal)};
+  }
 
   /// f' = -c (1 - q^2)^4 and f'' = 8 c q (1 - q^2)^3, c = 315 / 256.
   SIM_FN static float tied(float q, float skin, float normal) {
     const float t = 1 - q * q;
-    return 1.23046875f * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
+    return poly6_behind * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
   }
 
   /// With 4 q - 3 = sin t, A dq = cos^(3/2) t dt / (4 sqrt 2): Simpson's rule over t.
@@ -92,8 +132,14 @@ struct PullingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyListener to;
-  SIM_FN void hear(int body, Vec4 at, Vec3 change) const {
-    if (to.sums) to.add(body, xyz(at), (solids.dt * mass_units_of(at.w, to.finest_support)) * change);
+  /// Tension turns no body about an axis round which it is round: what acts across has no moment.
+  SIM_FN Vec3 hear(int body, Vec4 at, Pulled change) const {
+    if (to.sums) {
+      const float way = solids.dt * mass_units_of(at.w, to.finest_support);
+      to.add(body, xyz(at), way * change.along);
+      to.add(body, solids.bodies[body].centre, way * change.across);
+    }
+    return change.along + change.across;
   }
 };
 
