@@ -10,6 +10,7 @@
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
+#include "tests/libsim/mesh_shapes.hpp"
 
 namespace {
 
@@ -181,9 +182,14 @@ TEST(FreeObstacles, MomentumIsThatOfEffectsToo) {
 }
 
 /// Turning of a ball in water that turns at 1 /s, after half a second and at its fastest.
-void water_that_turns_spins_a_ball(const sim::Effect& effect) {
+void water_that_turns_spins_a_ball(const sim::Effect& effect, bool mesh = false) {
   for (const double density : {100.0, 1000.0}) {
-    auto scene = pool_with(free_sphere(density), 1);
+    Obstacle ball = free_sphere(density);
+    if (mesh) {
+      ball.shape = ObstacleShape::Mesh;
+      ball.mesh = std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
+    }
+    auto scene = pool_with(ball, 1);
     scene.gravity_m_s2 = 0;
     scene.obstacles[0].start.centre_m[1] = 0.5;
     scene.viscosity_m2_s = 0;
@@ -208,7 +214,7 @@ void water_that_turns_spins_a_ball(const sim::Effect& effect) {
 }
 TEST(FreeObstacles, HoneyThatTurnsSpinsABall) {
   NEEDS_EFFECTS;
-  water_that_turns_spins_a_ball({sim::EffectKind::Viscosity, 1});
+  for (const bool mesh : {false, true}) water_that_turns_spins_a_ball({sim::EffectKind::Viscosity, 1}, mesh);
 }
 TEST(FreeObstacles, FrictionOfWaterThatTurnsSpinsABall) {
   NEEDS_EFFECTS;
@@ -221,7 +227,8 @@ TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   brick.shape = ObstacleShape::Box;
   brick.radius_m = 0;
   brick.size_m = {0.4, 0.3, 0.5};
-  const auto scene = pool_with(brick);
+  auto scene = pool_with(brick);
+  if (sim::has_effects()) scene.effects = {{sim::EffectKind::Viscosity, 0.1}, {sim::EffectKind::Friction, 1}};
   auto options = options_of(sim::MethodKind::OursTsp);
   options.temporal.fixed_tau = -10;
   const auto whole = sim::make_simulation(scene, options);
@@ -261,6 +268,15 @@ TEST(FreeObstacles, CostNothingWhereNoneIs) {
               testing::Not(testing::AnyOf(HasSubstr("move bodies"), HasSubstr("push bodies"),
                                           HasSubstr("clamp and hear"), HasSubstr("fastest body"),
                                           HasSubstr("an obstacle is free"))));
+  if (!sim::has_effects()) return;
+  // Nobody asks what a fixed one gives.
+  const auto hears = testing::AnyOf(HasSubstr("hear sticking"), HasSubstr("hear free bodies"));
+  scene.effects = {{sim::EffectKind::Viscosity, 1}};
+  EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
+  scene.obstacles[0].motion = ObstacleMotion::Free;
+  EXPECT_THAT(launches(scene), hears);
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = 0;
+  EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
 }
 
 TEST(FreeObstacles, BeginWithTheRun) {

@@ -237,6 +237,14 @@ double adhesion_to_a_ball(const Drop& drop) {
       drop.work, all.size(), thrown, theta * 180 / pi, back);
   return back;
 }
+void drops_on_a_box_of_any_level(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(
+      adhesion_back(on_a_box({.level = 3, .method = MethodKind::LoRes, .work = weak, .backend = backend})), 1,
+      within);
+  EXPECT_NEAR(adhesion_back(on_a_box(half_fine(weak, backend)), 3), 1, within);
+  EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = weak, .backend = backend})), 1, within);
+}
 /// The smaller the ball over the spacing, the more it holds a drop.
 void a_drop_on_a_ball(Backend backend) {
   NEEDS_EFFECTS;
@@ -248,10 +256,12 @@ TEST(TruthAdhesion, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_t
 TEST(TruthAdhesion, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cpu); }
 TEST(TruthAdhesion, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cpu); }
 TEST(TruthAdhesion, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cpu); }
+TEST(TruthAdhesionSlow, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cpu); }
 TEST(TruthAdhesionSlow, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cpu); }
 TEST(TruthAdhesionGpu, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cuda); }
 TEST(TruthAdhesionGpu, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cuda); }
+TEST(TruthAdhesionGpu, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cuda); }
 TEST(TruthAdhesionGpu, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cuda); }

@@ -263,5 +263,24 @@ SIM_TEST(Sticking, TakingWaterOffABallCostsTheWorkPerItsFace) {
   }
 }
 
+/// Tension's part acts across the normal too where a surface is round, and turns no ball.
+SIM_TEST(Sticking, AdhesionTurnsNoBall) {
+  NEEDS_EFFECTS;
+  auto state = state_of({{0.35f, 0, 0, 0.2f}}, true);
+  state.finest_support = 0.2f;
+  state.obstacles.bodies.from_host({body_of({0, 0, 0}, 0.3f)});
+  state.obstacles.sums.resize(2);
+  state.obstacles.sums.zero();
+  add_adhesion(state, 20, 20);
+  state.particles.all().density.from_host({0.7f});
+  state.particles.all().normal.from_host({Vec4{0, 0.5f, 0, 0}});
+  for (const Stage& stage : passes_of(EffectKind::Adhesion)) stage.run(state);
+  const Vec3 v = xyz(state.particles.all().velocity.to_host()[0]);
+  EXPECT_GT(v.y, 1e-3f) << "back into the water";
+  const BodySum told = state.obstacles.sums.to_host()[1];
+  EXPECT_LT(length(told.push.value() - state.parameters.dt * v), 1e-6f);
+  EXPECT_EQ(length(told.moment.value()), 0);
+}
+
 }  // namespace
 }  // namespace sim::SIM_BACKEND

@@ -118,16 +118,18 @@ void a_sphere_where_some_rest(Backend backend) {
   EXPECT_NEAR(torque_of({.beta = 0.67, .backend = backend}), torque, within);
 }
 
-TEST(TruthSticking, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cpu); }
-TEST(TruthSticking, ASphereThatTurnsWhereSomeRestNeedsItsTorque) { a_sphere_where_some_rest(Backend::Cpu); }
-TEST(TruthStickingSlow, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
+TEST(TruthViscosityAtObstacles, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cpu); }
+TEST(TruthViscosityAtObstacles, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
+  a_sphere_where_some_rest(Backend::Cpu);
+}
+TEST(TruthViscosityAtObstaclesSlow, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
   a_sphere_among_mixed_levels(Backend::Cpu);
 }
-TEST(TruthStickingGpu, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cuda); }
-TEST(TruthStickingGpu, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
+TEST(TruthViscosityAtObstaclesGpu, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cuda); }
+TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
   a_sphere_where_some_rest(Backend::Cuda);
 }
-TEST(TruthStickingGpu, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
+TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
   a_sphere_among_mixed_levels(Backend::Cuda);
 }
 
