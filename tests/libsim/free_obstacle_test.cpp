@@ -148,6 +148,11 @@ void momentum_is_the_waters_and_the_walls(const sim::Scene& scene) {
       EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
                   2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
           << density << " frame " << frame;
+      const double counted = account.forces[k] + account.levels[k] + account.braked[k] +
+                             account.viscosity[k] + account.effects[k] + account.inherited[k] +
+                             account.unattributed[k] + account.walls_sum()[k] +
+                             account.obstacles.at(0).push[k];
+      EXPECT_NEAR(account.after[k] - account.before[k], counted, 1e-3) << density << " frame " << frame;
     }
     EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
     EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s) << "it follows in the end";
