@@ -242,8 +242,8 @@ void drops_on_a_box_of_any_level(Backend backend) {
   EXPECT_NEAR(
       adhesion_back(on_a_box({.level = 3, .method = MethodKind::LoRes, .work = weak, .backend = backend})), 1,
       within);
-  EXPECT_NEAR(adhesion_back(on_a_box(half_fine(weak, backend)), 3), 1, within);
-  EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = weak, .backend = backend})), 1, within);
+  EXPECT_NEAR(adhesion_back(on_a_box(half_fine(strong, backend)), 3), 1, within);
+  EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = strong, .backend = backend})), 1, within);
 }
 /// The smaller the ball over the spacing, the more it holds a drop.
 void a_drop_on_a_ball(Backend backend) {
