@@ -48,7 +48,9 @@ struct MomentumAccount {
   Vec3d levels{};     ///< splits and merges
   Vec3d braked{};     ///< by the limit of speed and the quarantine
   Vec3d viscosity{};  ///< 0 but for rounding, and for neighbours of particles that are not solved
-  Vec3d effects{};    ///< that the scene lists: walls, air, buoyancy, swirl; others 0 but for rounding
+  /// That the scene lists, but for what obstacles gave: walls, air, buoyancy, swirl, what the steps of
+  /// viscosity have left; others 0 but for rounding.
+  Vec3d effects{};
   Vec3d inherited{};  ///< by particles that were not solved in the frame (temporal acceleration)
   /// Of the constraint's push what no wall gave: the coarse pressure on cells is no pair force, particles
   /// that are not solved do not yield, and places are rounded.

@@ -17,6 +17,17 @@ struct FreeBody {
   Vec3 force_left, torque_left;  ///< what it has yet to follow
   Vec3 by_walls;                 ///< what walls gave it in this frame, m_* m/s
   BodySum counted;               ///< of this frame's sums, by the substeps before
+  BodySum counted_of_effects;    ///< the same of what effects gave
+};
+
+/// Velocity of the centre, m/s, and turning, rad/s.
+struct BodyTurn {
+  Vec3 along, round;
+};
+/// A free body in a system of equations for velocities (libsim/solver/effects/sticking.hpp).
+struct FreeRow {
+  BodyTurn gained, residual, direction, bent;
+  BodySum taken;  ///< from particles in one pass: momentum in place of ways
 };
 
 /// q turned by the way of a turn about the world's axes, rad.
@@ -36,6 +47,12 @@ SIM_FN Vec4 turned_by(Vec4 q, Vec3 way) {
 SIM_FN Vec3 spin_of(const FreeBody& free, Vec4 turn, Vec3 momentum) {
   const Vec3 own = turned(turned_back(turn), momentum);
   return turned(turn, {own.x / free.inertia.x, own.y / free.inertia.y, own.z / free.inertia.z});
+}
+
+/// The reverse: of a turning, rad/s.
+SIM_FN Vec3 momentum_of(const FreeBody& free, Vec4 turn, Vec3 spin) {
+  const Vec3 own = turned(turned_back(turn), spin);
+  return turned(turn, {own.x * free.inertia.x, own.y * free.inertia.y, own.z * free.inertia.z});
 }
 
 /// Turns a body for dt as nothing holds it, with the spin of the middle of the way.

@@ -72,7 +72,7 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     told = true;
   }
   if (!told) return;
-  o.sums.resize(o.bodies.size());
+  o.sums.resize(2 * o.bodies.size());
   o.sums.zero();
 }
 
@@ -86,9 +86,16 @@ void count_obstacles(const FluidState& state, MomentumAccount& account) {
     };
     return Vec3d{part(sum.x), part(sum.y), part(sum.z)};
   };
-  for (const BodySum& sum : state.obstacles.sums.to_host()) {
-    account.obstacles.push_back({vector(sum.push), vector(sum.moment)});
-    for (std::size_t k = 0; k < 3; ++k) account.unattributed[k] -= account.obstacles.back().push[k];
+  const std::vector<BodySum> sums = state.obstacles.sums.to_host();
+  const std::size_t count = sums.size() / 2;
+  for (std::size_t b = 0; b < count; ++b) {
+    const BodySum& by_effects = sums[count + b];
+    account.obstacles.push_back(
+        {vector(sums[b].push + by_effects.push), vector(sums[b].moment + by_effects.moment)});
+    for (std::size_t k = 0; k < 3; ++k) {
+      account.unattributed[k] -= vector(sums[b].push)[k];
+      account.effects[k] -= vector(by_effects.push)[k];
+    }
   }
 }
 

@@ -5,10 +5,12 @@
 
 #include <cstring>
 
+#include "libsim/scene/effects.hpp"
 #include "libsim/scene/obstacle.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
+#include "tests/libsim/mesh_shapes.hpp"
 
 namespace {
 
@@ -17,6 +19,9 @@ using sim::ObstacleMotion;
 using sim::ObstacleShape;
 using testing::AllOf;
 using testing::HasSubstr;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 Obstacle free_sphere(double density) {
   Obstacle out;
@@ -122,37 +127,103 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
 }
 
 /// Water + body + walls: what the body gained is what the water and the walls gave it.
-TEST(FreeObstacles, MomentumIsTheWatersAndTheWalls) {
-  for (const double density : {100.0, 500.0, 3000.0}) {
-    const auto scene = pool_with(free_sphere(density));
-    auto options = options_of();
-    options.wall_impulse = true;
-    options.substeps = 3;
-    const auto fluid = sim::make_simulation(scene, options);
-    auto before = fluid->read_obstacles().at(0);
-    const double mass = mass_of(scene.obstacles[0]);
-    const double displaced = 1000 * sim::volume_m3(scene.obstacles[0]);
-    int walls = 0;
-    for (int frame = 0; frame < 40; ++frame) {
-      fluid->step_frame();
-      const auto now = fluid->read_obstacles().at(0);
-      const auto account = fluid->momentum();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double gained =
-            mass * (now.velocity_m_s[k] - before.velocity_m_s[k]) + now.owed_n_s[k] - before.owed_n_s[k];
-        const double weight = k == 1 ? -mass * 9.81 * scene.frame_dt_s : 0;
-        EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
-                    2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
-            << density << " frame " << frame;
-      }
-      EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
-      EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s)
-          << "it follows in the end";
-      walls += now.walls_n_s[1] != 0;
-      before = now;
+void momentum_is_the_waters_and_the_walls(const sim::Scene& scene) {
+  auto options = options_of();
+  options.wall_impulse = true;
+  options.substeps = 3;
+  const auto fluid = sim::make_simulation(scene, options);
+  auto before = fluid->read_obstacles().at(0);
+  const double density = scene.obstacles[0].density_kg_m3;
+  const double mass = mass_of(scene.obstacles[0]);
+  const double displaced = 1000 * sim::volume_m3(scene.obstacles[0]);
+  int walls = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    fluid->step_frame();
+    const auto now = fluid->read_obstacles().at(0);
+    const auto account = fluid->momentum();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double gained =
+          mass * (now.velocity_m_s[k] - before.velocity_m_s[k]) + now.owed_n_s[k] - before.owed_n_s[k];
+      const double weight = k == 1 ? -mass * 9.81 * scene.frame_dt_s : 0;
+      EXPECT_NEAR(gained, now.walls_n_s[k] + weight - account.obstacles.at(0).push[k],
+                  2e-3 * mass * 9.81 * scene.frame_dt_s + 2e-3)
+          << density << " frame " << frame;
+      const double counted = account.forces[k] + account.levels[k] + account.braked[k] +
+                             account.viscosity[k] + account.effects[k] + account.inherited[k] +
+                             account.unattributed[k] + account.walls_sum()[k] +
+                             account.obstacles.at(0).push[k];
+      EXPECT_NEAR(account.after[k] - account.before[k], counted, 1e-3) << density << " frame " << frame;
     }
-    EXPECT_EQ(walls > 0, density > 1000) << "the heavy one reaches the floor";
+    EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the water got";
+    EXPECT_LT(std::abs(now.owed_n_s[1]), 4 * displaced * 9.81 * scene.frame_dt_s) << "it follows in the end";
+    walls += now.walls_n_s[1] != 0;
+    before = now;
   }
+  const bool honey = !scene.effects.empty() && scene.effects[0].kind == sim::EffectKind::Viscosity;
+  EXPECT_EQ(walls > 0, density > 1000 && !honey) << "the heavy one reaches the floor";
+}
+
+TEST(FreeObstacles, MomentumIsTheWatersAndTheWalls) {
+  for (const double density : {100.0, 500.0, 3000.0})
+    momentum_is_the_waters_and_the_walls(pool_with(free_sphere(density)));
+}
+TEST(FreeObstacles, MomentumIsThatOfEffectsToo) {
+  NEEDS_EFFECTS;
+  using sim::EffectKind;
+  const std::vector<std::vector<sim::Effect>> all{
+      {{EffectKind::Viscosity, 5}},
+      {{EffectKind::Friction, 1}},
+      {{EffectKind::Cohesion, 20}, {EffectKind::Adhesion, 30}},
+  };
+  for (const auto& effects : all) {
+    SCOPED_TRACE(sim::effects_in_words(effects));
+    for (const double density : {100.0, 3000.0}) {
+      auto scene = pool_with(free_sphere(density));
+      scene.viscosity_m2_s = 0;
+      scene.effects = effects;
+      momentum_is_the_waters_and_the_walls(scene);
+    }
+  }
+}
+
+/// Turning of a ball in water that turns at 1 /s, after half a second and at its fastest.
+void water_that_turns_spins_a_ball(const sim::Effect& effect, bool mesh = false) {
+  for (const double density : {100.0, 1000.0}) {
+    Obstacle ball = free_sphere(density);
+    if (mesh) {
+      ball.shape = ObstacleShape::Mesh;
+      ball.mesh = std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
+    }
+    auto scene = pool_with(ball, 1);
+    scene.gravity_m_s2 = 0;
+    scene.obstacles[0].start.centre_m[1] = 0.5;
+    scene.viscosity_m2_s = 0;
+    scene.effects = {effect};
+    const auto fluid = sim::make_simulation(scene, options_of());
+    double fastest = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      auto state = fluid->read_state();
+      for (auto& p : state) {
+        p.vx_m_s = p.z_m - 0.5f;
+        p.vz_m_s = 0.5f - p.x_m;
+      }
+      fluid->put(state);
+      fluid->step_frame();
+      fastest = std::max(fastest, fluid->read_obstacles().at(0).spin_rad_s[1]);
+    }
+    const auto spin = fluid->read_obstacles().at(0).spin_rad_s;
+    EXPECT_GT(spin[1], 0.8) << density;
+    EXPECT_LT(fastest, 1.05) << density;
+    EXPECT_LT(std::hypot(spin[0], spin[2]), 0.1) << density;
+  }
+}
+TEST(FreeObstacles, HoneyThatTurnsSpinsABall) {
+  NEEDS_EFFECTS;
+  for (const bool mesh : {false, true}) water_that_turns_spins_a_ball({sim::EffectKind::Viscosity, 1}, mesh);
+}
+TEST(FreeObstacles, FrictionOfWaterThatTurnsSpinsABall) {
+  NEEDS_EFFECTS;
+  for (const double drag : {1.0, 100.0}) water_that_turns_spins_a_ball({sim::EffectKind::Friction, drag});
 }
 
 TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
@@ -161,7 +232,8 @@ TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   brick.shape = ObstacleShape::Box;
   brick.radius_m = 0;
   brick.size_m = {0.4, 0.3, 0.5};
-  const auto scene = pool_with(brick);
+  auto scene = pool_with(brick);
+  if (sim::has_effects()) scene.effects = {{sim::EffectKind::Viscosity, 0.1}, {sim::EffectKind::Friction, 1}};
   auto options = options_of(sim::MethodKind::OursTsp);
   options.temporal.fixed_tau = -10;
   const auto whole = sim::make_simulation(scene, options);
@@ -201,6 +273,15 @@ TEST(FreeObstacles, CostNothingWhereNoneIs) {
               testing::Not(testing::AnyOf(HasSubstr("move bodies"), HasSubstr("push bodies"),
                                           HasSubstr("clamp and hear"), HasSubstr("fastest body"),
                                           HasSubstr("an obstacle is free"))));
+  if (!sim::has_effects()) return;
+  // Nobody asks what a fixed one gives.
+  const auto hears = testing::AnyOf(HasSubstr("hear sticking"), HasSubstr("hear free bodies"));
+  scene.effects = {{sim::EffectKind::Viscosity, 1}};
+  EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
+  scene.obstacles[0].motion = ObstacleMotion::Free;
+  EXPECT_THAT(launches(scene), hears);
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = 0;
+  EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
 }
 
 TEST(FreeObstacles, BeginWithTheRun) {

@@ -1,8 +1,7 @@
 /// Adhesion measured back from the contact angle of drops without gravity: W = sigma (1 + cos theta), Young
 /// and Dupre.
 
-#include "libsim/scene/effects.hpp"
-#include "tests/truth/truth_helpers.hpp"
+#include "tests/truth/drop_scene.hpp"
 
 namespace {
 
@@ -12,69 +11,33 @@ using sim::EffectKind;
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
-constexpr double d = 0.05;  // of level 0
-constexpr double rho = 1000;
-constexpr double tension = 10;
-
 /// Half a ball on the floor, in a tank six radii wide.
-struct Drop {
-  double share = 1.2;                          ///< W / sigma
-  double spacings = 8;                         ///< of the start's level, in its radius
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in radii, from the middle of its base
-  double beta = 1;
-  double periods = 4;  ///< of a ball of this radius that swings
-  Backend backend = Backend::Cpu;
-
-  double spacing() const { return d * std::cbrt(1 << level); }
-  double radius() const { return spacings * spacing(); }
-  double period() const { return 2 * pi / std::sqrt(8 * tension / (rho * std::pow(radius(), 3))); }
-  /// A period: substeps of at most an eighth of sqrt(rho d^3 / sigma).
-  int frames() const { return static_cast<int>(std::ceil(2.22 * std::pow(spacings, 1.5) * 8)); }
-};
-
-std::unique_ptr<sim::Simulation> start_of(const Drop& drop) {
-  const double width = 6 * drop.radius();
-  auto scene = fluid_test::tank({width, width, width}, {width, width, width});
-  scene.gravity_m_s2 = 0;
-  scene.min_substeps = 1;
-  scene.viscosity_m2_s = 0.02 * drop.radius() * drop.radius() * 2 * pi / drop.period();
-  scene.frame_dt_s = drop.period() / drop.frames();
-  scene.effects = {{EffectKind::Cohesion, tension}, {EffectKind::Adhesion, drop.share * tension}};
-  State start = lattice(
-      drop.spacing(), scene.tank_size_m,
-      [&](const Vec3d& x) { return std::hypot(x[0] - width / 2, x[1], x[2] - width / 2) <= drop.radius(); },
-      [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : start) p.level = drop.level;
-  sim::SimulationOptions options;
-  options.backend = drop.backend;
-  options.method = drop.method;
-  options.n_star = static_cast<std::int64_t>(start.size() << drop.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
-  if (drop.targets) {
-    options.forced_targets = *drop.targets;
-    auto& region = *options.forced_targets;
-    region.centre_m = {width / 2 + region.centre_m[0] * drop.radius(), region.centre_m[1] * drop.radius(),
-                       width / 2 + region.centre_m[2] * drop.radius()};
-    region.radius_m *= drop.radius();
-  }
-  if (drop.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(drop.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
-  options.start = start;
-  return sim::make_simulation(scene, options);
+Drop on_the_floor(Drop drop) {
+  drop.width = 6;
+  drop.damping = 0.02;
+  drop.height = 0;
+  return drop;
+}
+/// The same on a box, four spacings high, that leaves half a radius to the walls.
+Drop on_a_box(Drop drop) {
+  drop = on_the_floor(drop);
+  drop.height = 4 * drop.spacing();
+  sim::Obstacle box;
+  box.shape = sim::ObstacleShape::Box;
+  box.size_m = {5 * drop.radius(), *drop.height, 5 * drop.radius()};
+  box.start.centre_m = {drop.tank() / 2, *drop.height / 2, drop.tank() / 2};
+  drop.obstacles = {box};
+  return drop;
 }
 
 /// Mean height over root mean square of the distance from the axis, of the drop and of a cap: neither asks
 /// how densely the drop is filled.
-double steepness(const State& state) {
+double steepness(const Drop& drop, const State& state) {
   const double x = mean(state, [](const auto& p) { return place(p)[0]; });
   const double z = mean(state, [](const auto& p) { return place(p)[2]; });
   const double square =
       mean(state, [&](const auto& p) { return std::pow(place(p)[0] - x, 2) + std::pow(place(p)[2] - z, 2); });
-  return mean(state, [](const auto& p) { return place(p)[1]; }) / std::sqrt(square);
+  return mean(state, [&](const auto& p) { return place(p)[1] - *drop.height; }) / std::sqrt(square);
 }
 double steepness_of_cap(double theta) {
   const double cosine = std::cos(theta);
@@ -101,22 +64,23 @@ double contact_angle(double steep) {
 /// The drop without what it threw off, which flies for good.
 State within_reach(const Drop& drop, State state) {
   std::erase_if(state, [&](const auto& p) {
-    const double middle = 3 * drop.radius();
-    return std::hypot(place(p)[0] - middle, place(p)[1], place(p)[2] - middle) > 2 * drop.radius();
+    const Vec3d middle = drop.middle(), x = place(p);
+    return std::hypot(x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]) > 2 * drop.radius();
   });
   return state;
 }
 
 /// The work that the angle tells of, over what the scene lists; the angle is the mean of a last half period.
-double adhesion_back(const Drop& drop) {
-  const auto fluid = start_of(drop);
-  const int frames = static_cast<int>(drop.periods * drop.frames());
+double adhesion_back(const Drop& drop, double periods = 4) {
+  const auto ball = in_ball(drop);
+  const auto fluid = start_of(drop, [&](const Vec3d& x) { return x[1] > 0 && ball(x); });
+  const int frames = static_cast<int>(periods * drop.frames());
   double sum = 0;
   int count = 0;
   for (int k = 1; k <= frames; ++k) {
     fluid->step_frame();
     if (k <= frames - drop.frames() / 2 || k % 10) continue;
-    sum += contact_angle(steepness(within_reach(drop, fluid->read_state())));
+    sum += contact_angle(steepness(drop, within_reach(drop, fluid->read_state())));
     ++count;
   }
   const double theta = sum / count;
@@ -128,57 +92,177 @@ double adhesion_back(const Drop& drop) {
   const State all = fluid->read_state();
   const double thrown = 1 - total_mass(within_reach(drop, all)) / total_mass(all);
   EXPECT_LT(thrown, 0.02);
-  const double back = (1 + std::cos(theta)) / drop.share;
+  const double back = (1 + std::cos(theta)) / drop.work;
   std::printf(
       "adhesion of %.2f sigma, level %d, beta %.2f, %.2f solved, by level%s: %.3f thrown off: "
       "contact angle %.1f degrees, %.3f of what was given\n",
-      drop.share, drop.level, drop.beta, solved, levels.c_str(), thrown, theta * 180 / pi, back);
+      drop.work, drop.level, drop.beta, solved, levels.c_str(), thrown, theta * 180 / pi, back);
   return back;
 }
 
 constexpr double within = 0.15;
-/// Of sigma: angles of 120, 90, 78 and 53 degrees.
+/// Over sigma: angles of 120, 90, 78 and 53 degrees.
 constexpr double blunt = 0.5, upright = 1, weak = 1.2, strong = 1.6;
 
 void drops_of_one_level(Backend backend) {
   NEEDS_EFFECTS;
-  for (const double share : {weak, strong}) {
-    EXPECT_NEAR(adhesion_back({.share = share, .backend = backend}), 1, within) << share;
-    EXPECT_NEAR(adhesion_back({.share = share, .level = 3, .method = MethodKind::LoRes, .backend = backend}),
+  for (const double work : {weak, strong}) {
+    EXPECT_NEAR(adhesion_back(on_the_floor({.work = work, .backend = backend})), 1, within) << work;
+    EXPECT_NEAR(adhesion_back(on_the_floor(
+                    {.level = 3, .method = MethodKind::LoRes, .work = work, .backend = backend})),
                 1, within)
-        << share;
+        << work;
   }
 }
 void a_drop_that_rests_in_turns(Backend backend) {
   NEEDS_EFFECTS;
-  for (const double share : {weak, strong})
-    EXPECT_NEAR(adhesion_back({.share = share, .beta = 0.67, .backend = backend}), 1, within) << share;
+  for (const double work : {weak, strong})
+    EXPECT_NEAR(adhesion_back(on_the_floor({.beta = 0.67, .work = work, .backend = backend})), 1, within)
+        << work;
+}
+Drop half_fine(double work, Backend backend) {
+  return {.spacings = 6,
+          .level = 3,
+          .method = MethodKind::Ours,
+          .targets = sim::TargetRegion{{0, 0, 1}, 1, 0, 3},
+          .work = work,
+          .backend = backend};
 }
 void a_drop_of_mixed_levels(Backend backend) {
   NEEDS_EFFECTS;
-  for (const double share : {weak, strong})
-    EXPECT_NEAR(adhesion_back({.share = share,
-                               .spacings = 6,
-                               .level = 3,
-                               .method = MethodKind::Ours,
-                               .targets = sim::TargetRegion{{0, 0, 1}, 1, 0, 3},
-                               .periods = 3,
-                               .backend = backend}),
-                1, within)
-        << share;
+  for (const double work : {weak, strong})
+    EXPECT_NEAR(adhesion_back(on_the_floor(half_fine(work, backend)), 3), 1, within) << work;
 }
 void drops_that_the_floor_holds_less(Backend backend) {
   NEEDS_EFFECTS;
-  for (const double share : {blunt, upright})
-    EXPECT_NEAR(adhesion_back({.share = share, .backend = backend}), 1, 0.3) << share;
+  for (const double work : {blunt, upright})
+    EXPECT_NEAR(adhesion_back(on_the_floor({.work = work, .backend = backend})), 1, 0.3) << work;
+}
+/// A box is as good as the floor.
+void drops_on_a_box(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const double work : {weak, strong})
+    EXPECT_NEAR(adhesion_back(on_a_box({.work = work, .backend = backend})), 1, within) << work;
+}
+
+/// A drop on a ball of twice its radius, which it meets under 90 degrees at first.
+Drop on_a_ball(Drop drop) {
+  constexpr double ratio = 2;
+  drop.width = 10;
+  drop.damping = 0.02;
+  drop.height = 6 * drop.radius();
+  sim::Obstacle ball;
+  ball.radius_m = ratio * drop.radius();
+  ball.start.centre_m = drop.middle();
+  ball.start.centre_m[1] -= std::sqrt(1 + ratio * ratio) * drop.radius();
+  drop.obstacles = {ball};
+  return drop;
+}
+
+/// A sphere of radius a that meets a ball of radius 1 under an angle, less the ball: mean distance from the
+/// ball's middle along the axis, and root mean square of the distance from the axis.
+struct Lens {
+  double along = 0, across = 0;
+};
+Lens lens_of(double a, double theta) {
+  const double middle = std::sqrt(1 + a * a - 2 * a * std::cos(theta));
+  double volume = 0, along = 0, square = 0;
+  constexpr int steps = 1000;
+  for (int i = 0; i < steps; ++i) {
+    const double z = middle + a * (2 * (i + 0.5) / steps - 1);
+    const double outer = a * a - (z - middle) * (z - middle), inner = std::max(1 - z * z, 0.0);
+    if (outer <= inner) continue;
+    volume += outer - inner;
+    along += z * (outer - inner);
+    square += (outer * outer - inner * inner) / 2;
+  }
+  return {along / volume, std::sqrt(square / volume)};
+}
+double angle_on_a_ball(const Lens& seen) {
+  double low = 0.3, high = pi - 0.3;
+  for (int i = 0; i < 40; ++i) {
+    const double theta = (low + high) / 2;
+    double small = 0.1, large = 4;  // the sphere that is as wide
+    for (int k = 0; k < 40; ++k) {
+      const double a = (small + large) / 2;
+      (lens_of(a, theta).across < seen.across ? small : large) = a;
+    }
+    (lens_of(small, theta).along < seen.along ? low : high) = theta;
+  }
+  return low;
+}
+Lens seen_of(const Drop& drop, const State& state) {
+  const sim::Obstacle& ball = drop.obstacles.at(0);
+  Vec3d at{};
+  for (std::size_t k = 0; k < 3; ++k)
+    at[k] = mean(state, [&](const auto& p) { return place(p)[k] - ball.start.centre_m[k]; });
+  const double along = std::hypot(at[0], at[1], at[2]);
+  const double square = mean(state, [&](const auto& p) {
+    double all = 0, part = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = place(p)[k] - ball.start.centre_m[k];
+      all += x * x;
+      part += x * at[k] / along;
+    }
+    return all - part * part;
+  });
+  return {along / ball.radius_m, std::sqrt(square) / ball.radius_m};
+}
+
+/// The work that the angle on a ball tells of, over what the scene lists.
+double adhesion_to_a_ball(const Drop& drop) {
+  const sim::Obstacle& ball = drop.obstacles.at(0);
+  const auto inside = in_ball(drop);
+  const Vec3d middle = drop.middle();
+  const auto fluid = start_of(drop, [&](const Vec3d& x) {
+    const Vec3d at{x[0] + middle[0], x[1] + middle[1], x[2] + middle[2]};
+    return inside(x) && sim::signed_distance(ball, ball.start, at) > 0;
+  });
+  const int frames = 4 * drop.frames();
+  double sum = 0;
+  int count = 0;
+  for (int k = 1; k <= frames; ++k) {
+    fluid->step_frame();
+    if (k <= frames - drop.frames() / 2 || k % 10) continue;
+    sum += angle_on_a_ball(seen_of(drop, within_reach(drop, fluid->read_state())));
+    ++count;
+  }
+  const State all = fluid->read_state();
+  const double thrown = 1 - total_mass(within_reach(drop, all)) / total_mass(all);
+  EXPECT_LT(thrown, 0.02);
+  const double theta = sum / count, back = (1 + std::cos(theta)) / drop.work;
+  std::printf(
+      "adhesion of %.2f sigma to a ball, %zu particles: %.3f thrown off: angle %.1f degrees, %.3f of what "
+      "was given\n",
+      drop.work, all.size(), thrown, theta * 180 / pi, back);
+  return back;
+}
+void drops_on_a_box_of_any_level(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(
+      adhesion_back(on_a_box({.level = 3, .method = MethodKind::LoRes, .work = weak, .backend = backend})), 1,
+      within);
+  EXPECT_NEAR(adhesion_back(on_a_box(half_fine(strong, backend)), 3), 1, within);
+  EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = strong, .backend = backend})), 1, within);
+}
+/// The smaller the ball over the spacing, the more it holds a drop.
+void a_drop_on_a_ball(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(adhesion_to_a_ball(on_a_ball({.spacings = 6, .work = weak, .backend = backend})), 1, 0.3);
 }
 
 TEST(TruthAdhesion, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cpu); }
 TEST(TruthAdhesion, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cpu); }
 TEST(TruthAdhesion, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cpu); }
+TEST(TruthAdhesion, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cpu); }
+TEST(TruthAdhesion, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cpu); }
+TEST(TruthAdhesionSlow, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cpu); }
 TEST(TruthAdhesionSlow, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cpu); }
 TEST(TruthAdhesionGpu, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cuda); }
+TEST(TruthAdhesionGpu, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cuda); }
+TEST(TruthAdhesionGpu, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cuda); }
+TEST(TruthAdhesionGpu, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cuda); }
 TEST(TruthAdhesionGpu, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cuda); }
 

@@ -1,8 +1,7 @@
 /// Effects measured back from the motion: tension by the period of drops without gravity (Rayleigh 1879), air
 /// drag by the speed at which drops fall at last.
 
-#include "libsim/scene/effects.hpp"
-#include "tests/truth/truth_helpers.hpp"
+#include "tests/truth/drop_scene.hpp"
 
 namespace {
 
@@ -11,24 +10,6 @@ using sim::EffectKind;
 
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
-
-constexpr double d = 0.05;  // of level 0
-constexpr double rho = 1000;
-
-/// A drop of `spacings` times the spacing of its start's level, in a tank four radii wide.
-struct Drop {
-  double spacings = 8;
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in radii, from the drop's middle
-  double beta = 1;
-  double tension = 10;
-  Backend backend = Backend::Cpu;
-
-  double radius() const { return spacings * d * std::cbrt(1 << level); }
-  /// Of l = 2: omega^2 = 8 sigma / (rho R^3).
-  double period() const { return 2 * pi / std::sqrt(8 * tension / (rho * std::pow(radius(), 3))); }
-};
 
 std::array<double, 3> half_axes(const State& state) {
   std::array<double, 3> out{};
@@ -44,56 +25,15 @@ double stretch(const State& state) {
   return std::log(a[1] / std::sqrt(a[0] * a[2])) * 2 / 3;
 }
 
-/// Frames a period: substeps of at most an eighth of sqrt(rho d^3 / sigma).
-int frames_of(const Drop& drop) {
-  return static_cast<int>(
-      std::ceil(2.22 * std::pow(drop.radius() / (d * std::cbrt(1 << drop.level)), 1.5) * 8));
-}
-
-std::unique_ptr<sim::Simulation> start_of(const Drop& drop, const std::function<bool(const Vec3d&)>& inside) {
-  const double width = 4 * drop.radius(), middle = width / 2;
-  const double spacing = d * std::cbrt(1 << drop.level);
-  auto scene = fluid_test::tank({width, width, width}, {width, width, width});
-  scene.gravity_m_s2 = 0;
-  scene.min_substeps = 1;
-  scene.viscosity_m2_s = 0.002 * drop.radius() * drop.radius() * 2 * pi / drop.period();
-  scene.frame_dt_s = drop.period() / frames_of(drop);
-  scene.effects = {{EffectKind::Cohesion, drop.tension}};
-  State start = lattice(
-      spacing, scene.tank_size_m,
-      [&](const Vec3d& x) {
-        return inside({x[0] - middle, x[1] - middle, x[2] - middle});
-      },
-      [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : start) p.level = drop.level;
-  sim::SimulationOptions options;
-  options.backend = drop.backend;
-  options.method = drop.method;
-  options.n_star = static_cast<std::int64_t>(start.size() << drop.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
-  if (drop.targets) {
-    options.forced_targets = *drop.targets;
-    for (double& at : options.forced_targets->centre_m) at = middle + at * drop.radius();
-    options.forced_targets->radius_m *= drop.radius();
-  }
-  if (drop.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(drop.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
-  options.start = start;
-  return sim::make_simulation(scene, options);
-}
-
 /// sigma from the frequency and the decay of the damped swing that fits best, over what the scene lists: a
 /// drop swings at sqrt(omega_0^2 - gamma^2).
 double tension_back(const Drop& drop) {
-  const auto fluid =
-      start_of(drop, [&](const Vec3d& x) { return std::hypot(x[0], x[1], x[2]) <= drop.radius(); });
-  const int frames = frames_of(drop);
+  const auto fluid = start_of(drop, in_ball(drop));
+  const int frames = drop.frames();
   for (int k = 0; k < frames / 5; ++k) fluid->step_frame();
   const double omega = 2 * pi / drop.period();
   State state = fluid->read_state();
-  const double middle = 2 * drop.radius();
+  const double middle = drop.tank() / 2;
   state = moving(state, [&](const Vec3d& x) {
     const double strain = 0.3 * omega;
     return Vec3d{-strain / 2 * (x[0] - middle), strain * (x[1] - middle), -strain / 2 * (x[2] - middle)};
@@ -177,10 +117,11 @@ void a_cube_becomes_a_sphere(Backend backend) {
     for (const auto& p : state)
       r.push_back(std::hypot(place(p)[0] - middle[0], place(p)[1] - middle[1], place(p)[2] - middle[2]));
     std::sort(r.begin(), r.end());
-    return r[r.size() - r.size() / 100 - 1] / (d * std::cbrt(3 * static_cast<double>(r.size()) / (4 * pi)));
+    return r[r.size() - r.size() / 100 - 1] /
+           (drop.spacing() * std::cbrt(3 * static_cast<double>(r.size()) / (4 * pi)));
   };
   const double before = corner();
-  for (int k = 0; k < frames_of(drop); ++k) fluid->step_frame();
+  for (int k = 0; k < drop.frames(); ++k) fluid->step_frame();
   const double after = corner();
   std::printf("a cube: the farthest of 99 %% lies at %.3f radii of its ball, after a period at %.3f\n",
               before, after);

@@ -1,5 +1,6 @@
-/// Adhesion: walls pull at water near them.
+/// Adhesion: walls and obstacles pull at water near them.
 
+#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/effects/surface_energy.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
@@ -10,6 +11,33 @@ namespace {
 /// What the pull makes of its own work: calibrated by the contact angles of drops of level 0
 /// (docs/solver_notes.md).
 constexpr float pull_share = 0.75f;
+/// c of f below.
+constexpr float poly6_behind = 1.23046875f;
+
+/// What a round surface makes of a plane's f, whose second derivatives lie along the normal alone: with the
+/// curvature k = h / R about one axis or two, f' becomes f' (1 + k q)^(-1/2) or f' / (1 + k q), and f'' has
+/// f' k / (1 + k q) across the normal.
+struct Rounding {
+  float share = 1, share_slope = 0, turn = 0;
+  Vec3 straight{0, 0, 0};  ///< along which the surface is not round
+
+  SIM_FN Rounding(const Body& body, Vec3 x, float q, float h) {
+    if (body.radius == 0) return;
+    const float k = h / body.radius;
+    const float whole = 1 / (1 + k * q);
+    turn = k * whole;
+    const bool on_side = fabsf(body.to_body(x).y) < body.half.y;
+    share = on_side ? sqrtf(whole) : whole;
+    share_slope = (on_side ? -0.5f : -1.0f) * turn * share;
+    if (on_side) straight = turned(body.turn, {0, 1, 0});
+  }
+  SIM_FN Vec3 across(Vec3 n) const { return n - dot(n, straight) * straight; }
+};
+
+/// Change of a velocity by a body.
+struct Pulled {
+  Vec3 along, across;
+};
 
 /// A wall is water that stays: tension's pairs act between it and the water before it, where only the latter
 /// has a surface. For a plane their sum over the half space behind is
@@ -20,12 +48,14 @@ constexpr float pull_share = 0.75f;
 /// The rest of the work is the printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q
 /// < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
 /// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the
-/// work w, whatever its particles.
+/// work w, whatever its particles. An obstacle does the same along its normal, per area of its own.
+template <class Bodies>
 struct Adhesion {
   const Vec4* position;
   const float* density;
   const Vec4* normal;
   Walls walls;
+  Bodies bodies;
   Vec4* velocity;
   float held;      ///< dt sigma / rho_0 times the share of the pairs, m3/s
   float strength;  ///< dt w / rho_0, m3/s
@@ -40,17 +70,41 @@ struct Adhesion {
     for (int k = 0; k < walls.count; ++k) {
       const float q = walls.distance_in_h(k, xyz(at), at.w);
       if (q >= 1) continue;
-      const Vec3 away = walls.planes[k].normal;
-      const float pull = strength * per_g * sampled(q) + held * tied(q, s, dot(n, away));
-      v += -(pull / (at.w * at.w)) * away;
+      v += -pull(at.w, q, s, n, walls.planes[k].normal) * walls.planes[k].normal;
+    }
+    if constexpr (Bodies::there) {
+      for_bodies_within(bodies.solids, xyz(at), at.w, [&](int b, const Body& body, const Body::Near& near) {
+        v += bodies.hear(b, at, pulled_by(body, at, near, s, n));
+      });
     }
     velocity[i] = with_w(v, 0);
+  }
+  /// Change of a particle's speed towards a wall, m/s.
+  SIM_FN float pull(float h, float q, float skin, Vec3 n, Vec3 away) const {
+    return (strength * per_g * sampled(q) + held * tied(q, skin, dot(n, away))) / (h * h);
+  }
+  /// Change of its velocity by a body.
+  SIM_FN Pulled pulled_by(const Body& body, Vec4 at, const Body::Near& near, float skin, Vec3 n) const {
+    const float q = at_least(near.distance / at.w, 0.0f);
+    const Rounding round(body, xyz(at), q, at.w);
+    const float share = face_share(body, xyz(at), near.distance / 2);  // of what lies between
+    const float t = 1 - q * q;
+    const float slope = -poly6_behind * t * t * t * t;
+    const float bend = 8 * poly6_behind * q * t * t * t;
+    const float f1 = slope * round.share;
+    const float f2 = bend * round.share + slope * round.share_slope;
+    const float out = dot(n, near.normal);
+    const float along = -share * strength * per_g * sampled(q) +
+                        held * (pull_strength * skin * f1 - smoothing_strength * f2 * out);
+    const float scale = 1 / (at.w * at.w);
+    return {scale * along * near.normal,
+            -scale * held * smoothing_strength * f1 * round.turn * round.across(n - out * near.normal)};
   }
 
   /// f' = -c (1 - q^2)^4 and f'' = 8 c q (1 - q^2)^3, c = 315 / 256.
   SIM_FN static float tied(float q, float skin, float normal) {
     const float t = 1 - q * q;
-    return 1.23046875f * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
+    return poly6_behind * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
   }
 
   /// With 4 q - 3 = sin t, A dq = cos^(3/2) t dt / (4 sqrt 2): Simpson's rule over t.
@@ -74,7 +128,23 @@ struct Adhesion {
 using Columns = ColumnView<columns(Column::Position, Column::Density, Column::Normal, Column::Velocity),
                            columns(Column::Velocity)>;
 
-void run(FluidState& state, Columns p) {
+struct PullingBodies {
+  static constexpr bool there = true;
+  Solids solids;
+  BodyListener to;
+  /// Tension turns no body about an axis round which it is round: what acts across has no moment.
+  SIM_FN Vec3 hear(int body, Vec4 at, Pulled change) const {
+    if (to.sums) {
+      const float way = solids.dt * mass_units_of(at.w, to.finest_support);
+      to.add(body, xyz(at), way * change.along);
+      to.add(body, solids.bodies[body].centre, way * change.across);
+    }
+    return change.along + change.across;
+  }
+};
+
+template <class Bodies>
+void launch(FluidState& state, Columns p, Bodies bodies) {
   // int_1/2^1 A and G in closed form: with B(x, y) Euler's beta function, A's moments about 3/4 are
   // B(1/2, 5/4) / (4 sqrt 2) and B(3/2, 5/4) / (64 sqrt 2); G = int A q^3 / 3.
   const double whole = std::beta(0.5, 1.25) / (4 * std::sqrt(2.0));
@@ -85,15 +155,21 @@ void run(FluidState& state, Columns p) {
   const float share = at_most(work / tension, 1.0f);
   const float rate = k.dt / k.rest_density;
   for_each("adhesion", p.size(),
-           Adhesion{.position = p.position(),
-                    .density = p.density(),
-                    .normal = p.normal(),
-                    .walls = state.walls,
-                    .velocity = p.velocity(),
-                    .held = share * share * tension * rate,
-                    .strength = pull_share * at_least(work - tension, 0.0f) * rate,
-                    .whole = static_cast<float>(whole),
-                    .per_g = static_cast<float>(1 / g)});
+           Adhesion<Bodies>{.position = p.position(),
+                            .density = p.density(),
+                            .normal = p.normal(),
+                            .walls = state.walls,
+                            .bodies = bodies,
+                            .velocity = p.velocity(),
+                            .held = share * share * tension * rate,
+                            .strength = pull_share * at_least(work - tension, 0.0f) * rate,
+                            .whole = static_cast<float>(whole),
+                            .per_g = static_cast<float>(1 / g)});
+}
+
+void run(FluidState& state, Columns p) {
+  if (!state.obstacles.there()) return launch(state, p, NoBodies{});
+  launch(state, p, PullingBodies{state.solids(), state.effects_listener()});
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 /// Friction: walls and obstacles slow what slides along them.
 
+#include "libsim/particles/free_body.hpp"
+#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -25,23 +27,35 @@ SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
   return v;
 }
 
-/// Face of a body over that of its layer at x: round a sphere a layer is larger than the face below.
-SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
-  if (body.radius == 0) return 1;
-  const float share = body.radius / (body.radius + at_least(distance, 0.0f));
-  const bool on_side = fabsf(body.to_body(x).y) < body.half.y;
-  return on_side ? share : share * share;
-}
+/// Obstacles, who are told what they brake.
+struct BrakingBodies {
+  Solids solids;
+  const FreeBody* free;  ///< nullptr: none is
+  BodyListener to;
 
-SIM_FN Vec3 slowed_by(const Solids& solids, Vec4 at, Vec3 v, float way) {
-  const float d = 0.5f * at.w;
-  for (int b = 0; b < solids.count; ++b) {
-    const Body& body = solids.bodies[b];
-    const Body::Near near = solids.near(b, xyz(at));
-    if (near.distance >= d) continue;
-    v = slowed(v, body.velocity_at(xyz(at)), near.normal, way / d * face_share(body, xyz(at), near.distance));
+  /// A free body that is lighter than the layer which it brakes would swing. Steps have an end where the two
+  /// have one speed, however much of the layer there is: all that fits round a ball that holds the body.
+  SIM_FN float most_steps(int b, float d) const {
+    if (!free || free[b].mass == 0) return 1;
+    const float out = length(solids.bodies[b].half) + solids.bodies[b].radius + d;
+    const float layer = 4 * pi * out * out * d / mass_of(to.finest_support, 1);
+    const Vec3 own = free[b].inertia;
+    const float least = at_most(at_most(own.x, own.y), own.z);
+    return 1 / (1 + layer * at_least(1 / free[b].mass, out * out / least));
   }
-  return slowed_by(solids.walls, at, v, way);
+};
+
+SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
+  const float d = 0.5f * at.w;
+  for_bodies_within(bodies.solids, xyz(at), d, [&](int b, const Body& body, const Body::Near& near) {
+    const float steps = way / d * face_share(body, xyz(at), near.distance);
+    const Vec3 before = v;
+    v = slowed(v, body.velocity_at(xyz(at)), near.normal, at_most(steps, bodies.most_steps(b, d)));
+    if (bodies.to.sums)
+      bodies.to.add(b, xyz(at),
+                    (bodies.solids.dt * mass_units_of(at.w, bodies.to.finest_support)) * (v - before));
+  });
+  return slowed_by(bodies.solids.walls, at, v, way);
 }
 
 /// Everyone, also those that temporal acceleration does not solve: the tuned readings let nobody rest near a
@@ -70,7 +84,10 @@ void launch(FluidState& state, Columns p, Boundary boundary) {
 }
 
 void run(FluidState& state, Columns p) {
-  state.obstacles.there() ? launch(state, p, state.solids()) : launch(state, p, state.walls);
+  if (!state.obstacles.there()) return launch(state, p, state.walls);
+  const auto& free = state.obstacles.free;
+  launch(state, p,
+         BrakingBodies{state.solids(), free.size() > 0 ? free.data() : nullptr, state.effects_listener()});
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 /// Viscosity of fluids as thick as honey: implicit, so that no step is too long for it.
 
+#include "libsim/solver/effects/sticking.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -88,13 +89,14 @@ struct Shares {
 /// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the product sum_i m_i a_i b_i:
 /// A is symmetric in it, and every step of theirs, not only the last, keeps momentum and spin. First:
 /// residual and direction of the velocity. Then: A times the direction.
-template <bool First, bool OneLevel, class Selection>
+template <bool First, bool OneLevel, class Selection, class Bodies>
 struct Friction {
   Selection select;
   const Vec4* position;
   const Vec4* moving;  ///< velocity or direction
   Neighbours neighbours;
   Images images;
+  Bodies bodies;
   float rate;  ///< c nu dt, m2
   Vec4* residual;
   Vec4* direction;
@@ -165,10 +167,12 @@ struct Friction {
     z = team.sum(z);
     if (team.rank() > 0) return;
     const float scale = rate * mass_of(at.w, 1);
+    Vec3 change{scale * x, scale * y, scale * z};
+    if constexpr (Bodies::there) change = change - bodies.template taken<First>(at, xyz(me.moving));
     if constexpr (First) {
-      residual[i] = direction[i] = {scale * x, scale * y, scale * z, me.share};
+      residual[i] = direction[i] = with_w(change, me.share);
     } else {
-      bent[i] = with_w(xyz(me.moving) - scale * Vec3{x, y, z}, 0);
+      bent[i] = with_w(xyz(me.moving) - change, 0);
     }
   }
 };
@@ -215,22 +219,24 @@ using Columns =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
                columns(Column::PredictedNext, Column::VelocityNext, Column::Normal, Column::Velocity)>;
 
-template <bool First, bool OneLevel, class Selection>
-Friction<First, OneLevel, Selection> friction_of(FluidState& state, Columns p, Selection select) {
+template <bool First, bool OneLevel, class Selection, class Bodies>
+Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Columns p, Selection select,
+                                                         Bodies bodies) {
   const auto& k = state.parameters;
   return {.select = select,
           .position = p.position(),
           .moving = First ? p.velocity() : p.velocity_next(),
           .neighbours = state.neighbours.view(),
           .images = {state.walls, 1 - 2 * k.effects[EffectOption::ViscosityStick]},
+          .bodies = bodies,
           .rate = pair_rate * k.dt * k.effects[EffectKind::Viscosity],
           .residual = p.predicted_next(),
           .direction = p.velocity_next(),
           .bent = p.normal()};
 }
 
-template <bool OneLevel, class Selection>
-void solve(FluidState& state, Columns p, Selection select) {
+template <bool OneLevel, class Selection, class Bodies>
+void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
   const int n = p.size();
   const float finest = state.finest_support;
   auto& solver = state.conjugate_gradient;
@@ -244,15 +250,15 @@ void solve(FluidState& state, Columns p, Selection select) {
   Vec4* const bent = p.normal();
   if constexpr (!Selection::everyone)
     for_each_team("viscous shares", n, Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent});
-  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select));
+  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select, bodies));
   solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest},
-             TakeTurn{step});
+             TakeRest<Bodies>{{step}, bodies});
   const int steps = static_cast<int>(state.parameters.effects[EffectOption::ViscositySteps]);
   for (int s = 0; s < steps; ++s) {
     if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
-    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select));
+    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select, bodies));
     solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest},
-               TakeAlong{step});
+               TakeStep<Bodies>{{step}, bodies});
     solver.sum("viscous advance", n, p.capacity(),
                Advance{.position = p.position(),
                        .direction = direction,
@@ -261,13 +267,36 @@ void solve(FluidState& state, Columns p, Selection select) {
                        .residual = residual,
                        .step = step,
                        .finest_support = finest},
-               TakeTurn{step});
+               TakeNext<Bodies>{{step}, bodies});
   }
+}
+
+template <class Selection, class Bodies>
+void solve_for(FluidState& state, Columns p, Selection select, Bodies bodies) {
+  state.one_level ? solve<true>(state, p, select, bodies) : solve<false>(state, p, select, bodies);
 }
 
 template <class Selection>
 void solve_for(FluidState& state, Columns p, Selection select) {
-  state.one_level ? solve<true>(state, p, select) : solve<false>(state, p, select);
+  const auto& k = state.parameters;
+  const float stick = k.effects[EffectOption::ViscosityStick];
+  if (!state.obstacles.there() || stick == 0) return solve_for(state, p, select, NoBodies{});
+  auto& o = state.obstacles;
+  if (o.rows.size() < o.free.size()) {
+    o.rows.resize(o.free.size());
+    o.rows.zero();
+  }
+  const FreeRows free{o.free.size() > 0 ? o.rows.data() : nullptr, o.bodies.data(), o.free.data(), o.count()};
+  const StickingBodies bodies{.solids = state.solids(),
+                              .free = free,
+                              .rate = stick * k.dt * k.effects[EffectKind::Viscosity],
+                              .finest_support = state.finest_support};
+  solve_for(state, p, select, bodies);
+  const BodyListener to = state.effects_listener();
+  if (!to.sums) return;
+  for_each("hear sticking", p.size(),
+           HearSticking<Selection>{select, p.position(), p.velocity(), bodies, to});
+  if (free.rows) for_each("hear free bodies", o.count(), HearGained{free, to, k.dt});
 }
 
 /// Under pressure particles of one size lie on a lattice, which carries shear until it yields: fluid so thick

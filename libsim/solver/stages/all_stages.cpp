@@ -45,9 +45,10 @@ std::vector<Stage> all_stages() {
       nozzle_stage(), activation_stage(), obstacles_stage(), bodies_move_stage(), predict_stage(),
       held_at_walls_stage(), neighbours_stage(), ease_stage(), pre_stabilisation_stage(), parting_stage(),
       coarse_pressure_stage(), wall_cells_stage(), density_stage(), missing_density_stage(),
-      displacement_stage(), bodies_pushed_stage(), velocity_stage(), xsph_stage(), xsph_of_levels_stage()};
+      displacement_stage(), velocity_stage(), xsph_stage(), xsph_of_levels_stage()};
   for (Stage& stage : effect_stages()) out.push_back(stage);
-  out.insert(out.end(), {velocity_grid_stage(), settling_stage(), outflow_stage()});
+  // After all who push bodies.
+  out.insert(out.end(), {bodies_pushed_stage(), velocity_grid_stage(), settling_stage(), outflow_stage()});
   return out;
 }
 

@@ -141,6 +141,11 @@ struct FluidState {
     return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times};
   }
+  /// For effects: their pushes are no part of the constraint's. Without sums nobody listens.
+  BodyListener effects_listener() {
+    return {obstacles.told() ? obstacles.sums.data() + obstacles.count() : nullptr, obstacles.bodies.data(),
+            finest_support, 1};
+  }
   /// Of scenes with obstacles, while the coarse pressure's cells hold their sums.
   Waterline waterline() {
     return {{coarse.frame, mass_of(lightest_support, 1)},

@@ -21,7 +21,7 @@ struct Move {
     FreeBody& it = free[b];
     if (it.mass == 0) return;
     if (first) it.by_walls = {0, 0, 0};
-    if (first) it.counted = {};
+    if (first) it.counted = it.counted_of_effects = {};
     Body& body = bodies[b];
     it.momentum += dt * it.force;
     it.momentum.y -= it.mass * gravity * dt;
@@ -52,8 +52,10 @@ struct Push {
   const Body* bodies;
   const MeshGrid* meshes;  ///< as Solids has them
   const BodySum* sums;
+  const BodySum* by_effects;
   const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
-  float per_dt2;             ///< of the sums' ways
+  float per_dt;              ///< of the sums' ways
+  float per_dt2;
 
   /// Added mass over the mass of the displaced water: 0.5 of a sphere far from walls, 0.64 of a cube; walls
   /// raise it. Too little by half would swing, too much only makes bodies slow to follow.
@@ -66,6 +68,10 @@ struct Push {
     const Vec3 moment =
         turning(bodies[b], mesh_of(meshes, b), -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
+    // Effects see to it themselves that a light body does not swing.
+    it.momentum += -per_dt * (by_effects[b].push - it.counted_of_effects.push).value();
+    it.spin += -per_dt * (by_effects[b].moment - it.counted_of_effects.moment).value();
+    it.counted_of_effects = by_effects[b];
     const float water = wet ? static_cast<float>(wet[b]) / CellWater::fixed_point : it.volume;
     const float share = it.mass / (it.mass + added_mass * at_most(water, it.volume));
     follow(it.force, it.force_left, push, share);
@@ -111,7 +117,9 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
                 .bodies = o.bodies.data(),
                 .meshes = o.meshes.data(),
                 .sums = o.sums.data(),
+                .by_effects = o.sums.data() + o.count(),
                 .wet = state.parameters.coarse_cycles > 0 ? o.wet.data() : nullptr,
+                .per_dt = 1 / dt,
                 .per_dt2 = 1 / (dt * dt)});
 }
 

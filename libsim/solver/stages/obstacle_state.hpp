@@ -12,10 +12,13 @@ struct ObstacleState {
   std::vector<Obstacle> obstacles;
   double frame_begin_s = 0;  ///< since frame 0
   Array<Body> bodies;        ///< where they are at the end of this substep
-  Array<BodySum> sums;       ///< of this frame; none while nobody asks what they give
+  /// Of this frame: what the constraint's pushes gave, as `bodies`, then what effects did. None while nobody
+  /// asks what obstacles give.
+  Array<BodySum> sums;
   /// Volume of each below the water's level, over that of m_*, as CellWater counts.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
+  Array<FreeRow> rows;   ///< as `free`; none before an effect solves for them
   // None while no obstacle is a mesh:
   Array<MeshGrid> meshes;     ///< as `bodies`
   Array<float> distances;     ///< of all their grids

@@ -129,5 +129,50 @@ SIM_TEST(Friction, WaterThatGoesWithAnObstacleFeelsNone) {
   EXPECT_EQ(v[1].z, 0) << "and not pushed";
 }
 
+/// What a ball is told is what the water lost, and a light one that is free gets no faster than the water.
+SIM_TEST(Friction, ABodyIsToldWhatTheWaterLoses) {
+  NEEDS_EFFECTS;
+  constexpr float d = 0.1f;
+  for (const float units : {0.0f, 0.5f, 100.0f}) {
+    for (const float c : {0.1f, 1e3f}) {
+      std::vector<Vec4> points = cube(8, d);
+      for (Vec4& p : points) p = {p.x - 4 * d, p.y - 4 * d, p.z - 4 * d, p.w};
+      const Body ball = body_of({0, 0, 0}, 0.3f);
+      std::erase_if(points, [&](const Vec4& p) { return ball.distance(xyz(p)) < 0; });
+      auto state = state_of(points, true);
+      state.finest_support = 2 * d;
+      state.obstacles.bodies.from_host({ball});
+      state.obstacles.sums.resize(2);
+      state.obstacles.sums.zero();
+      if (units > 0) {
+        FreeBody free{};
+        free.mass = units;
+        free.inertia = (0.4f * 0.09f * units) * Vec3{1, 1, 1};
+        state.obstacles.free.from_host({free});
+      }
+      state.parameters.effects.values[index_of(EffectKind::Friction)] = c;
+      std::vector<Vec4> before;
+      for (const Vec4& p : points) before.push_back({1 - p.z, 0, p.x, 0});
+      state.particles.all().velocity.from_host(before);
+      for (const Stage& stage : passes_of(EffectKind::Friction)) stage.run(state);
+      const auto after = state.particles.all().velocity.to_host();
+      Vec3 lost{}, spin{};
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        lost += xyz(before[i]) - xyz(after[i]);
+        spin += cross(xyz(points[i]), xyz(before[i]) - xyz(after[i]));
+      }
+      const BodySum told = state.obstacles.sums.to_host()[1];
+      const float dt = state.parameters.dt;
+      EXPECT_LT(length((-1 / dt) * told.push.value() - lost), 1e-4f * length(lost));
+      EXPECT_LT(length((-1 / dt) * told.moment.value() - spin), 1e-4f * length(spin));
+      ASSERT_GT(lost.x, 0);
+      ASSERT_LT(spin.y, 0);
+      if (units == 0) continue;
+      EXPECT_LE(lost.x / units, 1) << units << " at " << c;
+      EXPECT_LE(-spin.y / (0.4f * 0.09f * units), 1) << units << " at " << c;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sim::SIM_BACKEND

@@ -1,0 +1,39 @@
+#pragma once
+/// The water next to obstacles, as effects that act on it there meet it.
+
+#include "libsim/particles/solids.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// In place of bodies, where an effect meets none.
+struct NoBodies {
+  static constexpr bool there = false;
+};
+
+/// Is x farther from a body than `reach` for sure? Quicker than its distance.
+SIM_FN bool far_from(const Body& body, Vec3 x, float reach) {
+  const Vec3 away = x - body.centre;
+  const float most = length(body.half) + body.radius + reach;
+  return dot(away, away) > most * most;
+}
+
+/// Calls then(number, body, near) for each body whose surface lies within `reach` of x.
+template <class Then>
+SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then then) {
+  for (int b = 0; b < solids.count; ++b) {
+    const Body& body = solids.bodies[b];
+    if (far_from(body, x, reach)) continue;
+    const Body::Near near = solids.near(b, x);
+    if (near.distance < reach) then(b, body, near);
+  }
+}
+
+/// Face of a body over that of its layer at x: round a sphere a layer is larger than the face below.
+SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
+  if (body.radius == 0) return 1;
+  const float share = body.radius / (body.radius + at_least(distance, 0.0f));
+  const bool on_side = fabsf(body.to_body(x).y) < body.half.y;
+  return on_side ? share : share * share;
+}
+
+}  // namespace sim::SIM_BACKEND

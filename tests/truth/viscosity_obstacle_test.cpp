@@ -1,0 +1,136 @@
+/// The effect viscosity at obstacles that hold the fluid: the torque of a sphere that turns in it (Lamb,
+/// Hydrodynamics, 334), without gravity.
+
+#include "libsim/scene/effects.hpp"
+#include "tests/truth/truth_helpers.hpp"
+
+namespace {
+
+using namespace truth_test;
+using sim::EffectKind;
+
+#define NEEDS_EFFECTS \
+  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
+
+constexpr double d = 0.05;  // of level 0
+constexpr double rho = 1000;
+constexpr double nu = 0.3;
+
+/// A sphere in the middle of a cube of fluid, three radii from its faces: four walls and a floor that hold
+/// it, and a free surface. It turns about the upright.
+struct Turning {
+  double spacings = 3;                         ///< of the start's level, in the sphere's radius
+  int level = 0;                               ///< of the start
+  MethodKind method = MethodKind::HiRes;       ///< that holds this level
+  std::optional<sim::TargetRegion> targets{};  ///< in radii, from the sphere's middle
+  double beta = 1;
+  double stick = 1;
+  Backend backend = Backend::Cpu;
+
+  double spacing() const { return d * std::cbrt(1 << level); }
+  double radius() const { return spacings * spacing(); }
+  double side() const { return 6 * radius(); }
+  double viscosity() const { return nu * std::sqrt(1 << level); }  // the same motion at every size
+  /// In which the slowest part of the start falls to 1 / e in a ball of three radii.
+  double decay_time() const { return 9 * radius() * radius() / (4.49 * 4.49 * viscosity()); }
+  /// A particle at the sphere moves by a spacing in six of them.
+  double rate() const { return spacing() / radius() / (6 * decay_time()); }
+};
+constexpr int frames = 12;  // in a decay time, of two substeps
+
+std::unique_ptr<sim::Simulation> start_of(const Turning& it) {
+  const double a = it.side(), middle = a / 2;
+  auto scene = fluid_test::tank({a, 1.5 * a, a}, {});
+  scene.gravity_m_s2 = 0;
+  scene.viscosity_m2_s = 0;
+  scene.frame_dt_s = it.decay_time() / frames;
+  scene.effects = {{EffectKind::Viscosity, it.viscosity()}};
+  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = it.stick;
+  sim::Obstacle sphere;
+  sphere.radius_m = it.radius();
+  sphere.start.centre_m = sphere.about_m = {middle, middle, middle};
+  sphere.motion = sim::ObstacleMotion::Turns;
+  sphere.rate_rad_s = it.rate();
+  scene.obstacles = {sphere};
+  sim::SimulationOptions options;
+  options.backend = it.backend;
+  options.method = it.method;
+  options.substeps = 2;
+  options.wall_impulse = true;
+  options.start = lattice(
+      it.spacing(), scene.tank_size_m,
+      [&](const Vec3d& x) { return x[1] < a && sim::signed_distance(sphere, sphere.start, x) > 0; },
+      [](const Vec3d&) { return Vec3d{}; });
+  for (auto& p : *options.start) p.level = it.level;
+  options.n_star = static_cast<std::int64_t>(options.start->size() << it.level) / 8 + 1;
+  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  if (it.targets) {
+    options.forced_targets = *it.targets;
+    for (double& at : options.forced_targets->centre_m) at = middle + at * it.radius();
+    options.forced_targets->radius_m *= it.radius();
+  }
+  if (it.beta < 1) {
+    options.temporal.always = true;
+    options.temporal.fixed_tau = std::log(it.beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  }
+  return sim::make_simulation(scene, options);
+}
+
+/// Torque that the fluid gives the sphere against its turn, mean of the fourth decay time, over that in fluid
+/// without end, 8 pi rho nu R^3 Omega.
+double torque_of(const Turning& it) {
+  const auto fluid = start_of(it);
+  double sum = 0;
+  for (int k = 0; k < 4 * frames; ++k) {
+    fluid->step_frame();
+    if (k >= 3 * frames) sum += fluid->momentum().obstacles.at(0).moment[1];
+  }
+  const double endless = 8 * pi * rho * it.viscosity() * std::pow(it.radius(), 3) * it.rate();
+  const double out = sum / it.decay_time() / endless;
+  const auto report = fluid->report();
+  std::string levels;
+  for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
+  std::printf("sphere that turns, level %d, beta %.2f, by level%s: torque %.3f of that without walls\n",
+              it.level, it.beta, levels.c_str(), out);
+  return out;
+}
+
+constexpr double within = 0.15;
+/// In a ball that holds the fluid at three radii the torque is 1 / (1 - 1 / 27) times that without walls, and
+/// in one that the cube's corners touch 1 / (1 - 1 / 140): walls between give what is between.
+constexpr double torque = 1.02;
+
+void spheres_of_one_level(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(torque_of({.backend = backend}), torque, within);
+  EXPECT_NEAR(torque_of({.level = 3, .method = MethodKind::LoRes, .backend = backend}), torque, within);
+}
+void a_sphere_among_mixed_levels(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(torque_of({.level = 3,
+                         .method = MethodKind::Ours,
+                         .targets = sim::TargetRegion{{0, 0, 2}, 2, 0, 3},
+                         .backend = backend}),
+              torque, within);
+}
+void a_sphere_where_some_rest(Backend backend) {
+  NEEDS_EFFECTS;
+  EXPECT_NEAR(torque_of({.beta = 0.67, .backend = backend}), torque, within);
+}
+
+TEST(TruthViscosityAtObstacles, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cpu); }
+TEST(TruthViscosityAtObstacles, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
+  a_sphere_where_some_rest(Backend::Cpu);
+}
+TEST(TruthViscosityAtObstaclesSlow, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
+  a_sphere_among_mixed_levels(Backend::Cpu);
+}
+TEST(TruthViscosityAtObstaclesGpu, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cuda); }
+TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
+  a_sphere_where_some_rest(Backend::Cuda);
+}
+TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
+  a_sphere_among_mixed_levels(Backend::Cuda);
+}
+
+}  // namespace
