@@ -20,7 +20,7 @@ constexpr float pull_share = 0.75f;
 /// The rest of the work is the printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q
 /// < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
 /// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the
-/// work w, whatever its particles.
+/// work w, whatever its particles. Water that is too coarse for tension is not pulled.
 struct Adhesion {
   const Vec4* position;
   const float* density;
@@ -31,9 +31,11 @@ struct Adhesion {
   float strength;  ///< dt w / rho_0, m3/s
   float whole;     ///< int_1/2^1 A
   float per_g;     ///< 1 / G
+  float widest;    ///< support that takes part, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
+    if (at.w > widest) return;
     const Vec3 n = xyz(normal[i]);
     const float s = skin(density[i]);
     Vec3 v = xyz(velocity[i]);
@@ -93,7 +95,8 @@ void run(FluidState& state, Columns p) {
                     .held = share * share * tension * rate,
                     .strength = pull_share * at_least(work - tension, 0.0f) * rate,
                     .whole = static_cast<float>(whole),
-                    .per_g = static_cast<float>(1 / g)});
+                    .per_g = static_cast<float>(1 / g),
+                    .widest = state.widest_support(EffectOption::CohesionCoarsest)});
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ struct Smooth {
   static constexpr bool of_all = false;
   const Vec4* curl;
   Vec4* smooth;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = Vec4;  ///< its own omega
   SIM_FN Self self(int i) const { return curl[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self, float& x, float& y, float& z, float& whole) const {
@@ -47,7 +49,9 @@ struct Confine {
   Vec4* velocity;
   float kick;  ///< c dt, m
   float from, most;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< its own |mean of omega|
   SIM_FN Self self(int i) const { return smooth[i].w; }
   /// To grad |omega|, over 6 V_i.
@@ -78,13 +82,16 @@ struct Confine {
   }
 };
 
-void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(p)); }
+void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(state, p)); }
 
 using SmoothView =
     ColumnView<columns(Column::Position, Column::Neighbours, Column::Normal), columns(Column::VelocityNext)>;
 
 void smooth_curl(FluidState& state, SmoothView p) {
-  run_pair_loop("smooth curl", state, p, Smooth{.curl = p.normal(), .smooth = p.velocity_next()});
+  run_pair_loop("smooth curl", state, p,
+                Smooth{.curl = p.normal(),
+                       .smooth = p.velocity_next(),
+                       .widest = state.widest_support(EffectOption::VorticityCoarsest)});
 }
 
 using ConfineView = ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours, Column::Normal,
@@ -99,7 +106,8 @@ void confine(FluidState& state, ConfineView p) {
                         .velocity = p.velocity(),
                         .kick = k.dt * k.effects[EffectKind::Vorticity],
                         .from = k.effects[EffectOption::VorticityFrom],
-                        .most = k.effects[EffectOption::VorticityMost]});
+                        .most = k.effects[EffectOption::VorticityMost],
+                        .widest = state.widest_support(EffectOption::VorticityCoarsest)});
 }
 
 }  // namespace
