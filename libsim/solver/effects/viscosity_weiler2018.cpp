@@ -159,7 +159,6 @@ struct Friction {
     const Vec4 at = position[i];
     if (at.w > widest) {
       if constexpr (First) residual[i] = direction[i] = {0, 0, 0, 0};
-      if constexpr (First && Selection::everyone) bent[i] = {0, 0, 0, 0};
       return;
     }
     const Self me{at, moving[i], share_of(i), PairKernel<OneLevel>(at.w)};

@@ -56,14 +56,11 @@ inline std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
   return state.particles.all().velocity.to_host();
 }
 
-/// One in three is not solved; lists belong to slots then.
-inline void let_one_in_three_rest(FluidState& state) {
-  const int n = state.particles.size();
+/// Some are not solved; lists belong to slots then.
+inline void let_rest(FluidState& state, const std::vector<std::uint8_t>& active) {
   std::vector<int> slots, others;
-  std::vector<std::uint8_t> active;
-  for (int i = 0; i < n; ++i) {
-    active.push_back(i % 3 != 0);
-    if (i % 3 != 0) {
+  for (int i = 0; i < state.particles.size(); ++i) {
+    if (active[static_cast<std::size_t>(i)]) {
       slots.push_back(i);
     } else {
       others.push_back(~i);

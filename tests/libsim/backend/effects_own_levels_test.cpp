@@ -16,6 +16,7 @@ struct Crowd {
   bool resting = false;
   int levels = 4;      ///< that it holds
   bool walled = true;  ///< a warm wall stands beside it
+  bool whole = true;   ///< those that are too coarse are there
 
   std::vector<Vec4> points = {}, before = {}, after = {};
   std::vector<int> level = {};
@@ -24,14 +25,19 @@ struct Crowd {
   void run() {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> any(-1, 1);
-    points = mixed_ball();
-    std::vector<std::uint8_t> column;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      level.push_back(static_cast<int>(i) % levels);
-      column.push_back(static_cast<std::uint8_t>(level.back()));
-      points[i].w = 0.25f * std::exp2(static_cast<float>(level.back()) / 3);
-      before.push_back({any(random), any(random), any(random), 0});
-      warmth_before.push_back(any(random) > 0 ? 10.0f : 2.0f);
+    std::vector<std::uint8_t> levels_column, active;
+    int number = 0;
+    for (const Vec4& at : mixed_ball()) {
+      const int own = number++ % levels;
+      const Vec4 v{any(random), any(random), any(random), 0};
+      const float warmth = any(random) > 0 ? 10.0f : 2.0f;
+      if (!whole && own > coarsest) continue;
+      points.push_back(with_w(xyz(at), 0.25f * std::exp2(static_cast<float>(own) / 3)));
+      before.push_back(v);
+      warmth_before.push_back(warmth);
+      level.push_back(own);
+      levels_column.push_back(static_cast<std::uint8_t>(own));
+      active.push_back(number % 3 != 0);
     }
     auto state = state_of(points, false);
     state.finest_support = 0.25f;
@@ -40,12 +46,12 @@ struct Crowd {
     state.heat.resize(1);
     state.heat.zero();
     auto& p = state.particles.all();
-    p.level.from_host(column);
+    p.level.from_host(levels_column);
     p.velocity.from_host(before);
     p.temperature.from_host(warmth_before);
     set(state.parameters.effects);
     constrain_density(state, DensityView(state.particles));
-    if (resting) let_one_in_three_rest(state);
+    if (resting) let_rest(state, active);
     if (kind == EffectKind::Adhesion) passes_of(EffectKind::Cohesion).front().run(state);
     for (const Stage& stage : passes_of(kind)) stage.run(state);
     after = p.velocity.to_host();
@@ -137,6 +143,28 @@ SIM_TEST(OwnLevels, MomentumAndHeatStayAtEveryLevel) {
           EXPECT_LT(std::abs(gain[k]), 3e-6 * exchanged[k]) << k;
         }
       }
+    }
+  }
+}
+
+/// To what acts by pairs alone, water that it leaves out might as well be away.
+SIM_TEST(OwnLevels, CoarserWaterHoldsNothingBack) {
+  NEEDS_EFFECTS;
+  for (const EffectKind kind : {EffectKind::Viscosity, EffectKind::Heat}) {
+    for (const bool resting : {false, true}) {
+      SCOPED_TRACE(std::string(traits_of(kind).word) + (resting ? ", some rest" : ""));
+      Crowd among{.kind = kind, .coarsest = 1, .resting = resting}, alone = among;
+      alone.whole = false;
+      among.run();
+      alone.run();
+      std::size_t k = 0;
+      for (std::size_t i = 0; i < among.points.size(); ++i) {
+        if (among.level[i] > 1) continue;
+        EXPECT_LT(length(xyz(among.after[i]) - xyz(alone.after[k])), 1e-5f) << i;
+        EXPECT_NEAR(among.warmth_after[i], alone.warmth_after[k], 1e-5f) << i;
+        ++k;
+      }
+      EXPECT_EQ(k, alone.points.size());
     }
   }
 }

@@ -22,7 +22,8 @@ std::vector<std::string> names_of(const std::vector<Stage>& passes) {
   return out;
 }
 
-/// own_levels: each effect leaves out water of its own; the crowd's levels go round.
+/// resting: one in three is not solved. own_levels: each effect leaves out water of its own; the crowd's
+/// levels go round.
 FluidState warm_ball(bool one_level, bool resting, bool own_levels) {
   auto state = state_of(one_level ? cube(6, 0.1f) : mixed_ball(), one_level);
   std::vector<float> warmth;
@@ -40,7 +41,11 @@ FluidState warm_ball(bool one_level, bool resting, bool own_levels) {
     options[static_cast<std::size_t>(EffectOption::CohesionCoarsest)] = 2;
     options[static_cast<std::size_t>(EffectOption::VorticityCoarsest)] = 0;
   }
-  if (resting) let_one_in_three_rest(state);
+  if (resting) {
+    std::vector<std::uint8_t> active;
+    for (int i = 0; i < state.particles.size(); ++i) active.push_back(i % 3 != 0);
+    let_rest(state, active);
+  }
   return state;
 }
 
