@@ -67,6 +67,7 @@ inline constexpr EffectKind no_effect = EffectKind::count;
   OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)         \
   OPTION(VorticityFrom, Vorticity, from_per_s, 2, 0, 1e4)           \
   OPTION(VorticityMost, Vorticity, most_per_s, 50, 1e-3, 1e6)       \
+  OPTION(VorticitySaliency, Vorticity, saliency_weight, 1, 0, 100)  \
   OPTION(VorticityCoarsest, Vorticity, coarsest_level, 3, 0, 3)     \
   OPTION(FrictionCoarsest, Friction, coarsest_level, 3, 0, 3)       \
   OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1)        \

@@ -82,6 +82,24 @@ struct Confine {
   }
 };
 
+/// For saliency. Those that are not solved keep what they last had; what is too coarse for the effect does
+/// not turn.
+struct Show {
+  const Vec4* smooth;
+  const std::uint8_t* level;
+  float* swirl;
+  int coarsest;  ///< level that takes part
+
+  SIM_FN void operator()(int i) const {
+    const float turns = smooth[i].w;
+    if (level[i] > coarsest) {
+      swirl[i] = 0;
+    } else if (turns >= 0) {
+      swirl[i] = turns;
+    }
+  }
+};
+
 void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(state, p)); }
 
 using SmoothView =
@@ -92,6 +110,24 @@ void smooth_curl(FluidState& state, SmoothView p) {
                 Smooth{.curl = p.normal(),
                        .smooth = p.velocity_next(),
                        .widest = state.widest_support(EffectOption::VorticityCoarsest)});
+}
+
+using ShowView = ColumnView<columns(Column::Level, Column::VelocityNext), columns(Column::Swirl)>;
+
+std::string if_seen(const Demand& demand) {
+  const bool counts = coefficients_of(demand.effects)[EffectOption::VorticitySaliency] > 0;
+  return demand.saliency && counts ? "saliency sees it" : "";
+}
+
+/// Saliency looks once a frame.
+void show_swirl(FluidState& state, ShowView p) {
+  const auto& k = state.parameters;
+  if (state.substep + 1 < k.substeps) return;
+  for_each("swirl", p.size(),
+           Show{.smooth = p.velocity_next(),
+                .level = p.level(),
+                .swirl = p.swirl(),
+                .coarsest = static_cast<int>(k.effects[EffectOption::VorticityCoarsest])});
 }
 
 using ConfineView = ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours, Column::Normal,
@@ -115,6 +151,7 @@ void confine(FluidState& state, ConfineView p) {
 std::vector<Stage> vorticity_stages() {
   return {stage_of<find_curl>({.name = "vorticity", .phase = Phase::SubstepEnd, .loop = SharedTerm::Curl}),
           stage_of<smooth_curl>({.name = "smooth curl", .phase = Phase::SubstepEnd}),
+          stage_of<show_swirl>({.name = "swirl", .phase = Phase::SubstepEnd, .called_for = if_seen}),
           stage_of<confine>({.name = "confinement", .phase = Phase::SubstepEnd})};
 }
 
