@@ -158,6 +158,7 @@ struct Fluid {
             state.parameters.gravity,
             1.0f / 60,
             nullptr,
+            {},
             s.data(),
             target.data(),
             parts.data(),
