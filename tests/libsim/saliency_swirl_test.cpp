@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
+#include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -115,6 +117,51 @@ TEST(SaliencyOfSwirl, CostsNothingWhereItIsNotSeen) {
     EXPECT_EQ(bare.bytes, zero.bytes);
     EXPECT_THAT(zero.explanation, HasSubstr("-  swirl               dropped"));
   }
+}
+
+std::unique_ptr<sim::Simulation> dam(const std::vector<sim::Effect>& effects,
+                                     const std::filesystem::path& resume_from = {}) {
+  auto scene = fluid_test::tank({2.4, 2, 1.2}, {1.2, 1.2, 1.2});
+  scene.v_ref_m_s = 5;
+  scene.effects = effects;
+  sim::SimulationOptions options;
+  options.method = MethodKind::OursTsp;
+  options.n_star = 64;
+  options.temporal.fixed_tau = -6;
+  options.resume_from = resume_from;
+  return sim::make_simulation(scene, options);
+}
+void step(sim::Simulation& fluid, int frames) {
+  for (int k = 0; k < frames; ++k) fluid.step_frame();
+}
+
+TEST(SaliencyOfSwirl, StandsInSavedStates) {
+  NEEDS_EFFECTS;
+  const test::TemporaryFolder folder;
+  // Saliency looks in every second frame.
+  for (const int frames : {10, 11}) {
+    const auto fluid = dam(vorticity(5));
+    step(*fluid, frames);
+    fluid->save_state(folder / "state");
+    const auto resumed = dam(vorticity(5), folder / "state");
+    step(*fluid, 4);
+    step(*resumed, 4);
+    EXPECT_TRUE(same_bits(fluid->read_state(), resumed->read_state())) << frames;
+  }
+}
+
+TEST(SaliencyOfSwirl, GoesWithItsEffectWhileTheWaterGoesOn) {
+  NEEDS_EFFECTS;
+  const auto bare = dam({}), turned = dam(vorticity(1));
+  step(*turned, 6);
+  EXPECT_EQ(turned->explain().find("-  swirl"), std::string::npos);
+  turned->set_effects({});
+  step(*bare, 1);
+  step(*turned, 1);
+  EXPECT_EQ(turned->particle_bytes(), bare->particle_bytes());
+  turned->set_effects(vorticity(1));
+  step(*turned, 3);
+  EXPECT_EQ(turned->explain().find("-  swirl"), std::string::npos);
 }
 
 }  // namespace
