@@ -11,15 +11,6 @@ namespace apps {
 
 namespace {
 
-/// Where an effect's options have its coarsest level.
-std::optional<std::size_t> coarsest_of(sim::EffectKind kind) {
-  for (std::size_t k = 0; k < sim::option_count; ++k) {
-    const auto& option = sim::traits_of(static_cast<sim::EffectOption>(k));
-    if (option.of == kind && std::string(option.key) == "coarsest_level") return k;
-  }
-  return {};
-}
-
 std::string words_of(int coarsest) { return coarsest == 0 ? "0" : "0 to " + std::to_string(coarsest); }
 
 }  // namespace
@@ -27,12 +18,12 @@ std::string words_of(int coarsest) { return coarsest == 0 ? "0" : "0 to " + std:
 std::vector<LevelVariant> level_variants_of(const sim::Scene& scene) {
   std::vector<LevelVariant> out;
   for (const sim::Effect& effect : scene.effects) {
-    const auto option = coarsest_of(effect.kind);
-    if (!option || effect.coefficient == 0) continue;
+    const auto option = sim::coarsest_level_of(effect.kind);
+    if (!option || sim::traits_of(*option).of != effect.kind || effect.coefficient == 0) continue;
     const auto add = [&](const std::string& levels, std::optional<int> coarsest, bool moved) {
       sim::Scene with = scene;
       with.effects = with_needs(scene.effects, effect);
-      if (coarsest) with.effects.back().options[*option] = *coarsest;
+      if (coarsest) with.effects.back().options[static_cast<std::size_t>(*option)] = *coarsest;
       if (!coarsest) with.effects.pop_back();
       out.push_back({sim::traits_of(effect.kind).word, levels, effect.kind, std::move(with), moved});
     };

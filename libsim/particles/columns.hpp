@@ -61,6 +61,7 @@ enum class Descent {
 //   StartCell       where in the velocity grid the particle was when the frame began
 //   Temperature     kelvin above the reference of the effect that keeps it
 //   TemperatureNext where conduction writes, then swapped with Temperature
+//   Swirl           how fast the water round it turns, 1/s, as the effect vorticity last found it
 #define SIM_COLUMNS(COLUMN, LIST)                                         \
   COLUMN(Position, position, Vec4, Core, Own)                             \
   COLUMN(Velocity, velocity, Vec4, Core, Own)                             \
@@ -85,7 +86,8 @@ enum class Descent {
   COLUMN(Rest, rest, std::uint8_t, Kept, Copy)                            \
   COLUMN(StartCell, start_cell, int, Kept, Copy)                          \
   COLUMN(Temperature, temperature, float, Kept, MassMean)                 \
-  COLUMN(TemperatureNext, temperature_next, float, Scratch, None)
+  COLUMN(TemperatureNext, temperature_next, float, Scratch, None)         \
+  COLUMN(Swirl, swirl, float, Kept, MassMean)
 
 enum class Column : unsigned {
 #define SIM_ENUMERATOR(Name, ...) Name,

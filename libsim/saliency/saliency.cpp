@@ -37,6 +37,17 @@ struct FollowUnrest {
   }
 };
 
+/// Swirl is followed beside them: no floor takes from it, as it has one of its own.
+struct FollowSwirl {
+  SwirlSeen seen;
+  float* unrest;
+  float share;
+  SIM_FN void operator()(int i) const {
+    const float beyond = seen.rate[i] - seen.from;
+    unrest[i] += share * seen.weight * fminf(fmaxf(beyond, 0.0f) / fmaxf(seen.from, 1e-6f), 1.0f);
+  }
+};
+
 /// The share of the way that one step goes instead of as many of `share` each, at least one.
 float in_one_step(double share, int steps) {
   return static_cast<float>(1 - std::pow(1 - share, std::max(steps, 1)));
@@ -49,14 +60,16 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   const GradientFields fields = gradient_fields(p, fluid, state.temporal.data());
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
   if (fluid.unrest) {
+    const float share = in_one_step(p.temporal_follow, state.frames_since);
     for_each("saliency unrest", fluid.n,
              FollowUnrest{.now = state.temporal.data(),
                           .unrest = fluid.unrest,
                           .velocity = fluid.velocity,
                           .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
                                                static_cast<double>(fluid.finest_support) / 2),
-                          .share = in_one_step(p.temporal_follow, state.frames_since),
+                          .share = share,
                           .floor = static_cast<float>(p.calm_floor)});
+    if (fluid.swirl.rate) for_each("saliency swirl", fluid.n, FollowSwirl{fluid.swirl, fluid.unrest, share});
   }
 }
 

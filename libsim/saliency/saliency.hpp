@@ -31,6 +31,14 @@ struct SaliencyState {
   }
 };
 
+/// How the water turns, where saliency sees it: a particle's share is 0 up to `from`, 1/s, and 1 from twice
+/// that on. Ours: the paper's temporal feature has no such term.
+struct SwirlSeen {
+  const float* rate = nullptr;  ///< 1/s; nullptr: not seen
+  float from = 0;
+  float weight = 0;  ///< what a share of 1 adds to f_T gamma_t
+};
+
 /// The fluid as saliency reads it, n particles in one order, and where the results go.
 struct SaliencyFluid {
   const Vec4* position = nullptr;
@@ -43,6 +51,7 @@ struct SaliencyFluid {
   float gravity = 0;         ///< m/s2
   /// f_T gamma_t followed over frames, NaN where not known yet; nullptr: this frame's alone.
   float* unrest = nullptr;
+  SwirlSeen swirl{};  ///< goes into `unrest`
   float* saliency = nullptr;
   std::uint8_t* target = nullptr;
   SaliencyParts* parts = nullptr;  ///< may be nullptr

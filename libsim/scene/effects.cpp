@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "libsim/scene/picture_effects.hpp"
 #include "stats/base/error.hpp"
@@ -13,6 +14,7 @@ namespace sim {
 namespace {
 
 constexpr double largest = 1e6;
+constexpr std::string_view coarsest_level = "coarsest_level";
 constexpr const char* without_effects = "is an effect, and this program was built without them";
 constexpr const char* build_them = "build it with -DVIP_EFFECTS=ON, or take the effect out of the scene";
 
@@ -30,15 +32,9 @@ constexpr std::array<OptionTraits, option_count> option_traits{{
 }};
 
 bool is_whole(std::size_t option) {
-  switch (static_cast<EffectOption>(option)) {
-    case EffectOption::ViscositySteps:
-    case EffectOption::AirDragCoarsest:
-    case EffectOption::FoamCoarsest:
-    case EffectOption::FoamMost:
-      return true;
-    default:
-      return false;
-  }
+  const auto which = static_cast<EffectOption>(option);
+  return which == EffectOption::ViscositySteps || which == EffectOption::FoamMost ||
+         std::string_view(option_traits[option].key) == coarsest_level;
 }
 
 std::vector<std::string> all_words() {
@@ -89,6 +85,14 @@ double natural_time(const Effect& effect, double d) {
 const EffectTraits& traits_of(EffectKind kind) { return all_traits[static_cast<std::size_t>(kind)]; }
 
 const OptionTraits& traits_of(EffectOption option) { return option_traits[static_cast<std::size_t>(option)]; }
+
+std::optional<EffectOption> coarsest_level_of(EffectKind kind) {
+  for (EffectKind of = kind; of != no_effect; of = traits_of(of).needs)
+    for (std::size_t k = 0; k < option_count; ++k)
+      if (option_traits[k].of == of && std::string_view(option_traits[k].key) == coarsest_level)
+        return static_cast<EffectOption>(k);
+  return {};
+}
 
 std::string options_in_words(const Effect& effect) {
   std::string out;

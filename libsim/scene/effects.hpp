@@ -62,12 +62,18 @@ inline constexpr EffectKind no_effect = EffectKind::count;
 #define SIM_EFFECT_OPTIONS(OPTION)                                  \
   OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)           \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
+  OPTION(ViscosityCoarsest, Viscosity, coarsest_level, 3, 0, 3)     \
+  OPTION(CohesionCoarsest, Cohesion, coarsest_level, 3, 0, 3)       \
   OPTION(AirDragCoarsest, AirDrag, coarsest_level, 3, 0, 3)         \
   OPTION(VorticityFrom, Vorticity, from_per_s, 2, 0, 1e4)           \
   OPTION(VorticityMost, Vorticity, most_per_s, 50, 1e-3, 1e6)       \
+  OPTION(VorticitySaliency, Vorticity, saliency_weight, 1, 0, 100)  \
+  OPTION(VorticityCoarsest, Vorticity, coarsest_level, 3, 0, 3)     \
+  OPTION(FrictionCoarsest, Friction, coarsest_level, 3, 0, 3)       \
   OPTION(HeatExpansion, Heat, expansion_per_k, 2.1e-4, 0, 1)        \
   OPTION(HeatReference, Heat, reference_k, 293.15, 1, 1e4)          \
   OPTION(HeatWall, Heat, wall_k, 0, 0, 1e4)                         \
+  OPTION(HeatCoarsest, Heat, coarsest_level, 3, 0, 3)               \
   OPTION(FoamApproachFrom, Foam, approach_from_per_s, 0, 0, 1e4)    \
   OPTION(FoamApproachSpan, Foam, approach_span_per_s, 4, 1e-3, 1e4) \
   OPTION(FoamCrestFrom, Foam, crest_from_per_m, 0, 0, 1e6)          \
@@ -105,6 +111,10 @@ struct OptionTraits {
   double usual, least, most;
 };
 const OptionTraits& traits_of(EffectOption option);
+
+/// The option that says up to which level an effect acts: its own, or that of the effect that it needs; none
+/// where both have none.
+std::optional<EffectOption> coarsest_level_of(EffectKind kind);
 
 /// A row of the registry.
 struct EffectTraits {

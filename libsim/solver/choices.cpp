@@ -53,9 +53,24 @@ double least_shear(const Scene& scene) {
   return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
 }
 
+/// A line for each effect that acts on finer levels alone than any water here has.
+std::string idle_in_words(const std::vector<Effect>& effects, int finest_level) {
+  const EffectCoefficients all = coefficients_of(effects);
+  std::string out;
+  for (const Effect& effect : effects) {
+    const auto option = coarsest_level_of(effect.kind);
+    if (!option || effect.coefficient == 0) continue;
+    const auto coarsest = static_cast<int>(all[*option]);
+    if (finest_level <= coarsest) continue;
+    out += std::string("  ") + traits_of(effect.kind).word + ": does nothing, as no water is of level " +
+           (coarsest > 0 ? "0 to " : "") + std::to_string(coarsest) + "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string effects_in_words(const Scene& scene, const SimulationOptions& options) {
+std::string effects_in_words(const Scene& scene, const SimulationOptions& options, int finest_level) {
   if (scene.effects.empty() && scene.obstacles.empty()) return "";
   const double d = resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m;
   std::ostringstream out;
@@ -79,6 +94,7 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
     out << "  viscosity: particles of one size resist shear slower than " << shear
         << " /s by more than a quarter beyond it\n";
   }
+  out << idle_in_words(scene.effects, finest_level);
   return out.str();
 }
 

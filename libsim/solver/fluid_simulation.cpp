@@ -275,7 +275,7 @@ class FluidSimulation final : public Simulation {
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
            std::to_string(particle_bytes()) + " bytes\n" + obstacles_in_words(scene_.obstacles) +
-           effects_in_words(scene_, options_) + schedule_.explanation;
+           effects_in_words(scene_, options_, finest_level_) + schedule_.explanation;
   }
 
  private:

@@ -19,8 +19,9 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
 /// base::Error when the options' are too few for an effect, or the effect's too many.
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
-/// The scene's effects, their step and the numbers of its scale; empty without effects and obstacles.
-std::string effects_in_words(const Scene& scene, const SimulationOptions& options);
+/// The scene's effects, their step and the numbers of its scale, and which of them have no level to act on
+/// where the water is of finest_level and coarser; empty without effects and obstacles.
+std::string effects_in_words(const Scene& scene, const SimulationOptions& options, int finest_level);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: what water that starts so, pours in or falls all the way to the

@@ -118,6 +118,7 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
   if (stage.effect == no_effect) return stage.called_for(demand);
   const Effect* effect = listed(demand, stage.effect);
   if (!effect || effect->coefficient == 0) return "";
+  if (stage.called_for && stage.called_for(demand).empty()) return "";
   std::ostringstream text;
   text << "the scene lists " << traits_of(effect->kind).key << " = " << effect->coefficient;
   return text.str();
@@ -125,7 +126,7 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
 
 std::string why_not(const Stage& stage, const Demand& demand) {
   const Effect* effect = stage.effect == no_effect ? nullptr : listed(demand, stage.effect);
-  if (!effect) return "not called for";
+  if (!effect || effect->coefficient > 0) return "not called for";
   return std::string("dropped: the scene lists ") + traits_of(effect->kind).key + " = 0";
 }
 

@@ -13,7 +13,6 @@ namespace {
 
 using sim::EffectKind;
 using sim::EffectOption;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 sim::Scene scene_with(std::vector<sim::Effect> effects) {
@@ -25,27 +24,26 @@ sim::Scene scene_with(std::vector<sim::Effect> effects) {
 
 TEST(EffectsLevels, EachEffectOfALevelOfItsOwnRunsAtEach) {
   const auto variants = level_variants_of(scene_with(
-      {{EffectKind::Cohesion, 3}, {EffectKind::AirDrag, 2}, {EffectKind::Foam, 0}, {EffectKind::Heat, 1}}));
-  std::vector<std::string> levels;
-  for (const auto& variant : variants) {
-    EXPECT_EQ(variant.effect, "air_drag") << "no other has a coarsest level and a coefficient above 0";
-    levels.push_back(variant.levels);
-  }
-  EXPECT_THAT(levels, ElementsAre("none", "0 to 3", "0 to 2", "0 to 1", "0", "0 to 3, start moved"));
-  EXPECT_TRUE(variants[0].scene.effects.empty());
-  for (std::size_t i = 1; i < 6; ++i) {
-    ASSERT_EQ(variants[i].scene.effects.size(), 1u);
-    const auto& effect = variants[i].scene.effects[0];
-    EXPECT_EQ(effect.coefficient, 2);
-    EXPECT_EQ(effect.options[static_cast<std::size_t>(EffectOption::AirDragCoarsest)],
-              i == 5 ? 3 : 4 - static_cast<int>(i));
-    EXPECT_EQ(variants[i].moved, i == 5);
+      {{EffectKind::Cohesion, 3}, {EffectKind::Adhesion, 2}, {EffectKind::Foam, 0}, {EffectKind::Heat, 2}}));
+  ASSERT_EQ(variants.size(), 12u) << "adhesion has cohesion's level, and no foam is made";
+  for (std::size_t i = 0; i < 12; ++i) {
+    const auto& variant = variants[i];
+    const bool heat = i >= 6;
+    EXPECT_EQ(variant.effect, heat ? "heat" : "cohesion");
+    EXPECT_EQ(variant.levels, std::vector<std::string>(
+                                  {"none", "0 to 3", "0 to 2", "0 to 1", "0", "0 to 3, start moved"})[i % 6]);
+    EXPECT_EQ(variant.moved, i % 6 == 5);
+    ASSERT_EQ(variant.scene.effects.size(), i % 6 == 0 ? 0u : 1u);
+    if (i % 6 == 0) continue;
+    const auto& effect = variant.scene.effects[0];
+    EXPECT_EQ(effect.coefficient, heat ? 2 : 3);
+    const auto option = heat ? EffectOption::HeatCoarsest : EffectOption::CohesionCoarsest;
+    EXPECT_EQ(effect.options[static_cast<std::size_t>(option)], i % 6 == 5 ? 3 : 4 - static_cast<int>(i % 6));
   }
 }
 
 TEST(EffectsLevels, ASceneWithoutSuchAnEffectIsRefused) {
-  for (const auto& effects :
-       {std::vector<sim::Effect>{}, {{EffectKind::Cohesion, 3}}, {{EffectKind::Foam, 0}}})
+  for (const auto& effects : {std::vector<sim::Effect>{}, {{EffectKind::Foam, 0}}})
     EXPECT_THAT([&] { level_variants_of(scene_with(effects)); },
                 testing::ThrowsMessage<base::Error>(HasSubstr("no effect that has a coarsest_level")));
 }
@@ -105,7 +103,7 @@ TEST_F(EffectsLevelsE2e, RefusesWhatHasNoLevels) {
   const auto one = table("effects data/scenes/splash.toml --levels --n-star 64");
   EXPECT_EQ(one.exit_code, 1) << one.out;
   EXPECT_THAT(one.out, HasSubstr("HiRes has one"));
-  const auto none = table("effects data/scenes/droplet.toml --levels --method Ours --n-star 64");
+  const auto none = table("effects data/scenes/single_dam.toml --levels --method Ours --n-star 64");
   EXPECT_EQ(none.exit_code, 1) << none.out;
   EXPECT_THAT(none.out, HasSubstr("no effect that has a coarsest_level"));
   EXPECT_EQ(table("effects data/scenes/splash.toml --n-star 64 --size 64x48").exit_code, 2);

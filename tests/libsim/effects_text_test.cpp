@@ -25,13 +25,14 @@ TEST(Effects, AreWrittenAsTheyAreRead) {
   EXPECT_EQ(read[0].coefficient, 12.5);
   EXPECT_EQ(read[1].kind, EffectKind::Foam);
   EXPECT_EQ(read[1].options, effects[2].options);
-  EXPECT_THAT(sim::effects_in_words(effects),
-              testing::StartsWith("cohesion tension_n_m = 12.5; foam emission_per_s = 0.3 "));
+  EXPECT_THAT(
+      sim::effects_in_words(effects),
+      testing::StartsWith("cohesion tension_n_m = 12.5 coarsest_level = 3; foam emission_per_s = 0.3 "));
   EXPECT_EQ(sim::effects_in_words({}), "");
   effects[0].coefficient = 0.12345678;
   effects[2].options[static_cast<std::size_t>(sim::EffectOption::FoamLifetime)] = 1.23456789;
   EXPECT_THAT(sim::effects_in_words(effects),
-              testing::AllOf(testing::HasSubstr("tension_n_m = 0.12345678; "),
+              testing::AllOf(testing::HasSubstr("tension_n_m = 0.12345678 "),
                              testing::HasSubstr(" lifetime_s = 1.23456789 ")));
   EXPECT_EQ(sim::effect_named("air_drag"), EffectKind::AirDrag);
   EXPECT_FALSE(sim::effect_named("froth"));

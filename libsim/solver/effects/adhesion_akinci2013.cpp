@@ -48,7 +48,8 @@ struct Pulled {
 /// The rest of the work is the printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q
 /// < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
 /// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the
-/// work w, whatever its particles. An obstacle does the same along its normal, per area of its own.
+/// work w, whatever its particles. An obstacle does the same along its normal, per area of its own. Water
+/// that is too coarse for tension is not pulled.
 template <class Bodies>
 struct Adhesion {
   const Vec4* position;
@@ -61,9 +62,11 @@ struct Adhesion {
   float strength;  ///< dt w / rho_0, m3/s
   float whole;     ///< int_1/2^1 A
   float per_g;     ///< 1 / G
+  float widest;    ///< support that takes part, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
+    if (at.w > widest) return;
     const Vec3 n = xyz(normal[i]);
     const float s = skin(density[i]);
     Vec3 v = xyz(velocity[i]);
@@ -164,7 +167,8 @@ void launch(FluidState& state, Columns p, Bodies bodies) {
                             .held = share * share * tension * rate,
                             .strength = pull_share * at_least(work - tension, 0.0f) * rate,
                             .whole = static_cast<float>(whole),
-                            .per_g = static_cast<float>(1 / g)});
+                            .per_g = static_cast<float>(1 / g),
+                            .widest = state.widest_support(EffectOption::CohesionCoarsest)});
 }
 
 void run(FluidState& state, Columns p) {

@@ -14,7 +14,7 @@ namespace {
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
 /// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling
 /// with sigma a length. Pairs with particles that are not solved are left out: no pressure of theirs answers
-/// the pull, and they would not give it back.
+/// the pull, and they would not give it back. So are pairs with those that are too coarse for the effect.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;
@@ -24,6 +24,7 @@ struct Cohesion {
   Neighbours neighbours;
   Vec4* velocity;
   float strength;  ///< dt sigma / rho_0, m3/s
+  float widest;    ///< support that takes part, m
 
   struct Self {
     Vec4 at;
@@ -42,6 +43,7 @@ struct Cohesion {
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
     float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
     if constexpr (!Selection::everyone) weight *= select.moves(j);
+    if constexpr (!OneLevel) weight = other.w <= widest ? weight : 0.0f;
     const float skins = me.skin + skin(density[j]);
     const Vec4 n = normal[j];
     const float even = smoothing_strength * weight;
@@ -63,6 +65,7 @@ struct Cohesion {
       if (i < 0) return;
     }
     const Vec4 at = position[i];
+    if (at.w > widest) return;
     const Self me{at, normal[i], skin(density[i]), PairKernel<OneLevel>(at.w)};
     float vx = 0;
     float vy = 0;
@@ -95,7 +98,8 @@ void launch(FluidState& state, CohesionView p, Selection select) {
                                     .normal = p.normal(),
                                     .neighbours = state.neighbours.view(),
                                     .velocity = p.velocity(),
-                                    .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density});
+                                    .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density,
+                                    .widest = state.widest_support(EffectOption::CohesionCoarsest)});
 }
 
 template <class Selection>

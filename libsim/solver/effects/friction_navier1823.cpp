@@ -65,9 +65,12 @@ struct Slide {
   const Vec4* position;
   Vec4* velocity;
   Boundary boundary;
-  float way;  ///< c dt, m
+  float way;     ///< c dt, m
+  float widest;  ///< support that takes part, m
   SIM_FN void operator()(int i) const {
-    velocity[i] = with_w(slowed_by(boundary, position[i], xyz(velocity[i]), way), 0);
+    const Vec4 at = position[i];
+    if (at.w > widest) return;
+    velocity[i] = with_w(slowed_by(boundary, at, xyz(velocity[i]), way), 0);
   }
 };
 
@@ -80,7 +83,8 @@ void launch(FluidState& state, Columns p, Boundary boundary) {
            Slide<Boundary>{.position = p.position(),
                            .velocity = p.velocity(),
                            .boundary = boundary,
-                           .way = k.dt * k.effects[EffectKind::Friction]});
+                           .way = k.dt * k.effects[EffectKind::Friction],
+                           .widest = state.widest_support(EffectOption::FrictionCoarsest)});
 }
 
 void run(FluidState& state, Columns p) {

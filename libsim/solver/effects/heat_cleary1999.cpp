@@ -19,9 +19,11 @@ struct WarmAtWalls {
   float wall;      ///< K above the reference
   float spread;    ///< 2 D dt, m2
   float wall_gap;  ///< nearest distance to a wall, as a share of d
+  float widest;    ///< support that takes part, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
+    if (at.w > widest) return;
     float steps = 0;
     for (int k = 0; k < walls.count; ++k) {
       const float q = at_least(walls.distance_in_h(k, xyz(at), at.w), 0.5f * wall_gap);
@@ -57,7 +59,8 @@ void warm_at_walls(FluidState& state, WarmView p) {
                        .ledger = state.heat.data(),
                        .wall = wall - k.effects[EffectOption::HeatReference],
                        .spread = 2 * k.dt * k.effects[EffectKind::Heat],
-                       .wall_gap = k.wall_gap});
+                       .wall_gap = k.wall_gap,
+                       .widest = state.widest_support(EffectOption::HeatCoarsest)});
 }
 
 /// Boussinesq: dv / dt = g beta theta upwards, with beta the expansion per kelvin. It acts on those on whom
@@ -66,17 +69,21 @@ template <class Selection>
 struct Rise {
   Selection select;
   const float* temperature;
+  const std::uint8_t* level;
   Vec4* velocity;
-  float lift;  ///< g beta dt
+  float lift;    ///< g beta dt
+  int coarsest;  ///< level that takes part
 
   SIM_FN void operator()(int i) const {
+    if (level[i] > coarsest) return;
     float dv = lift * temperature[i];
     if constexpr (!Selection::everyone) dv *= select.falls(i);
     velocity[i].y += dv;
   }
 };
 
-using RiseView = ColumnView<columns(Column::Temperature, Column::Velocity), columns(Column::Velocity)>;
+using RiseView =
+    ColumnView<columns(Column::Level, Column::Temperature, Column::Velocity), columns(Column::Velocity)>;
 
 template <class Selection>
 void launch(FluidState& state, RiseView p, Selection select) {
@@ -84,8 +91,10 @@ void launch(FluidState& state, RiseView p, Selection select) {
   for_each("buoyancy", p.size(),
            Rise<Selection>{.select = select,
                            .temperature = p.temperature(),
+                           .level = p.level(),
                            .velocity = p.velocity(),
-                           .lift = k.gravity * k.dt * k.effects[EffectOption::HeatExpansion]});
+                           .lift = k.gravity * k.dt * k.effects[EffectOption::HeatExpansion],
+                           .coarsest = static_cast<int>(k.effects[EffectOption::HeatCoarsest])});
 }
 
 void rise(FluidState& state, RiseView p) {

@@ -46,19 +46,22 @@ struct Images {
 
 /// Particles that rest keep out of the system: they take the mean change of those around them later. A pair
 /// of solved ones pulls for them too, as much harder as its neighbourhoods are thinner. w of `bent` becomes
-/// all the neighbours' weight over that of the solved ones, 0 for those who rest.
+/// all the neighbours' weight over that of the solved ones, 0 for those who rest or are too coarse for the
+/// effect, which are no neighbours either.
 template <bool OneLevel>
 struct Shares {
   ActiveParticles select;
   const Vec4* position;
   Neighbours neighbours;
   Vec4* bent;
+  float widest;  ///< support that takes part, m
 
   /// What particle j adds; see SIM_LANES.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
     const Vec4 other = position[j];
     const Vec3 offset = xyz(self) - xyz(other);
-    const float weight = weight_of(pair.with(other.w), pair.mass_ratio(other.w), dot(offset, offset));
+    float weight = weight_of(pair.with(other.w), pair.mass_ratio(other.w), dot(offset, offset));
+    if constexpr (!OneLevel) weight = other.w <= widest ? weight : 0.0f;
     all += weight;
     solved += select.moves(j) * weight;
   }
@@ -71,6 +74,10 @@ struct Shares {
       return;
     }
     const Vec4 self = position[i];
+    if (self.w > widest) {
+      bent[i] = {0, 0, 0, 0};
+      return;
+    }
     const PairKernel<OneLevel> pair(self.w);
     float all = 0;
     float solved = 0;
@@ -88,7 +95,8 @@ struct Shares {
 
 /// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the product sum_i m_i a_i b_i:
 /// A is symmetric in it, and every step of theirs, not only the last, keeps momentum and spin. First:
-/// residual and direction of the velocity. Then: A times the direction.
+/// residual and direction of the velocity. Then: A times the direction. What is too coarse for the effect is
+/// no part of the system: a pair pulls where both take part.
 template <bool First, bool OneLevel, class Selection, class Bodies>
 struct Friction {
   Selection select;
@@ -100,7 +108,8 @@ struct Friction {
   float rate;  ///< c nu dt, m2
   Vec4* residual;
   Vec4* direction;
-  Vec4* bent;  ///< A times direction
+  Vec4* bent;    ///< A times direction
+  float widest;  ///< support that takes part, m
   // w of residual and direction is that of Shares.
 
   struct Self {
@@ -121,6 +130,7 @@ struct Friction {
     const float r2 = dx * dx + dy * dy + dz * dz;
     float ratio = me.pair.mass_ratio(other.w);
     if constexpr (!Selection::everyone) ratio *= share > 0 ? (me.share + share) / 2 : 0;
+    if constexpr (!OneLevel) ratio = other.w <= widest ? ratio : 0.0f;
     const float parting = dx * (me.moving.x - v.x) + dy * (me.moving.y - v.y) + dz * (me.moving.z - v.z);
     const float along =
         quotient(weight_of(kernel, ratio, r2) * parting, at_least(r2, coincident * coincident * kernel.h2));
@@ -149,6 +159,10 @@ struct Friction {
       }
     }
     const Vec4 at = position[i];
+    if (at.w > widest) {
+      if constexpr (First) residual[i] = direction[i] = {0, 0, 0, 0};
+      return;
+    }
     const Self me{at, moving[i], share_of(i), PairKernel<OneLevel>(at.w)};
     float x = 0;
     float y = 0;
@@ -182,8 +196,9 @@ struct Product {
   const Vec4* position;
   const Vec4* a;
   const Vec4* b;
-  float finest_support;
+  float finest_support, widest;
   SIM_FN float operator()(int i) const {
+    if (position[i].w > widest) return 0;
     return mass_units_of(position[i].w, finest_support) * dot(xyz(a[i]), xyz(b[i]));
   }
 };
@@ -196,8 +211,9 @@ struct Advance {
   Vec4* velocity;
   Vec4* residual;
   const ConjugateStep* step;
-  float finest_support;
+  float finest_support, widest;
   SIM_FN float operator()(int i) const {
+    if (position[i].w > widest) return 0;
     velocity[i] = with_w(xyz(velocity[i]) + step->along * xyz(direction[i]), 0);
     const Vec3 r = xyz(residual[i]) - step->along * xyz(bent[i]);
     residual[i] = with_w(r, residual[i].w);
@@ -232,13 +248,15 @@ Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Colu
           .rate = pair_rate * k.dt * k.effects[EffectKind::Viscosity],
           .residual = p.predicted_next(),
           .direction = p.velocity_next(),
-          .bent = p.normal()};
+          .bent = p.normal(),
+          .widest = state.widest_support(EffectOption::ViscosityCoarsest)};
 }
 
 template <bool OneLevel, class Selection, class Bodies>
 void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
   const int n = p.size();
   const float finest = state.finest_support;
+  const float widest = state.widest_support(EffectOption::ViscosityCoarsest);
   auto& solver = state.conjugate_gradient;
   if (solver.step.size() == 0) {
     solver.step.resize(1);
@@ -249,15 +267,16 @@ void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
   Vec4* const direction = p.velocity_next();
   Vec4* const bent = p.normal();
   if constexpr (!Selection::everyone)
-    for_each_team("viscous shares", n, Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent});
+    for_each_team("viscous shares", n,
+                  Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent, widest});
   for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select, bodies));
-  solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest},
+  solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest, widest},
              TakeRest<Bodies>{{step}, bodies});
   const int steps = static_cast<int>(state.parameters.effects[EffectOption::ViscositySteps]);
   for (int s = 0; s < steps; ++s) {
     if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
     for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select, bodies));
-    solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest},
+    solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest, widest},
                TakeStep<Bodies>{{step}, bodies});
     solver.sum("viscous advance", n, p.capacity(),
                Advance{.position = p.position(),
@@ -266,7 +285,8 @@ void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
                        .velocity = p.velocity(),
                        .residual = residual,
                        .step = step,
-                       .finest_support = finest},
+                       .finest_support = finest,
+                       .widest = widest},
                TakeNext<Bodies>{{step}, bodies});
   }
 }
@@ -309,6 +329,7 @@ struct Loosen {
   Vec4* position;
   const float* density;
   const int* id;
+  float widest;  ///< support that takes part, m
 
   SIM_FN void operator()(int slot) const {
     const int i = select(slot);
@@ -317,6 +338,7 @@ struct Loosen {
     }
     if (density[i] < inside) return;
     const Vec4 at = position[i];
+    if (at.w > widest) return;
     const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
     position[i] = with_w(xyz(at) + (loosening / 2 * at.w) * step, at.w);
   }
@@ -335,17 +357,20 @@ using LoosenView =
     ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
 
 template <class Selection>
-void loosen(LoosenView p, Selection select) {
-  for_each(
-      "loosen", p.size(),
-      Loosen<Selection>{.select = select, .position = p.position(), .density = p.density(), .id = p.id()});
+void loosen(FluidState& state, LoosenView p, Selection select) {
+  for_each("loosen", p.size(),
+           Loosen<Selection>{.select = select,
+                             .position = p.position(),
+                             .density = p.density(),
+                             .id = p.id(),
+                             .widest = state.widest_support(EffectOption::ViscosityCoarsest)});
 }
 
 /// Without gravity nothing presses. Mixed sizes make no lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
   if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;
-  state.all_active ? loosen(p, AllParticles{}) : loosen(p, state.active());
+  state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
 }
 
 void run(FluidState& state, Columns p) {

@@ -16,7 +16,9 @@ struct Smooth {
   static constexpr bool of_all = false;
   const Vec4* curl;
   Vec4* smooth;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = Vec4;  ///< its own omega
   SIM_FN Self self(int i) const { return curl[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self, float& x, float& y, float& z, float& whole) const {
@@ -47,7 +49,9 @@ struct Confine {
   Vec4* velocity;
   float kick;  ///< c dt, m
   float from, most;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< its own |mean of omega|
   SIM_FN Self self(int i) const { return smooth[i].w; }
   /// To grad |omega|, over 6 V_i.
@@ -78,13 +82,52 @@ struct Confine {
   }
 };
 
-void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(p)); }
+/// For saliency. Those that are not solved keep what they last had; what is too coarse for the effect does
+/// not turn.
+struct Show {
+  const Vec4* smooth;
+  const std::uint8_t* level;
+  float* swirl;
+  int coarsest;  ///< level that takes part
+
+  SIM_FN void operator()(int i) const {
+    const float turns = smooth[i].w;
+    if (level[i] > coarsest) {
+      swirl[i] = 0;
+    } else if (turns >= 0) {
+      swirl[i] = turns;
+    }
+  }
+};
+
+void find_curl(FluidState& state, CurlView p) { run_pair_loop("vorticity", state, p, curl_of(state, p)); }
 
 using SmoothView =
     ColumnView<columns(Column::Position, Column::Neighbours, Column::Normal), columns(Column::VelocityNext)>;
 
 void smooth_curl(FluidState& state, SmoothView p) {
-  run_pair_loop("smooth curl", state, p, Smooth{.curl = p.normal(), .smooth = p.velocity_next()});
+  run_pair_loop("smooth curl", state, p,
+                Smooth{.curl = p.normal(),
+                       .smooth = p.velocity_next(),
+                       .widest = state.widest_support(EffectOption::VorticityCoarsest)});
+}
+
+using ShowView = ColumnView<columns(Column::Level, Column::VelocityNext), columns(Column::Swirl)>;
+
+std::string if_seen(const Demand& demand) {
+  const bool counts = coefficients_of(demand.effects)[EffectOption::VorticitySaliency] > 0;
+  return demand.saliency && counts ? "saliency sees it" : "";
+}
+
+/// Saliency looks once a frame.
+void show_swirl(FluidState& state, ShowView p) {
+  const auto& k = state.parameters;
+  if (state.substep + 1 < k.substeps) return;
+  for_each("swirl", p.size(),
+           Show{.smooth = p.velocity_next(),
+                .level = p.level(),
+                .swirl = p.swirl(),
+                .coarsest = static_cast<int>(k.effects[EffectOption::VorticityCoarsest])});
 }
 
 using ConfineView = ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours, Column::Normal,
@@ -99,7 +142,8 @@ void confine(FluidState& state, ConfineView p) {
                         .velocity = p.velocity(),
                         .kick = k.dt * k.effects[EffectKind::Vorticity],
                         .from = k.effects[EffectOption::VorticityFrom],
-                        .most = k.effects[EffectOption::VorticityMost]});
+                        .most = k.effects[EffectOption::VorticityMost],
+                        .widest = state.widest_support(EffectOption::VorticityCoarsest)});
 }
 
 }  // namespace
@@ -107,6 +151,7 @@ void confine(FluidState& state, ConfineView p) {
 std::vector<Stage> vorticity_stages() {
   return {stage_of<find_curl>({.name = "vorticity", .phase = Phase::SubstepEnd, .loop = SharedTerm::Curl}),
           stage_of<smooth_curl>({.name = "smooth curl", .phase = Phase::SubstepEnd}),
+          stage_of<show_swirl>({.name = "swirl", .phase = Phase::SubstepEnd, .called_for = if_seen}),
           stage_of<confine>({.name = "confinement", .phase = Phase::SubstepEnd})};
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// Everything a stage may touch.
 
+#include <limits>
+
 #include "libsim/activation/activation.hpp"
 #include "libsim/flow/heat_ledger.hpp"
 #include "libsim/flow/jets.hpp"
@@ -134,6 +136,13 @@ struct FluidState {
   /// so that those of a scene without obstacles know nothing of them.
   Solids solids() const {
     return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt, obstacles.meshes.data()};
+  }
+  /// Supports above this, m, are of levels that an effect's coarsest_level leaves out: halfway to the next
+  /// one's, or wider than any.
+  float widest_support(EffectOption coarsest_level) const {
+    const auto level = static_cast<std::size_t>(parameters.effects[coarsest_level]);
+    if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
+    return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
   /// Is what walls and obstacles do to places told to anybody?
   bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }

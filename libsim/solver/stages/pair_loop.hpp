@@ -10,15 +10,18 @@ namespace sim::SIM_BACKEND {
 struct NeighbourPair {
   int j;
   float x, y, z;  ///< from j to i, m
+  float h;        ///< of j, m
   float slope;  ///< (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope times the way
 };
 
 /// A term that adds nothing. The others are like it: `sums`, how many of the four they use; `of_all`,
-/// whether those that are not solved have them too; Self, what is read once of particle i; add(), what a
-/// neighbour adds; finish(), by one lane, when all have; skip(), for those that have no sums.
+/// whether those that are not solved have them too; takes(), whether a particle of this support has them;
+/// Self, what is read once of particle i; add(), what a neighbour adds; finish(), by one lane, when all have;
+/// skip(), for those that have no sums.
 struct NoTerm {
   static constexpr int sums = 0;
   static constexpr bool of_all = false;
+  SIM_FN bool takes(float) const { return false; }
   struct Self {};
   SIM_FN Self self(int) const { return {}; }
   SIM_FN void add(const NeighbourPair&, Self, float&, float&, float&, float&) const {}
@@ -50,7 +53,8 @@ struct PairLoop {
     const float dy = me.at.y - other.y;
     const float dz = me.at.z - other.z;
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
-    const NeighbourPair pair{j, dx, dy, dz, me.pair.mass_ratio(other.w) * kernel.poly6 * t * t};
+    const float h = OneLevel ? me.at.w : other.w;
+    const NeighbourPair pair{j, dx, dy, dz, h, me.pair.mass_ratio(other.w) * kernel.poly6 * t * t};
     first.add(pair, me.first, a0, a1, a2, a3);
     second.add(pair, me.second, b0, b1, b2, b3);
   }
@@ -68,14 +72,14 @@ struct PairLoop {
     bool solved = true;
     if constexpr (!Selection::everyone) {
       solved = i >= 0;
-      if (!solved) {
-        i = ~i;
-        if (!First::of_all) first.skip(i);
-        if (!Second::of_all) second.skip(i);
-        if constexpr (!First::of_all && !Second::of_all) return;
-      }
+      if (!solved) i = ~i;
     }
     const Vec4 at = position[i];
+    const bool has_first = (First::of_all || solved) && first.takes(at.w);
+    const bool has_second = (Second::of_all || solved) && second.takes(at.w);
+    if (!has_first) first.skip(i);
+    if (!has_second) second.skip(i);
+    if (!has_first && !has_second) return;
     const Self me{at, PairKernel<OneLevel>(at.w), first.self(i), second.self(i)};
     float a0 = 0;
     float a1 = 0;
@@ -98,8 +102,8 @@ struct PairLoop {
     b2 = sum<Second, 3>(team, b2);
     b3 = sum<Second, 4>(team, b3);
     if (team.rank() > 0) return;
-    if (First::of_all || solved) first.finish(i, at, me.first, a0, a1, a2, a3);
-    if (Second::of_all || solved) second.finish(i, at, me.second, b0, b1, b2, b3);
+    if (has_first) first.finish(i, at, me.first, a0, a1, a2, a3);
+    if (has_second) second.finish(i, at, me.second, b0, b1, b2, b3);
   }
 };
 

@@ -42,7 +42,8 @@ void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) 
 
 using Columns =
     ColumnView<SurroundingsView::reads,
-               SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target)>;
+               SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target),
+               columns(Column::Swirl)>;
 
 void run(FluidState& state, Columns p) {
   if (!state.levels.turns.due) {
@@ -52,6 +53,10 @@ void run(FluidState& state, Columns p) {
   recall_surroundings(state, p, state.saliency.due());
   SaliencyFluid fluid = fluid_of(state, p);
   fluid.unrest = p.unrest();
+  const auto& effects = state.parameters.effects;
+  fluid.swirl = {.rate = p.swirl(),
+                 .from = effects[EffectOption::VorticityFrom],
+                 .weight = effects[EffectOption::VorticitySaliency]};
   fluid.saliency = p.saliency();
   fluid.target = p.target();
   evaluate_saliency(state.saliency, fluid);

@@ -36,7 +36,8 @@ struct Stage {
   const char* name;
   const char* source = "";  ///< paper and equation
   Phase phase;
-  /// Empty when nothing calls for the stage; otherwise the reason. A stage of an effect needs none.
+  /// Empty when nothing calls for the stage; otherwise the reason. A stage of an effect needs none; with one
+  /// it runs where both call for it.
   std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
   /// What its change of the water's momentum is counted as; each stage that writes velocities has one.

@@ -73,7 +73,8 @@ SIM_TEST(Columns, SplitAndMergeByTheRuleOfTheirRow) {
   static_assert(!may_descend<float>(Life::Scratch, Descent::Copy), "scratch has none");
   static_assert(!may_descend<std::uint8_t>(Life::Kept, Descent::MassMean), "a byte has no mean");
   static_assert(!may_descend<int>(Life::Kept, Descent::Sum));
-  static_assert(ruled_columns().bits == columns(Column::Waiting, Column::Age, Column::Temperature).bits);
+  static_assert(ruled_columns().bits ==
+                columns(Column::Waiting, Column::Age, Column::Temperature, Column::Swirl).bits);
 }
 
 /// Three of one column: 0 is a copy of its parent, 1 and 2 are two that meet, or give each other halves of 0.
@@ -115,6 +116,7 @@ SIM_TEST(Columns, FollowTheirParticlesWhenTheyAreKept) {
   for (auto* bytes : {&c.target, &c.history, &c.waiting, &c.active, &c.rest}) bytes->zero();
   c.saliency_parts.zero();
   c.unrest.zero();
+  c.swirl.zero();
   c.temperature.from_host({1.5f, 2.5f, 3.5f});
   c.id.from_host({7, 8, 9});
   c.level.from_host({0, 1, 2});

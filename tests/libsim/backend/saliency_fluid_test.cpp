@@ -172,6 +172,36 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
   EXPECT_GT(after, 0.63 * before);
 }
 
+/// From `from` on, wholly at twice that, and followed as the feature is.
+SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
+  const auto unrest_with = [](SwirlSeen swirl, const std::vector<float>& rate) {
+    Seen seen = prepare(broken_dam(), before_dam);
+    const auto n = static_cast<std::size_t>(seen.fluid.state.particles.size());
+    Array<float> unrest, turns;
+    unrest.from_host(std::vector<float>(n, 0.5f));
+    std::vector<float> all;
+    for (std::size_t i = 0; i < n; ++i) all.push_back(rate[i % rate.size()]);
+    turns.from_host(all);
+    swirl.rate = rate[0] < 0 ? nullptr : turns.data();
+    SaliencyFluid fluid = seen.fluid.view();
+    fluid.unrest = unrest.data();
+    fluid.swirl = swirl;
+    seen.looks.eyes[0].seen = &seen.picture;
+    seen.fluid.saliency.input.look(seen.looks);
+    evaluate_saliency(seen.fluid.saliency, fluid);
+    return unrest.to_host();
+  };
+  const auto unseen = unrest_with({}, {-1});
+  const auto seen = unrest_with({.from = 2, .weight = 5}, {0, 2, 3, 4, 1000});
+  const float share[] = {0, 0, 0.5f, 1, 1};
+  for (std::size_t i = 0; i < unseen.size(); ++i)
+    EXPECT_NEAR(seen[i] - unseen[i], 0.36f * 5 * share[i % 5], 1e-4f) << i;
+  // Where everything counts, what does not turn still does not.
+  const auto all = unrest_with({.from = 0, .weight = 1}, {0, 0.1f});
+  EXPECT_EQ(all[0], unseen[0]);
+  EXPECT_NEAR(all[1] - unseen[1], 0.36f, 1e-4f);
+}
+
 SIM_TEST(SaliencyOfFluids, LevelsDoNotDependOnTheUnitOfLength) {
   Seen seen = prepare(broken_dam(), before_dam);
   const auto levels = levels_of(seen);

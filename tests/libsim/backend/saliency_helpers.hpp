@@ -157,6 +157,7 @@ struct Fluid {
             state.finest_support,
             state.parameters.gravity,
             nullptr,
+            {},
             s.data(),
             target.data(),
             parts.data(),

@@ -164,6 +164,39 @@ SIM_TEST(Vorticity, WhatTurnsTooSlowlyOrTooFastIsLeftAsItIs) {
   EXPECT_EQ(changed(0, 0.001), 0);
 }
 
+/// What saliency is shown: the mean curl, of the last substep; of those that are not solved the last one, and
+/// none of what is too coarse for the effect.
+SIM_TEST(Vorticity, ItsSwirlIsShownToSaliency) {
+  NEEDS_EFFECTS;
+  constexpr int side = 9;
+  const auto points = cube(side, 0.1f);
+  auto state = state_of(points, false);
+  feed(state);
+  give(state, turning(points, 3, {0.45f, 0, 0.45f}));
+  std::vector<std::uint8_t> level(points.size(), 0), active(points.size(), 1);
+  std::vector<float> before(points.size(), 2);
+  const std::size_t middle = static_cast<std::size_t>((4 * side + 4) * side + 4), rests = middle + 1;
+  level.back() = 3;
+  active[rests] = 0;
+  auto& p = state.particles.all();
+  p.level.from_host(level);
+  p.swirl.from_host(before);
+  let_rest(state, active);
+  state.parameters.effects.options[static_cast<std::size_t>(EffectOption::VorticityCoarsest)] = 2;
+  state.supports = level_supports(0.2);
+  state.parameters.substeps = 2;
+  state.substep = 0;
+  velocities_by(EffectKind::Vorticity, state);
+  EXPECT_EQ(p.swirl.to_host(), before);
+  state.substep = 1;
+  give(state, turning(points, 3, {0.45f, 0, 0.45f}));
+  for (const Stage& stage : passes_of(EffectKind::Vorticity)) stage.run(state);
+  const auto swirl = p.swirl.to_host();
+  EXPECT_NEAR(swirl[middle], 6, 0.1f);
+  EXPECT_EQ(swirl[rests], 2);
+  EXPECT_EQ(swirl.back(), 0);
+}
+
 SIM_TEST(Vorticity, WaterAtRestAndLoneDropsStayAsTheyAre) {
   NEEDS_EFFECTS;
   auto points = cube(5, 0.1f);

@@ -8,23 +8,27 @@ namespace sim::SIM_BACKEND {
 /// m_i d theta_i / dt = rho_0 sum_j 2 D V_i V_j F_ij (theta_j - theta_i), F = -(dW/dr) / r of poly6, which
 /// stays finite where particles overlap; the harmonic mean of two equal conductivities is D. Antisymmetric,
 /// so that the heat stays. Everyone conducts, also those that are not solved: they have lists too
-/// (stages/neighbours.cpp). What has no neighbours, a wall or the air, insulates.
+/// (stages/neighbours.cpp). What has no neighbours, a wall or the air, insulates. Water that is too coarse
+/// for the effect keeps its heat: a pair conducts where both take part.
 struct Conduction {
   static constexpr int sums = 1;
   static constexpr bool of_all = true;
   const float* temperature;
   float* next;
   float spread;  ///< 12 D dt, m2: F = 6 poly6 (h^2 - r^2)^2
+  float widest;  ///< support that takes part
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< its own temperature
   SIM_FN Self self(int i) const { return temperature[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self own, float& gain, float&, float&, float&) const {
-    gain += pair.slope * (temperature[pair.j] - own);
+    const float slope = pair.h <= widest ? pair.slope : 0.0f;
+    gain += slope * (temperature[pair.j] - own);
   }
   SIM_FN void finish(int i, Vec4 at, Self own, float gain, float, float, float) const {
     next[i] = own + spread * mass_of(at.w, 1) * gain;
   }
-  SIM_FN void skip(int) const {}
+  SIM_FN void skip(int i) const { next[i] = temperature[i]; }
 };
 
 using ConductView = ColumnView<columns(Column::Position, Column::Neighbours),
@@ -35,7 +39,8 @@ inline Conduction conduction_of(const FluidState& state, ConductView p) {
   const auto& k = state.parameters;
   return {.temperature = p.temperature(),
           .next = p.temperature_next(),
-          .spread = 12 * k.dt * k.effects[EffectKind::Heat]};
+          .spread = 12 * k.dt * k.effects[EffectKind::Heat],
+          .widest = state.widest_support(EffectOption::HeatCoarsest)};
 }
 
 }  // namespace sim::SIM_BACKEND

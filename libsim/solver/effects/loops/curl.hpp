@@ -7,17 +7,20 @@ namespace sim::SIM_BACKEND {
 
 /// omega_i = sum_j V_j grad W_ij x (v_j - v_i) / s_i with poly6, and |omega_i| in w. s_i = 1/3 sum_j V_j
 /// (x_j - x_i) grad W_ij is 1 inside and about a half at a plane surface or wall: what turns as a whole has
-/// its omega inside, and within a seventh there, at every level and mix of levels.
+/// its omega inside, and within a seventh there, at every level and mix of levels. What is too coarse for the
+/// effect has none, and is a neighbour like others.
 struct Curl {
   static constexpr int sums = 4;
   static constexpr bool of_all = false;
   /// Less of a neighbourhood than this does not count as a whole one: spray has no curl.
   static constexpr float least_whole = 0.3f;
-  /// w of the curl of particles that are not solved.
+  /// w of the curl of particles that have none.
   static constexpr float unknown = -1;
   const Vec4* velocity;
   Vec4* curl;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = Vec4;  ///< its own velocity
   SIM_FN Self self(int i) const { return velocity[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self own, float& x, float& y, float& z, float& whole) const {
@@ -41,6 +44,10 @@ struct Curl {
 using CurlView =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours), columns(Column::Normal)>;
 
-inline Curl curl_of(CurlView p) { return {.velocity = p.velocity(), .curl = p.normal()}; }
+inline Curl curl_of(const FluidState& state, CurlView p) {
+  return {.velocity = p.velocity(),
+          .curl = p.normal(),
+          .widest = state.widest_support(EffectOption::VorticityCoarsest)};
+}
 
 }  // namespace sim::SIM_BACKEND

@@ -23,7 +23,7 @@ using CurlAndHeatView = ColumnView<columns(Column::Position, Column::Velocity, C
                                    columns(Column::Normal, Column::Temperature, Column::TemperatureNext)>;
 
 void find_curl_and_conduct(FluidState& state, CurlAndHeatView p) {
-  run_pair_loop("vorticity and heat", state, p, curl_of(p), conduction_of(state, p));
+  run_pair_loop("vorticity and heat", state, p, curl_of(state, p), conduction_of(state, p));
   p.swap<Column::Temperature, Column::TemperatureNext>();
 }
 

@@ -6,14 +6,16 @@
 namespace sim::SIM_BACKEND {
 
 /// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
-/// inwards; 0 for particles that are not solved.
+/// inwards; 0 for particles that are not solved or too coarse for tension.
 template <class Boundary>
 struct SurfaceNormals {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;
   Boundary walls;
   Vec4* normal;
+  float widest;  ///< support that takes part, m
 
+  SIM_FN bool takes(float h) const { return h <= widest; }
   struct Self {};
   SIM_FN Self self(int) const { return {}; }
   SIM_FN void add(const NeighbourPair& pair, Self, float& nx, float& ny, float& nz, float&) const {
@@ -35,10 +37,11 @@ using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), col
 /// Calls then(term): with obstacles it is of another type.
 template <class Then>
 void with_surface_normals(FluidState& state, NormalView p, Then then) {
+  const float widest = state.widest_support(EffectOption::CohesionCoarsest);
   if (state.obstacles.there()) {
-    then(SurfaceNormals<Solids>{.walls = state.solids(), .normal = p.normal()});
+    then(SurfaceNormals<Solids>{.walls = state.solids(), .normal = p.normal(), .widest = widest});
   } else {
-    then(SurfaceNormals<Walls>{.walls = state.walls, .normal = p.normal()});
+    then(SurfaceNormals<Walls>{.walls = state.walls, .normal = p.normal(), .widest = widest});
   }
 }
 
