@@ -19,7 +19,8 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing);
+  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing, sim::RenderOptions{},
+                                          choice.paint_temperature);
 }
 
 /// Where there are any, or the choice says that there are none.
@@ -61,7 +62,8 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
     if (!options.start) options.start = simulation->read_state();
     return simulation;
   };
-  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render);
+  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render,
+                                     choice.paint_temperature);
 }
 
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {

@@ -100,6 +100,9 @@ void check(const BakeHeader& header, const ByteReader& in) {
   }
   within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
   within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "count of foam");
+  within(!header.reference_k || (std::isfinite(*header.reference_k) && *header.reference_k > 0),
+         "reference temperature");
+  within(header.overlay.empty() || (header.overlay == "temperature" && header.reference_k), "overlay");
   check(header.view, in);
 }
 
@@ -111,6 +114,11 @@ Scene baked_scene(const BakeHeader& header) {
     scene.effects =
         read_effects(base::parse_toml(*header.effects, header.scene_name + ", its effects").tables("effect"));
   return scene;
+}
+
+std::uint32_t format_of(const BakeHeader& header) {
+  const bool all_of_format_4 = !header.reference_k && header.overlay.empty();
+  return all_of_format_4 ? 4 : 5;
 }
 
 Bytes format_bake_header(const BakeHeader& header) {
@@ -135,6 +143,9 @@ Bytes format_bake_header(const BakeHeader& header) {
   out.put(static_cast<std::uint8_t>(header.effects ? 1 : 0));
   if (header.effects) out.string(*header.effects);
   out.put(header.max_foam);
+  if (format_of(header) < 5) return bytes;
+  out.put(header.reference_k.value_or(0));
+  out.string(header.overlay);
   return bytes;
 }
 
@@ -165,6 +176,10 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
     if (there > 1) in.fail("has a header with unknown effects");
     if (there) header.effects = in.string(max_effects_text);
     header.max_foam = in.get<std::int64_t>();
+  }
+  if (format >= 5) {
+    if (const auto kelvin = in.get<double>(); kelvin != 0) header.reference_k = kelvin;
+    header.overlay = in.string(max_text);
   }
   if (!in.rest().empty()) in.fail("has a header of the wrong length");
   check(header, in);

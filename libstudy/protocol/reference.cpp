@@ -121,6 +121,9 @@ const std::vector<KeyReference>& protocol_reference() {
        "levels of the factor effects, 2 to 20; refused under settings. none: no effects. scene: those of the "
        "scene's file. Another level has a table `effect_set`. Without this key each scene has its own"},
       {"design", "effect_set", "tables", "", where_needed, "needed by each level but none and scene"},
+      {"design", "overlay", "text", "\"none\", \"temperature\"", "\"none\"",
+       "temperature: painted over the water of every stimulus, dark blue to yellow from the coldest to the "
+       "hottest that its scene names. Every scene, and every level of effects, then has heat"},
       {"design", "duration_s", "number", "[0.1, 3600]", "", "of each stimulus, s"},
       {"design", "mean_fps", "list of numbers", "[0.1, 1000]", where_needed,
        "means of the frame rate, frames/s; needed under settings and equal, refused otherwise"},

@@ -132,6 +132,29 @@ TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
   EXPECT_THAT(error_of(bare), HasSubstr("is the same water as \"none\" in scene SingleDam"));
 }
 
+TEST(CellEffects, ThatLeaveNoTemperatureToPaintAreRefused) {
+  NEEDS_EFFECTS;
+  const std::string overlay = "overlay = \"temperature\"\n", scene_and = "effects = [\"scene\", ";
+  const auto expect = [](const study::Protocol& protocol, const std::string& problem) {
+    EXPECT_THAT(error_of(protocol),
+                AllOf(HasSubstr(place_in(protocol, "overlay = |\"temperature\"")), HasSubstr(problem)));
+  };
+  EXPECT_EQ(error_of(protocol_with(overlay, "", "hot_jet")), "");
+  expect(protocol_with(overlay, "", "sea_spray"), "finds no heat in scene SeaSpray\n");
+  expect(protocol_with(overlay + scene_and + "\"none\"]", "", "hot_jet"),
+         "finds no heat in scene HotJet at level \"none\"");
+  const auto heat_with = [&](const std::string& keys) {
+    return protocol_with(overlay + scene_and + "\"foam\"]",
+                         set_of("effect = [{kind = \"heat\", diffusivity_m2_s = 0.01" + keys + "}]"),
+                         "hot_jet");
+  };
+  EXPECT_EQ(error_of(heat_with("")), "") << "from 293.15 to 353.15 K as the scene's";
+  EXPECT_EQ(error_of(heat_with(", wall_k = 300")), "") << "and so is this";
+  expect(heat_with(", wall_k = 373.15"),
+         "other colours in scene HotJet at level \"foam\", temperature 293.15 to 373.15 K, than at level "
+         "\"scene\", temperature 293.15 to 353.15 K");
+}
+
 TEST(CellEffects, ReachTheFluidOfTheirCells) {
   NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/foam.toml"));

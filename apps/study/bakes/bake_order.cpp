@@ -75,6 +75,10 @@ std::string effects_words(const sim::BakeHeader& header) {
   return words.empty() ? "no effects" : words;
 }
 
+std::string overlay_words(const sim::BakeHeader& header) {
+  return (header.overlay.empty() ? "nothing" : header.overlay) + " painted over them";
+}
+
 }  // namespace
 
 sim::BakeHeader header_of(const BakeOrder& order) {
@@ -97,6 +101,13 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.tank_size_m = scene.tank_size_m;
   header.effects = sim::format_effects(scene.effects);
   header.max_foam = foam_of(scene);
+  if (TemperatureScale(scene).heat()) header.reference_k = sim::reference_temperature(scene);
+  if (order.fluid.paint_temperature) {
+    if (!header.reference_k)
+      throw base::Error(order.fluid.scene.string(), "has no heat, and so no temperatures to paint",
+                        "list heat as an [[effect]], or leave the overlay out");
+    header.overlay = "temperature";
+  }
   header.view = view_of(order, scene, traits.adaptive());
   if (order.pictures) {
     header.picture_width_px = order.size.width;
@@ -123,6 +134,10 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
     const bool drawn = found.has_pictures();  // they show foam whether its particles are kept or not
     if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
       out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");
+    if (drawn)
+      out.add("pictures with", overlay_words(found), overlay_words(wanted));
+    else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
+      out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
   // A file rounds the step of a protocol.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)

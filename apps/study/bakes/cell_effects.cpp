@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "apps/common/temperature_scale.hpp"
 #include "libsim/scene/picture_effects.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -101,6 +102,56 @@ std::string words_of(const std::vector<Effect>& effects) {
   return words.empty() ? "no effects" : words;
 }
 
+/// No two levels are the same water.
+void check_levels(const study::Protocol& protocol, const sim::Scene& scene) {
+  const auto& levels = protocol.design.effects;
+  std::vector<std::string> held;
+  for (const study::EffectSet& level : levels) {
+    const std::string effects = sim::format_effects(effects_of(protocol, level.name, scene));
+    const auto same = std::find(held.begin(), held.end(), effects);
+    if (same != held.end()) {
+      design_of(protocol).fail_at("effects", held.size(),
+                                  "= \"" + level.name + "\" is the same water as \"" +
+                                      levels[static_cast<std::size_t>(same - held.begin())].name +
+                                      "\" in scene " + scene.name,
+                                  "remove one of the two, or give them different effects");
+    }
+    held.push_back(effects);
+  }
+}
+
+/// Of the water of each level, or of the scene's own.
+std::vector<TemperatureScale> scales_of(const study::Protocol& protocol, const sim::Scene& scene) {
+  if (protocol.design.effects.empty()) return {TemperatureScale(scene)};
+  std::vector<TemperatureScale> out;
+  for (const study::EffectSet& level : protocol.design.effects) {
+    sim::Scene held = scene;
+    held.effects = effects_of(protocol, level.name, scene);
+    out.emplace_back(held);
+  }
+  return out;
+}
+
+/// All that is compared has temperatures, in the same colours.
+void check_temperatures(const study::Protocol& protocol, const sim::Scene& scene) {
+  const auto scales = scales_of(protocol, scene);
+  const auto& levels = protocol.design.effects;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const TemperatureScale& scale = scales[i];
+    const std::string where =
+        "scene " + scene.name + (levels.empty() ? "" : " at level \"" + levels[i].name + "\"");
+    if (!scale.heat()) {
+      design_of(protocol).fail("overlay", "= \"temperature\" finds no heat in " + where,
+                               "give it the effect heat, or remove the overlay");
+    }
+    if (scales.front().same_colours(scale)) continue;
+    design_of(protocol).fail("overlay",
+                             "= \"temperature\" has other colours in " + where + ", " + scale.words() +
+                                 ", than at level \"" + levels.front().name + "\", " + scales.front().words(),
+                             "name the same temperatures at every level");
+  }
+}
+
 }  // namespace
 
 std::vector<Effect> effects_of(const study::Protocol& protocol, const std::string& level,
@@ -122,26 +173,18 @@ std::optional<std::vector<Effect>> cell_effects(const study::Protocol& protocol,
 }
 
 void check_cell_effects(const study::Protocol& protocol) {
-  const auto& levels = protocol.design.effects;
-  if (levels.empty()) return;
+  if (protocol.design.effects.empty() && !protocol.design.paint_temperature) return;
   std::set<std::string> scenes;
   for (const study::Cell& cell : protocol.design.cells) {
     if (!scenes.insert(cell.stimulus.scene).second) continue;
     const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
-    std::vector<std::string> held;
-    for (const study::EffectSet& level : levels) {
-      const std::string effects = sim::format_effects(effects_of(protocol, level.name, scene));
-      const auto same = std::find(held.begin(), held.end(), effects);
-      if (same != held.end()) {
-        design_of(protocol).fail_at("effects", held.size(),
-                                    "= \"" + level.name + "\" is the same water as \"" +
-                                        levels[static_cast<std::size_t>(same - held.begin())].name +
-                                        "\" in scene " + scene.name,
-                                    "remove one of the two, or give them different effects");
-      }
-      held.push_back(effects);
-    }
+    check_levels(protocol, scene);
+    if (protocol.design.paint_temperature) check_temperatures(protocol, scene);
   }
+}
+
+std::string temperatures_in_words(const study::Protocol& protocol, const sim::Scene& scene) {
+  return scales_of(protocol, scene).front().words();
 }
 
 std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene) {

@@ -20,11 +20,15 @@ std::vector<sim::Effect> effects_of(const study::Protocol& protocol, const std::
 std::optional<std::vector<sim::Effect>> cell_effects(const study::Protocol& protocol,
                                                      const study::StimulusSpec& what);
 
-/// The errors of every level in every scene, and two levels that are the same water in one.
+/// The errors of every level in every scene, and two levels that are the same water in one. Where temperature
+/// is painted: a cell without heat, and two levels that would paint one temperature in two colours.
 void check_cell_effects(const study::Protocol& protocol);
 
 /// "none: no effects; foam: foam emission_per_s = 0.3 ...": each level in this scene; empty without the
 /// factor.
 std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene);
+
+/// "temperature 293.15 to 353.15 K": what is painted in this scene, at every level.
+std::string temperatures_in_words(const study::Protocol& protocol, const sim::Scene& scene);
 
 }  // namespace apps
