@@ -165,7 +165,7 @@ TEST(HeatBake, TakesTwoBytesMoreAParticle) {
   EXPECT_EQ(warm - most_bytes(header), 2u * frames * 512);
 }
 
-TEST(HeatBake, ItsDescriptionTellsWhatIsPainted) {
+TEST(HeatBakeGl, ItsDescriptionTellsWhatIsPainted) {
   NEEDS_EFFECTS;
   const test::TemporaryFolder folder;
   auto order = order_with(false);
@@ -175,6 +175,11 @@ TEST(HeatBake, ItsDescriptionTellsWhatIsPainted) {
   EXPECT_THAT(played(folder / "a.bake", true)->description(), EndsWith(words));
   EXPECT_THAT(played(folder / "a.bake", false)->description(), Not(HasSubstr("painted")));
   EXPECT_THAT(make_live_fluid(order_with(true).fluid)->description(), EndsWith(words));
+  const auto context = sim::GlContext::make_headless();
+  auto pictures = order_with(true, true);
+  pictures.frames = 1;
+  write_bake(pictures, header_of(pictures), folder / "b.bake", true, {});
+  EXPECT_THAT(played(folder / "b.bake", true)->description(), EndsWith("160x90 from view" + words));
   EXPECT_THAT(make_live_fluid(order_with(false).fluid)->description(), Not(HasSubstr("painted")));
 }
 
