@@ -5,22 +5,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
 
 namespace {
 
-std::string words_of(const std::vector<sim::Effect>& effects) {
-  const std::string words = sim::effects_in_words(effects);
-  return words.empty() ? "none" : words;
+std::string or_none(const std::string& words) { return words.empty() ? "none" : words; }
+
+/// Where the bake's header tells them.
+std::string effects_told(const sim::BakeHeader& header) {
+  if (!header.effects && !header.picture_effects) return "";
+  const sim::Scene scene = sim::baked_scene(header);
+  std::string out;
+  if (header.effects) out += ", effects " + or_none(sim::effects_in_words(scene.effects));
+  if (header.picture_effects)
+    out += ", of the picture " + or_none(sim::picture_effects_in_words(scene.picture_effects));
+  return out;
 }
 
 std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256 +
-         (h.effects ? ", effects " + words_of(sim::baked_scene(h).effects) : "");
+         effects_told(h);
 }
 
 /// What is painted of a scene, if anything is.
@@ -79,7 +88,7 @@ std::string BakedPictures::description() const {
   const sim::BakeHeader& h = bake_->header();
   return describe(*bake_, "pictures") + ", " + std::to_string(h.picture_width_px) + "x" +
          std::to_string(h.picture_height_px) + " from " + h.camera +
-         painted_words(painted(sim::baked_scene(h), !h.overlay.empty()));
+         (h.overlay.empty() ? "" : painted_words(painted(sim::baked_scene(h), true)));
 }
 
 void BakedPictures::start(std::int64_t start_step) {

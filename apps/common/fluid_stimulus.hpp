@@ -139,6 +139,7 @@ struct StimulusChoice {
   stats::PtpeModel model;
   /// Live fluid only: instead of the scene's own. None = those of its file.
   std::optional<std::vector<sim::Effect>> effects = {};
+  std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< likewise
   bool paint_temperature = false;  ///< over the water, where it has temperatures; not of a bake with pictures
   Viewing viewing;                 ///< of a bake with pictures: nothing
   bool overview = false;           ///< live fluid is watched by the scene's camera for figures

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/common/fluid_stimulus.hpp"
+#include "libsim/scene/picture_effects_text.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 
@@ -25,9 +26,12 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
 
 /// Where there are any, or the choice says that there are none.
 std::string effects_told(const StimulusChoice& choice, const sim::Scene& scene) {
-  const std::string words = sim::effects_in_words(scene.effects);
-  if (words.empty()) return choice.effects ? ", effects none" : "";
-  return ", effects " + words;
+  const std::string water = sim::effects_in_words(scene.effects);
+  const std::string picture = sim::picture_effects_in_words(scene.picture_effects);
+  std::string out;
+  if (choice.effects || !water.empty()) out += ", effects " + (water.empty() ? "none" : water);
+  if (choice.picture_effects) out += ", of the picture " + (picture.empty() ? "none" : picture);
+  return out;
 }
 
 }  // namespace
@@ -37,6 +41,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   sim::Scene scene = sim::read_scene(choice.scene);
   if (choice.overview) scene.view = scene.overview;
   if (choice.effects) scene.effects = *choice.effects;
+  if (choice.picture_effects) scene.picture_effects = *choice.picture_effects;
   sim::SimulationOptions options;
   const auto backend = sim::choose_backend(choice.backend);
   if (choice.setting) {

@@ -85,7 +85,9 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   choice.scene = base::find_input(cell.stimulus.scene);
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
-  choice.effects = cell_effects(protocol_, cell.stimulus);
+  const CellEffects effects = cell_effects(protocol_, cell.stimulus);
+  choice.effects = effects.water;
+  choice.picture_effects = effects.picture;
   const SettingFile* setting = settings_.of(cell.stimulus);
   if (setting) choice.setting = setting->setting;
   const bool paced = cell.setting.mean > 0 && !setting;

@@ -101,7 +101,7 @@ std::vector<FramedScene> with_levels(const study::Protocol& protocol,
   for (const FramedScene& scene : scenes) {
     for (const study::EffectSet& level : protocol.design.effects) {
       out.push_back(scene);
-      out.back().scene.effects = effects_of(protocol, level.name, scene.scene);
+      out.back().scene = scene_with(scene.scene, effects_of(protocol, level.name, scene.scene));
       out.back().scene.name += ", effects " + level.name;
     }
   }

@@ -83,6 +83,8 @@ struct BakeHeader {
   std::optional<double> reference_k = {};
   /// What was asked to be painted over the water: "temperature", or nothing. Pictures hold it.
   std::string overlay = {};
+  /// Effects of the picture: format_picture_effects(). None = those of scene_text, or a format before 5.
+  std::optional<std::string> picture_effects = {};
 
   bool has_pictures() const { return picture_width_px > 0; }
 };

@@ -110,14 +110,16 @@ void check(const BakeHeader& header, const ByteReader& in) {
 
 Scene baked_scene(const BakeHeader& header) {
   Scene scene = parse_scene(header.scene_text, header.scene_name);
-  if (header.effects)
-    scene.effects =
-        read_effects(base::parse_toml(*header.effects, header.scene_name + ", its effects").tables("effect"));
+  const auto tables = [&](const std::string& text) {
+    return base::parse_toml(text, header.scene_name + ", its effects").tables("effect");
+  };
+  if (header.effects) scene.effects = read_effects(tables(*header.effects));
+  if (header.picture_effects) scene.picture_effects = read_picture_effects(tables(*header.picture_effects));
   return scene;
 }
 
 std::uint32_t format_of(const BakeHeader& header) {
-  const bool all_of_format_4 = !header.reference_k && header.overlay.empty();
+  const bool all_of_format_4 = !header.reference_k && header.overlay.empty() && !header.picture_effects;
   return all_of_format_4 ? 4 : 5;
 }
 
@@ -146,6 +148,8 @@ Bytes format_bake_header(const BakeHeader& header) {
   if (format_of(header) < 5) return bytes;
   out.put(header.reference_k.value_or(0));
   out.string(header.overlay);
+  out.put(static_cast<std::uint8_t>(header.picture_effects ? 1 : 0));
+  if (header.picture_effects) out.string(*header.picture_effects);
   return bytes;
 }
 
@@ -180,6 +184,9 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
   if (format >= 5) {
     if (const auto kelvin = in.get<double>(); kelvin != 0) header.reference_k = kelvin;
     header.overlay = in.string(max_text);
+    const auto there = in.get<std::uint8_t>();
+    if (there > 1) in.fail("has a header with unknown effects of the picture");
+    if (there) header.picture_effects = in.string(max_effects_text);
   }
   if (!in.rest().empty()) in.fail("has a header of the wrong length");
   check(header, in);

@@ -25,8 +25,9 @@ meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",
-       R"(What a level of `effects` holds: these effects of the water and no others, whatever the scene lists besides.
-Effects of the picture that the scene lists, such as `shadows`, stay at every level, none included.)"},
+       R"(What a level of `effects` holds: these effects and no others, whatever the scene lists besides. Effects of
+the picture, such as `shadows`, vary where a set names one, so that level none has none of them.
+Else they stay at every level as the scene lists them, none included.)"},
       {"design.effect_set.effect", "[[design.effect_set.effect]]",
        R"(An effect with its coefficient and options, as `[[effect]]` in a scene file
 ([methods.md](methods.md#effects)).)"},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -75,6 +76,13 @@ std::string effects_words(const sim::BakeHeader& header) {
   return words.empty() ? "no effects" : words;
 }
 
+std::string picture_words(const sim::BakeHeader& header) {
+  auto effects = sim::baked_scene(header).picture_effects;
+  std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
+  const std::string words = sim::picture_effects_in_words(effects);
+  return words.empty() ? "no effects of the picture" : words;
+}
+
 std::string overlay_words(const sim::BakeHeader& header) {
   return (header.overlay.empty() ? "nothing" : header.overlay) + " painted over them";
 }
@@ -86,6 +94,8 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.scene_text = sim::scene_text(order.fluid.scene);
   sim::Scene scene = sim::read_scene(order.fluid.scene);
   if (order.fluid.effects) scene.effects = *order.fluid.effects;
+  if (order.fluid.picture_effects)
+    header.picture_effects = sim::format_picture_effects(*order.fluid.picture_effects);
   if (sim::any_free(scene.obstacles) && !order.pictures)
     throw base::Error(order.fluid.scene.string(),
                       "has free obstacles, of which a bake of particles holds nothing",
@@ -131,6 +141,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
   out.add("n_*", std::to_string(found.n_star), std::to_string(wanted.n_star));
   if (found.scene_sha256 == wanted.scene_sha256) {
     out.add("", effects_words(found), effects_words(wanted));
+    out.add("", picture_words(found), picture_words(wanted));
     const bool drawn = found.has_pictures();  // they show foam whether its particles are kept or not
     if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
       out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");

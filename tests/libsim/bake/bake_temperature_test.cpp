@@ -107,17 +107,23 @@ TEST(BakeTemperature, OnlyWhatHoldsSomethingNewIsOfFormat5) {
   bake_test::write(folder / "cold.bake", 1);
   EXPECT_EQ(bake_test::read_all(folder / "warm.bake")[8], 5);
   EXPECT_EQ(bake_test::read_all(folder / "cold.bake")[8], 4);
+  auto unlit = bake_test::header(1);
+  EXPECT_EQ(sim::format_of(unlit), 4u);
+  unlit.picture_effects = "";
+  EXPECT_EQ(sim::format_of(unlit), 5u) << "none is not the scene's own";
 }
 
 TEST(BakeTemperature, HeaderComesBackAsWritten) {
   const Folder folder;
   auto header = warm_header(1);
   header.overlay = "temperature";
+  header.picture_effects = "[[effect]]\nkind = \"shadows\"\nstrength = 0.5\n";
   sim::BakeWriter writer(folder / "a.bake", header, true);
   writer.add_frame(0, {}, {}, {});
   writer.finish();
   const sim::BakeReader bake(folder / "a.bake");
   EXPECT_EQ(bake.header().overlay, "temperature");
+  EXPECT_EQ(bake.header().picture_effects, header.picture_effects);
   EXPECT_EQ(sim::format_bake_header(bake.header()), sim::format_bake_header(header));
 }
 
