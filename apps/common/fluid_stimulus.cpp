@@ -5,22 +5,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
 
 namespace {
 
-std::string words_of(const std::vector<sim::Effect>& effects) {
-  const std::string words = sim::effects_in_words(effects);
-  return words.empty() ? "none" : words;
+std::string or_none(const std::string& words) { return words.empty() ? "none" : words; }
+
+/// Where the bake's header tells them.
+std::string effects_told(const sim::BakeHeader& header) {
+  if (!header.effects && !header.picture_effects) return "";
+  const sim::Scene scene = sim::baked_scene(header);
+  std::string out;
+  if (header.effects) out += ", effects " + or_none(sim::effects_in_words(scene.effects));
+  if (header.picture_effects)
+    out += ", of the picture " + or_none(sim::picture_effects_in_words(scene.picture_effects));
+  return out;
 }
 
 std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256 +
-         (h.effects ? ", effects " + words_of(sim::baked_scene(h).effects) : "");
+         effects_told(h);
+}
+
+/// What is painted of a scene, if anything is.
+std::optional<TemperatureScale> painted(const sim::Scene& scene, bool paint) {
+  const TemperatureScale scale(scene);
+  if (!paint || !scale.heat()) return {};
+  return scale;
+}
+
+std::string painted_words(const std::optional<TemperatureScale>& scale) {
+  return scale ? ", painted " + scale->words() : "";
 }
 
 /// Where the axis of an eye meets its picture, px from the lower left: a headset's frusta are off-centre.
@@ -67,7 +87,8 @@ BakedPictures::~BakedPictures() {
 std::string BakedPictures::description() const {
   const sim::BakeHeader& h = bake_->header();
   return describe(*bake_, "pictures") + ", " + std::to_string(h.picture_width_px) + "x" +
-         std::to_string(h.picture_height_px) + " from " + h.camera;
+         std::to_string(h.picture_height_px) + " from " + h.camera +
+         (h.overlay.empty() ? "" : painted_words(painted(sim::baked_scene(h), true)));
 }
 
 void BakedPictures::start(std::int64_t start_step) {
@@ -107,17 +128,20 @@ void BakedPictures::draw(const study::Canvas& canvas) {
 }
 
 BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing,
-                               const sim::RenderOptions& options)
+                               const sim::RenderOptions& options, bool paint_temperature)
     : bake_(std::move(bake)),
       scene_(sim::baked_scene(bake_->header())),
       viewing_(std::move(viewing)),
-      options_(options) {
+      options_(options),
+      painted_(painted(scene_, paint_temperature && bake_->header().reference_k)) {
   if (sim::any_free(scene_.obstacles))
     throw base::Error(description(), "hold nothing of the free obstacles of their scene",
                       "show a bake of pictures, or the live fluid");
 }
 
-std::string BakedParticles::description() const { return describe(*bake_, "particles"); }
+std::string BakedParticles::description() const {
+  return describe(*bake_, "particles") + painted_words(painted_);
+}
 
 study::FrameFacts BakedParticles::prepare(std::int64_t step) {
   bake_->read_frame(step, frame_);
@@ -132,16 +156,19 @@ void BakedParticles::draw(const study::Canvas& canvas) {
   if (foams) foam_.upload(frame_.foam);
   renderer_->draw(particles_, views_on(scene_.view, viewing_, canvas), canvas.framebuffer,
                   foams ? &foam_ : nullptr);
+  if (painted_) renderer_->paint(painted_->overlay(frame_.temperature_k), canvas.framebuffer);
 }
 
 LiveFluid::LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-                     Viewing viewing, const sim::RenderOptions& options)
+                     Viewing viewing, const sim::RenderOptions& options, bool paint_temperature)
     : scene_(scene),
       frame_dt_s_(frame_dt_s),
-      description_(std::move(description)),
       make_(std::move(make)),
       viewing_(std::move(viewing)),
-      options_(options) {}
+      options_(options),
+      painted_(painted(scene, paint_temperature)) {
+  description_ = std::move(description) + painted_words(painted_);
+}
 
 void LiveFluid::start(std::int64_t start_step) {
   prepared_.reset();
@@ -200,6 +227,9 @@ void LiveFluid::draw(const study::Canvas& canvas) {
   visual_scale_ =
       stereo_ ? 1 : frame_picture(scene_.view, viewing_, canvas.width_px, canvas.height_px).visual_scale();
   picture_->draw(*simulation_, views, canvas.framebuffer);
+  if (!painted_) return;
+  simulation_->read_field(sim::ParticleField::Temperature, temperature_k_);
+  picture_->renderer().paint(painted_->overlay(temperature_k_), canvas.framebuffer);
 }
 
 }  // namespace apps

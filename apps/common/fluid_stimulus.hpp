@@ -17,6 +17,7 @@
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/framing.hpp"
 #include "apps/common/solver_setting.hpp"
+#include "apps/common/temperature_scale.hpp"
 #include "libsim/bake/picture_ring.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/simulation.hpp"
@@ -47,11 +48,12 @@ class BakedPictures final : public study::Stimulus {
   unsigned texture_ = 0, source_ = 0;  ///< the picture, and a framebuffer to copy it from
 };
 
-/// The particle frames of a bake with their foam, drawn by the renderer.
+/// The particle frames of a bake with their foam, drawn by the renderer. Temperatures are painted over them
+/// where that is asked for and the bake holds them.
 class BakedParticles final : public study::Stimulus {
  public:
   explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
-                          const sim::RenderOptions& options = {});
+                          const sim::RenderOptions& options = {}, bool paint_temperature = false);
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
@@ -64,6 +66,7 @@ class BakedParticles final : public study::Stimulus {
   sim::Scene scene_;
   Viewing viewing_;
   sim::RenderOptions options_;
+  std::optional<TemperatureScale> painted_;
   sim::BakeFrame frame_;
   std::unique_ptr<sim::FluidRenderer> renderer_;
   sim::ParticleBuffer particles_, foam_;
@@ -75,8 +78,9 @@ class LiveFluid final : public study::Stimulus {
   /// Makes the simulation at frame 0; called again for each rewind.
   using MakeSimulation = std::function<std::unique_ptr<sim::Simulation>()>;
 
+  /// paint_temperature: over the water, where the scene has heat.
   LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
-            Viewing viewing = {}, const sim::RenderOptions& options = {});
+            Viewing viewing = {}, const sim::RenderOptions& options = {}, bool paint_temperature = false);
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
@@ -114,7 +118,9 @@ class LiveFluid final : public study::Stimulus {
   std::unique_ptr<FluidPicture> picture_;
   std::optional<sim::View> view_;  ///< of the last picture; of two eyes the left one's
   bool stereo_ = false;            ///< likewise
-  double visual_scale_ = 1;        ///< likewise, sim::EyeLook's
+  std::optional<TemperatureScale> painted_;
+  std::vector<float> temperature_k_;  ///< of the present picture, above the reference
+  double visual_scale_ = 1;           ///< likewise, sim::EyeLook's
 };
 
 /// What `vip-study run` shows: a bake when one is named, otherwise a live simulation.
@@ -133,6 +139,8 @@ struct StimulusChoice {
   stats::PtpeModel model;
   /// Live fluid only: instead of the scene's own. None = those of its file.
   std::optional<std::vector<sim::Effect>> effects = {};
+  std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< likewise
+  bool paint_temperature = false;  ///< over the water, where it has temperatures; not of a bake with pictures
   Viewing viewing;                 ///< of a bake with pictures: nothing
   bool overview = false;           ///< live fluid is watched by the scene's camera for figures
   sim::RenderOptions render = {};  ///< of live fluid

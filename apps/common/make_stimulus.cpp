@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/common/fluid_stimulus.hpp"
+#include "libsim/scene/picture_effects_text.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 
@@ -19,14 +20,18 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing);
+  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing, sim::RenderOptions{},
+                                          choice.paint_temperature);
 }
 
 /// Where there are any, or the choice says that there are none.
 std::string effects_told(const StimulusChoice& choice, const sim::Scene& scene) {
-  const std::string words = sim::effects_in_words(scene.effects);
-  if (words.empty()) return choice.effects ? ", effects none" : "";
-  return ", effects " + words;
+  const std::string water = sim::effects_in_words(scene.effects);
+  const std::string picture = sim::picture_effects_in_words(scene.picture_effects);
+  std::string out;
+  if (choice.effects || !water.empty()) out += ", effects " + (water.empty() ? "none" : water);
+  if (choice.picture_effects) out += ", of the picture " + (picture.empty() ? "none" : picture);
+  return out;
 }
 
 }  // namespace
@@ -36,6 +41,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   sim::Scene scene = sim::read_scene(choice.scene);
   if (choice.overview) scene.view = scene.overview;
   if (choice.effects) scene.effects = *choice.effects;
+  if (choice.picture_effects) scene.picture_effects = *choice.picture_effects;
   sim::SimulationOptions options;
   const auto backend = sim::choose_backend(choice.backend);
   if (choice.setting) {
@@ -61,7 +67,8 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
     if (!options.start) options.start = simulation->read_state();
     return simulation;
   };
-  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render);
+  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render,
+                                     choice.paint_temperature);
 }
 
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice) {

@@ -75,7 +75,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    if (kind == PowerKind::Task2) std::erase(request.worlds, "margin");  // the same as null
+    if (kind == PowerKind::Task2) std::erase(request.worlds, "margin");                 // the same as null
+    if (!request.protocol.design.effects.empty()) std::erase(request.worlds, "paper");  // it varied none
     return;
   }
   std::vector<std::string> unique;
@@ -156,8 +157,8 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
                  "Participants: LOW:HIGH, LOW:HIGH:STEP or one number; without: the protocol's");
   sub.add_option(
          "--effect", request.effect,
-         "Task 2: true preference of the better method; Task 1: true difference in standard deviations "
-         "of the differences")
+         "Task 2: true preference of the better method, or of a level of effects over none; Task 1: true "
+         "difference in standard deviations of the differences")
       ->check(number_in(-10, 10));
   auto* difference = sub.add_option("--difference", request.difference,
                                     "Task 1: the same in points of realism; cybersickness in proportion")

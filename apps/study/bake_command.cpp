@@ -22,7 +22,7 @@ namespace {
 struct BakeCommand {
   std::string scene, out, verify, protocol;
   std::string method = "HiRes", n_star = "32k", backend = "auto";
-  std::string pictures, camera = "view", rate, ptpe;
+  std::string pictures, camera = "view", overlay = "none", rate, ptpe;
   int frames = 600;
   double content_step_s = 0;
   bool force = false;
@@ -44,6 +44,7 @@ BakeOrder order_of(const BakeCommand& command) {
   order.fluid.backend = command.backend;
   order.fluid.content_step_s = command.content_step_s;
   order.fluid.overview = command.camera == "overview";
+  order.fluid.paint_temperature = command.overlay == "temperature";
   order.fluid.model = model_of(command);
   if (!command.rate.empty()) order.fluid.fixed_rate = sim::parse_frame_rate(command.rate);
   order.frames = command.frames;
@@ -124,9 +125,12 @@ void verify(const std::string& path) {
               speed.particles);
   if (h.max_foam > 0)
     std::printf("  with the foam of each, up to %lld particles\n", static_cast<long long>(h.max_foam));
+  if (h.reference_k)
+    std::printf("  with the temperature of each, off by at most %.2g K\n", speed.temperature_error_k);
   if (!h.has_pictures()) return;
-  std::printf("  %dx%d pictures (%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
-              h.picture_height_px, h.camera.c_str(), speed.pictures);
+  std::printf("  %dx%d pictures (%s%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
+              h.picture_height_px, h.camera.c_str(), h.overlay.empty() ? "" : ", temperature painted",
+              speed.pictures);
 }
 
 void add_scene_options(CLI::App& sub, BakeCommand& command) {
@@ -140,6 +144,10 @@ void add_scene_options(CLI::App& sub, BakeCommand& command) {
         sub.add_option("--camera", command.camera, "Camera of the pictures")
             ->check(CLI::IsMember({"view", "overview"}))
             ->capture_default_str(),
+        sub.add_option("--overlay", command.overlay, "Painted over the water of the pictures")
+            ->check(CLI::IsMember({"none", "temperature"}))
+            ->capture_default_str()
+            ->needs("--pictures"),
         sub.add_option("--rate", command.rate,
                        "Mean and standard deviation of the frame rate that tau of Ours-TSp follows from: "
                        "16.9,3.2"),

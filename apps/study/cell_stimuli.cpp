@@ -29,6 +29,7 @@ std::string describe_live(const study::Protocol& protocol, const std::string& ba
     const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
     text += (scenes.size() > 1 ? "; " : ", scene ") + scene.name + " " + scene.sha256;
     if (!protocol.design.effects.empty()) text += ", effects " + levels_in_words(protocol, scene);
+    if (protocol.design.paint_temperature) text += ", painted " + temperatures_in_words(protocol, scene);
   }
   return text;
 }
@@ -43,6 +44,7 @@ CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& proto
       settings_(std::move(settings)),
       shown_(options.display != "none") {
   choice_.content_step_s = protocol.content.content_step_s;
+  choice_.paint_temperature = protocol.design.paint_temperature;
   choice_.backend = options.backend;
   choice_.model = model;
   choice_.viewing = std::move(viewing);
@@ -74,7 +76,8 @@ std::string CellStimuli::describe(const study::Protocol& protocol) {
   const auto live_words = [&] { return describe_live(protocol, choice_.backend) + settings_.description(); };
   if (bakes.empty() && live) return live_words();
   if (bakes.empty()) return stimulus(protocol.design.cells.front()).description();
-  return live ? bakes + "; " + live_words() : bakes;
+  if (live) return bakes + "; " + live_words();
+  return bakes + (choice_.paint_temperature ? "; painted temperature" : "");
 }
 
 StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
@@ -82,7 +85,9 @@ StimulusChoice CellStimuli::choice_of(const study::Cell& cell) const {
   choice.scene = base::find_input(cell.stimulus.scene);
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
-  choice.effects = cell_effects(protocol_, cell.stimulus);
+  const CellEffects effects = cell_effects(protocol_, cell.stimulus);
+  choice.effects = effects.water;
+  choice.picture_effects = effects.picture;
   const SettingFile* setting = settings_.of(cell.stimulus);
   if (setting) choice.setting = setting->setting;
   const bool paced = cell.setting.mean > 0 && !setting;

@@ -101,7 +101,7 @@ std::vector<FramedScene> with_levels(const study::Protocol& protocol,
   for (const FramedScene& scene : scenes) {
     for (const study::EffectSet& level : protocol.design.effects) {
       out.push_back(scene);
-      out.back().scene.effects = effects_of(protocol, level.name, scene.scene);
+      out.back().scene = scene_with(scene.scene, effects_of(protocol, level.name, scene.scene));
       out.back().scene.name += ", effects " + level.name;
     }
   }
@@ -118,7 +118,8 @@ void check_protocol(const CheckOptions& options) {
   check_stimuli(protocol, path.string());
   const CheckReport report = make_report(options, protocol);
   print_report(report);
-  if (!options.preview.empty()) write_preview(options.preview, with_levels(protocol, report.scenes));
+  if (!options.preview.empty())
+    write_preview(options.preview, with_levels(protocol, report.scenes), protocol.design.paint_temperature);
   if (!options.json.empty()) base::write_file_atomically(options.json, report_json(report).dump(2) + "\n");
   if (report.measured && !report.measured->collapse.empty()) {
     throw base::Error(path.string() + ": timing = \"native\"",

@@ -106,6 +106,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
       {"mean", mean_name(protocol)},
       {"timing", timing_name(protocol.design)},
       {"needs_gaze", protocol.needs_gaze},
+      {"overlay", protocol.design.paint_temperature ? "temperature" : "none"},
       {"units", report.outline.units},
       {"trials", report.outline.trials},
       {"overrun_s", overrun_s(protocol)},

@@ -105,6 +105,8 @@ void print_stimuli(const CheckReport& report) {
   for (const auto& level : report.protocol.design.effects)
     std::printf("%seffects \"%s\": %s\n", &level == &report.protocol.design.effects.front() ? "\n" : "",
                 level.name.c_str(), level.words.c_str());
+  if (report.protocol.design.paint_temperature)
+    std::printf("overlay: temperature is painted over the water of every stimulus\n");
   std::printf("\nstimuli:\n");
   for (const auto& one : plan_bakes(report.protocol)) {
     const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";

@@ -8,6 +8,7 @@
 
 #include "apps/common/fluid_picture.hpp"
 #include "apps/common/program.hpp"
+#include "apps/common/temperature_scale.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
@@ -23,7 +24,7 @@ constexpr std::int64_t particles = 4096;  // enough to know the water by
 using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kept{0, 150, 60}, lost{220, 30, 30}, fovea{250, 170, 0};
 
-sim::Image draw_fluid(const FramedScene& framed) {
+sim::Image draw_fluid(const FramedScene& framed, bool paint_temperature) {
   sim::SimulationOptions options;
   options.method = sim::MethodKind::LoRes;
   options.n_star = particles;
@@ -35,6 +36,11 @@ sim::Image draw_fluid(const FramedScene& framed) {
   FluidPicture picture(framed.scene);
   const sim::Offscreen target(framed.view.viewport.width, framed.view.viewport.height);
   picture.draw(*fluid, framed.view, target.framebuffer());
+  if (paint_temperature) {
+    std::vector<float> temperature_k;
+    fluid->read_field(sim::ParticleField::Temperature, temperature_k);
+    picture.renderer().paint(TemperatureScale(framed.scene).overlay(temperature_k), target.framebuffer());
+  }
   return target.read();
 }
 
@@ -117,14 +123,15 @@ constexpr const char* page_head =
 
 }  // namespace
 
-void write_preview(const std::filesystem::path& folder, const std::vector<FramedScene>& scenes) {
+void write_preview(const std::filesystem::path& folder, const std::vector<FramedScene>& scenes,
+                   bool paint_temperature) {
   make_folder(folder);
   const auto context = sim::GlContext::make_headless();
   Progress progress("preview", scenes.size());
   std::string page = page_head;
   std::size_t done = 0;
   for (const FramedScene& framed : scenes) {
-    sim::Image image = draw_fluid(framed);
+    sim::Image image = draw_fluid(framed, paint_temperature);
     circle(image, framed.framing);
     for (const auto& box : framed.scene.visible) outline(image, framed, box);
     const std::string name = "scene_" + std::to_string(++done) + ".png";

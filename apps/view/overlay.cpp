@@ -106,14 +106,13 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPictur
       legend_ = "orange: moved by the velocity grid, green: solved";
       break;
     case OverlayKind::Temperature:
-      if (!heat_) {
+      if (!temperatures_.heat()) {
         legend_ = "temperature: heat is not listed, or off";
         return;
       }
       field(sim::ParticleField::Temperature);
-      overlay.low = static_cast<float>(temperatures_.least_k - reference_k_);
-      overlay.high = static_cast<float>(temperatures_.most_k - reference_k_);
-      legend_ = fmt::format("temperature {:.2f} to {:.2f} K", temperatures_.least_k, temperatures_.most_k);
+      overlay = temperatures_.overlay(values_);
+      legend_ = temperatures_.words();
       break;
     default:
       if (!take_saliency(kind, fluid)) {

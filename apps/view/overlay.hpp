@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/common/fluid_picture.hpp"
+#include "apps/common/temperature_scale.hpp"
 
 namespace apps {
 
@@ -38,12 +39,7 @@ class OverlayPainter {
  public:
   /// `finest_spacing_m` is 2 r_*. The scene says which temperatures there are.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
-      : finest_spacing_m_(finest_spacing_m),
-        heat_(sim::coefficients_of(scene.effects)[sim::EffectKind::Heat] > 0) {
-    if (!heat_) return;
-    reference_k_ = sim::reference_temperature(scene);
-    temperatures_ = sim::temperatures_of(scene);
-  }
+      : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
   void paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture, unsigned framebuffer);
   /// What the colours of the last paint stand for, e.g. "speed 0 to 10 m/s".
   const std::string& legend() const { return legend_; }
@@ -52,9 +48,7 @@ class OverlayPainter {
   bool take_saliency(OverlayKind kind, const sim::Simulation& fluid);
 
   double finest_spacing_m_;
-  bool heat_;
-  double reference_k_ = 0;
-  sim::TemperatureRange temperatures_;
+  TemperatureScale temperatures_;
   std::vector<float> values_;
   std::vector<sim::ParticleSaliency> saliency_;
   std::vector<sim::RenderParticle> particles_;

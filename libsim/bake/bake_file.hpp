@@ -10,9 +10,12 @@
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer comes last, so a file that was cut short is known as such. Positions are 16 bit per axis over
 /// each frame's bounding box: off by at most extent / 131070, which the writer holds under a twentieth of the
-/// finest radius; foam's radii likewise. All else is exact, each frame's account too (not in format 1). Since
-/// format 3 the header tells how the fluid was watched and what tau followed from, since format 4 the effects
-/// that were computed, and foam is kept. Equal content gives equal bytes (no date is stored).
+/// finest radius; foam's radii and temperatures likewise, each over its range in the frame. All else is
+/// exact, each frame's account too (not in format 1). Since format 3 the header tells how the fluid was
+/// watched and what tau followed from, since format 4 the effects that were computed, and foam is kept. Since
+/// format 5 the particles may have temperatures, and the header tells what was painted and which effects the
+/// picture had. What holds none of that is written in format 4. Equal content gives equal bytes (no date is
+/// stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -75,6 +78,13 @@ struct BakeHeader {
   std::optional<std::string> effects = {};
   /// No frame holds more diffuse particles of the effect foam; 0 = none are kept, or a format before 4.
   std::int64_t max_foam = 0;
+  /// Of the effect heat, K: what the particles' temperatures count from. None = none are kept, or a format
+  /// before 5.
+  std::optional<double> reference_k = {};
+  /// What was asked to be painted over the water: "temperature", or nothing. Pictures hold it.
+  std::string overlay = {};
+  /// Effects of the picture: format_picture_effects(). None = those of scene_text, or a format before 5.
+  std::optional<std::string> picture_effects = {};
 
   bool has_pictures() const { return picture_width_px > 0; }
 };
@@ -99,8 +109,10 @@ class BakeWriter {
   BakeWriter(const BakeWriter&) = delete;
   BakeWriter& operator=(const BakeWriter&) = delete;
 
-  /// The next frame's particles, and the solver's account of it (Simulation::account).
-  void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account);
+  /// The next frame's particles, and the solver's account of it (Simulation::account). temperature_k: of each
+  /// particle, above the header's reference_k; due where it states that, and else not taken.
+  void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account,
+                 const std::vector<float>& temperature_k = {});
   /// The foam of the frame just added, before its picture; due where the header states max_foam.
   void add_foam(const std::vector<RenderParticle>& foam);
   /// The picture of the frame just added: 4 x width x height bytes, bottom row first; alpha is dropped.
@@ -156,6 +168,8 @@ class PictureReader {
   Bytes chunk_, scratch_;
 };
 
+/// The format in which a bake with this header is written.
+std::uint32_t format_of(const BakeHeader& header);
 /// The scene that was baked, with the effects that were computed. base::Error: a scene that cannot be read.
 Scene baked_scene(const BakeHeader& header);
 

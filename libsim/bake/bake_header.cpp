@@ -100,6 +100,9 @@ void check(const BakeHeader& header, const ByteReader& in) {
   }
   within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
   within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "count of foam");
+  within(!header.reference_k || (std::isfinite(*header.reference_k) && *header.reference_k > 0),
+         "reference temperature");
+  within(header.overlay.empty() || (header.overlay == "temperature" && header.reference_k), "overlay");
   check(header.view, in);
 }
 
@@ -107,10 +110,17 @@ void check(const BakeHeader& header, const ByteReader& in) {
 
 Scene baked_scene(const BakeHeader& header) {
   Scene scene = parse_scene(header.scene_text, header.scene_name);
-  if (header.effects)
-    scene.effects =
-        read_effects(base::parse_toml(*header.effects, header.scene_name + ", its effects").tables("effect"));
+  const auto tables = [&](const std::string& text) {
+    return base::parse_toml(text, header.scene_name + ", its effects").tables("effect");
+  };
+  if (header.effects) scene.effects = read_effects(tables(*header.effects));
+  if (header.picture_effects) scene.picture_effects = read_picture_effects(tables(*header.picture_effects));
   return scene;
+}
+
+std::uint32_t format_of(const BakeHeader& header) {
+  const bool all_of_format_4 = !header.reference_k && header.overlay.empty() && !header.picture_effects;
+  return all_of_format_4 ? 4 : 5;
 }
 
 Bytes format_bake_header(const BakeHeader& header) {
@@ -135,6 +145,11 @@ Bytes format_bake_header(const BakeHeader& header) {
   out.put(static_cast<std::uint8_t>(header.effects ? 1 : 0));
   if (header.effects) out.string(*header.effects);
   out.put(header.max_foam);
+  if (format_of(header) < 5) return bytes;
+  out.put(header.reference_k.value_or(0));
+  out.string(header.overlay);
+  out.put(static_cast<std::uint8_t>(header.picture_effects ? 1 : 0));
+  if (header.picture_effects) out.string(*header.picture_effects);
   return bytes;
 }
 
@@ -165,6 +180,13 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
     if (there > 1) in.fail("has a header with unknown effects");
     if (there) header.effects = in.string(max_effects_text);
     header.max_foam = in.get<std::int64_t>();
+  }
+  if (format >= 5) {
+    if (const auto kelvin = in.get<double>(); kelvin != 0) header.reference_k = kelvin;
+    header.overlay = in.string(max_text);
+    const auto there = in.get<std::uint8_t>();
+    if (there > 1) in.fail("has a header with unknown effects of the picture");
+    if (there) header.picture_effects = in.string(max_effects_text);
   }
   if (!in.rest().empty()) in.fail("has a header of the wrong length");
   check(header, in);

@@ -83,6 +83,7 @@ struct BakeReader::State {
   std::uint64_t content_hash = 0;
   std::uint64_t body_begin = 0;  ///< first byte after the header
   std::uint32_t format = 0;
+  ParticleLayout layout;
 
   template <typename... Args>
   explicit State(Args&&... args) : source(std::forward<Args>(args)...) {
@@ -120,6 +121,7 @@ struct BakeReader::State {
     source.read(bake::prologue_bytes, size, bytes);
     if (XXH3_64bits(bytes.data(), bytes.size()) != checksum) fail(source.name(), "has a damaged header");
     header = parse_bake_header(bytes, format, source.name());
+    layout = {format, header.radius_by_level_m, header.max_particles, header.reference_k.has_value()};
     body_begin = bake::prologue_bytes + size;
   }
 
@@ -204,7 +206,7 @@ void BakeReader::read_frame(std::int64_t frame, BakeFrame& out) const {
   thread_local Bytes chunk, scratch;
   const std::string place = bake::frame_place(s.source.name(), "frame", frame);
   s.read_chunk(s.at(s.particles, frame), place, chunk);
-  decode_particles(chunk, s.format, s.header.radius_by_level_m, s.header.max_particles, place, scratch, out);
+  decode_particles(chunk, s.layout, place, scratch, out);
   out.foam.clear();
   if (s.header.max_foam == 0) return;
   const std::string foam_place = bake::frame_place(s.source.name(), "foam", frame);

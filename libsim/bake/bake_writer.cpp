@@ -52,7 +52,7 @@ struct BakeWriter::State {
     Bytes bytes;
     ByteWriter out(bytes);
     out.bytes(bake::as_bytes(bake::magic));
-    out.put(bake_format);
+    out.put(format_of(header));
     out.put(static_cast<std::uint32_t>(body.size()));
     out.put(static_cast<std::uint64_t>(XXH3_64bits(body.data(), body.size())));
     out.bytes(body);
@@ -98,7 +98,7 @@ BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool over
     : state_(std::make_unique<State>()) {
   state_->path = path;
   state_->header = header;
-  parse_bake_header(format_bake_header(header), bake_format, path.string());
+  parse_bake_header(format_bake_header(header), format_of(header), path.string());
   state_->open(overwrite);
   state_->write_header();
 }
@@ -106,7 +106,7 @@ BakeWriter::BakeWriter(const fs::path& path, const BakeHeader& header, bool over
 BakeWriter::~BakeWriter() = default;
 
 void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& particles,
-                           const FrameAccount& account) {
+                           const FrameAccount& account, const std::vector<float>& temperature_k) {
   State& s = *state_;
   const std::string place = bake::frame_place(s.path.string(), "frame", s.frames);
   if (s.frames == s.header.frame_count || !s.complete())
@@ -114,8 +114,12 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
     throw base::Error(place, "holds more particles than the header states", "state the largest count");
   }
-  encode_particles(time_s, account, particles, s.header.radius_by_level_m, particle_zstd_level, place,
-                   s.chunk);
+  const bool warm = s.header.reference_k.has_value();
+  if (temperature_k.size() != (warm ? particles.size() : 0))
+    throw std::logic_error(
+        "BakeWriter: a frame without its temperatures, or with some that the header lacks");
+  encode_particles(time_s, account, particles, s.header.radius_by_level_m, warm ? &temperature_k : nullptr,
+                   particle_zstd_level, place, s.chunk);
   ByteReader facts(s.chunk, place);
   s.facts = get_facts(facts, bake_format, s.header.radius_by_level_m.size());
   s.write_chunk(bake::ChunkKind::Particles);

@@ -37,8 +37,8 @@ Box bounding_box(const std::vector<RenderParticle>& particles, const std::string
 void check_error(const Box& box, const std::vector<float>& radii, const std::string& place) {
   const float finest = *std::min_element(radii.begin(), radii.end());
   for (const Axis& axis : box) {
-    const float error = (axis.max - axis.min) / (2 * bake::axis_steps);
-    if (error < finest / 20) continue;
+    const double error = bake::error_of(axis);
+    if (error < double(finest) / 20) continue;
     throw base::Error(place,
                       fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
                                   "{:.3g} m needs a twentieth",
@@ -72,12 +72,30 @@ std::vector<std::uint32_t> order_by_level(const std::vector<RenderParticle>& par
   return order;
 }
 
+Axis temperature_range(const std::vector<float>& temperature_k, const std::string& place) {
+  Axis range;
+  for (std::size_t i = 0; i < temperature_k.size(); ++i) {
+    const float one = temperature_k[i];
+    if (!std::isfinite(one)) {
+      throw base::Error(place, "a particle's temperature is not finite",
+                        "the simulation has failed; use more substeps");
+    }
+    range.min = i == 0 ? one : std::min(range.min, one);
+    range.max = i == 0 ? one : std::max(range.max, one);
+  }
+  if (bake::error_of(range) <= max_temperature_error_k) return range;
+  throw base::Error(place,
+                    fmt::format("temperatures span {:.4g} K, which 16 bit resolve to {:.3g} K only",
+                                double(range.max) - double(range.min), bake::error_of(range)),
+                    "the simulation has failed; use more substeps");
+}
+
 }  // namespace
 
 void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<RenderParticle>& particles,
-                      const std::vector<float>& radius_by_level_m, int zstd_level, const std::string& place,
-                      Bytes& out) {
+                      const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
+                      int zstd_level, const std::string& place, Bytes& out) {
   if (particles.size() > static_cast<std::size_t>(max_bake_particles)) {
     throw base::Error(place, "holds more particles than a bake may", "use a smaller --n-star");
   }
@@ -90,24 +108,33 @@ void encode_particles(double time_s, const FrameAccount& account,
   ByteWriter writer(out);
   put_facts(writer, facts);
   bake::put_axes(writer, box);
-  Bytes planes(6 * particles.size());
+  Bytes planes((temperature_k ? 8 : 6) * particles.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bake::encode_axis(
         order.size(), [&](std::size_t i) { return coordinate(particles[order[i]], axis); }, box[axis],
         planes.data() + 2 * axis * particles.size());
   }
+  if (temperature_k) {
+    const Axis range = temperature_range(*temperature_k, place);
+    bake::put_axes<1>(writer, {range});
+    bake::encode_axis(
+        order.size(), [&](std::size_t i) { return (*temperature_k)[order[i]]; }, range,
+        planes.data() + 6 * particles.size());
+  }
   pack(planes, zstd_level, out);
 }
 
-void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<float>& radius_by_level_m,
-                      std::int64_t max_particles, const std::string& place, Bytes& scratch, BakeFrame& out) {
+void decode_particles(ByteSpan payload, const ParticleLayout& layout, const std::string& place,
+                      Bytes& scratch, BakeFrame& out) {
+  const auto& radius_by_level_m = layout.radius_by_level_m;
   ByteReader in(payload, place);
-  out.facts = get_facts(in, format, radius_by_level_m.size());
+  out.facts = get_facts(in, layout.format, radius_by_level_m.size());
   const std::int64_t total = out.facts.account.particles();
-  if (total > max_particles) in.fail("states " + std::to_string(total) + " particles");
+  if (total > layout.max_particles) in.fail("states " + std::to_string(total) + " particles");
   const Box box = bake::get_axes<3>(in);
+  const Axis warmth = layout.temperatures ? bake::get_axes<1>(in)[0] : Axis{};
   const auto n = static_cast<std::size_t>(total);
-  unpack(in, 6 * n, scratch);
+  unpack(in, (layout.temperatures ? 8 : 6) * n, scratch);
 
   out.particles.resize(n);
   RenderParticle* particles = out.particles.data();
@@ -121,6 +148,11 @@ void decode_particles(ByteSpan payload, std::uint32_t format, const std::vector<
     for (std::size_t i = begin; i < end; ++i) particles[i].radius_m = radius_by_level_m[level];
     begin = end;
   }
+  out.temperature_k.resize(layout.temperatures ? n : 0);
+  out.temperature_error_k = bake::error_of(warmth);
+  if (!layout.temperatures) return;
+  float* kelvin = out.temperature_k.data();
+  bake::decode_axis(planes + 6 * n, n, warmth, [=](std::size_t i, float k) { kelvin[i] = k; });
 }
 
 }  // namespace sim

@@ -17,6 +17,11 @@ struct Axis {
   float min = 0, max = 0;
 };
 
+/// That a number of this range is off by at most.
+inline double error_of(const Axis& range) {
+  return (double(range.max) - double(range.min)) / (2 * double(axis_steps));
+}
+
 /// Small differences of either sign become small numbers.
 inline std::uint16_t zigzag(std::uint16_t difference) {
   return static_cast<std::uint16_t>((difference << 1) ^ ((difference & 0x8000) ? 0xffff : 0));

@@ -113,7 +113,7 @@ void FluidRenderer::paint(const Overlay& overlay, unsigned framebuffer) {
   glUniform1i(program.uniform("classes"), overlay.classes);
   glUniform1ui(program.uniform("value_count"), static_cast<GLuint>(overlay.values.size()));
   glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the picture stays opaque
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glBindVertexArray(s.vertex_array);
   for (std::size_t i = 0; i < s.views_drawn; ++i) {

@@ -69,6 +69,7 @@ enum class Assignment {
 struct Design {
   std::vector<Cell> cells;         ///< grouped, in file order; a trial names one or two by index
   std::vector<EffectSet> effects;  ///< levels in file order; empty: effects are no factor
+  bool paint_temperature = false;  ///< over the water of every cell; that each has any is libsim's to say
   TimingSource timing = TimingSource::Settings;
   bool pairs = false;  ///< a trial shows two cells; all unordered pairs of a group
   int groups = 1;      ///< that a participant meets: different scenes, and different n_star while there are

@@ -166,6 +166,7 @@ Design read_design(const base::TomlTable& table) {
                "cannot vary under timing = \"settings\": the pilot's curve is of frame rates alone",
                "use timing = \"equal\", or remove effects");
   }
+  design.paint_temperature = table.choice_or("overlay", "none", {"none", "temperature"}) == "temperature";
   design.cells = read_cells(table, design.timing, design.effects);
   design.pairs = table.boolean_or("pairs", false);
   design.groups = static_cast<int>(table.integer_or("groups", 1, {1, 100}));

@@ -25,8 +25,9 @@ meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",
-       R"(What a level of `effects` holds: these effects of the water and no others, whatever the scene lists besides.
-Effects of the picture that the scene lists, such as `shadows`, stay at every level, none included.)"},
+       R"(What a level of `effects` holds: these effects and no others, whatever the scene lists besides. Effects of
+the picture, such as `shadows`, vary where a set names one, so that level none has none of them.
+Else they stay at every level as the scene lists them, none included.)"},
       {"design.effect_set.effect", "[[design.effect_set.effect]]",
        R"(An effect with its coefficient and options, as `[[effect]]` in a scene file
 ([methods.md](methods.md#effects)).)"},
@@ -121,6 +122,9 @@ const std::vector<KeyReference>& protocol_reference() {
        "levels of the factor effects, 2 to 20; refused under settings. none: no effects. scene: those of the "
        "scene's file. Another level has a table `effect_set`. Without this key each scene has its own"},
       {"design", "effect_set", "tables", "", where_needed, "needed by each level but none and scene"},
+      {"design", "overlay", "text", "\"none\", \"temperature\"", "\"none\"",
+       "temperature: painted over the water of every stimulus, dark blue to yellow from the coldest to the "
+       "hottest that its scene names. Every scene, and every level of effects, then has heat"},
       {"design", "duration_s", "number", "[0.1, 3600]", "", "of each stimulus, s"},
       {"design", "mean_fps", "list of numbers", "[0.1, 1000]", where_needed,
        "means of the frame rate, frames/s; needed under settings and equal, refused otherwise"},

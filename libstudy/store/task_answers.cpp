@@ -222,6 +222,7 @@ TaskProtocol describe(const Protocol& protocol) {
   out.content_step_s = protocol.content.content_step_s;
   out.questions = trial_questions(protocol);
   out.effects = protocol.design.effects;
+  out.paint_temperature = protocol.design.paint_temperature;
   for (const Cell& cell : protocol.design.cells) {
     add_once(out.scenes, cell.stimulus.scene);
     if (add_once(out.methods, treatment_name(cell.stimulus)) && !out.effects.empty())

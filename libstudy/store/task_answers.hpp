@@ -96,6 +96,7 @@ struct TaskProtocol {
   std::vector<TaskSession> sessions;
   double content_step_s = 1.0 / 60;
   std::vector<EffectSet> effects = {};  ///< levels of the factor; empty: effects are none
+  bool paint_temperature = false;       ///< Design::paint_temperature
   std::vector<StimulusSpec> treatments =
       {};  ///< of `methods`, method and effects alone; empty without levels
 

@@ -8,6 +8,7 @@
 #include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/cell_stimuli.hpp"
 #include "apps/study/check/measured_check.hpp"
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/study_test_support.hpp"
@@ -66,9 +67,10 @@ TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
                     set_of("keep = [\"foam\"]\neffect = [{kind = \"air_drag\", rate_per_s = 2}]"));
   const auto scene = sim::read_scene(base::find_input("data/scenes/sea_spray.toml"));
   EXPECT_EQ(error_of(protocol), "");
-  EXPECT_THAT(effects_of(protocol, "none", scene), IsEmpty());
-  EXPECT_EQ(sim::format_effects(effects_of(protocol, "scene", scene)), sim::format_effects(scene.effects));
-  const auto both = effects_of(protocol, "foam", scene);
+  EXPECT_THAT(*effects_of(protocol, "none", scene).water, IsEmpty());
+  EXPECT_EQ(sim::format_effects(*effects_of(protocol, "scene", scene).water),
+            sim::format_effects(scene.effects));
+  const auto both = *effects_of(protocol, "foam", scene).water;
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].kind, sim::EffectKind::AirDrag);
   EXPECT_EQ(both[0].coefficient, 2);
@@ -82,7 +84,8 @@ TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
 TEST(CellEffects, WithoutTheFactorAreTheScenesOwn) {
   NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/task1.toml"));
-  EXPECT_FALSE(cell_effects(protocol, protocol.design.cells.front().stimulus));
+  const CellEffects of = cell_effects(protocol, protocol.design.cells.front().stimulus);
+  EXPECT_FALSE(of.water || of.picture);
   EXPECT_EQ(error_of(protocol), "");
 }
 
@@ -110,16 +113,67 @@ TEST(CellEffects, ThatTheSceneCannotHaveAreRefusedWithTheirPlace) {
          "kind = |\"adhesion\"", "needs cohesion", "list cohesion too");
 }
 
-TEST(CellEffects, OfThePictureAreInEveryLevelAndInNoSet) {
-  const auto kept = protocol_with(two_levels, set_of("keep = [\"foam\", \"shadows\"]"));
-  const auto given = protocol_with(two_levels, set_of("effect = [{kind = \"caustics\", strength = 1}]"));
-  EXPECT_THAT(error_of(kept),
-              AllOf(HasSubstr(place_in(kept, "\"foam\", |\"shadows\"")),
-                    HasSubstr("= \"shadows\" is an effect of the picture, which every level keeps"),
-                    HasSubstr("mend: leave it out")));
-  EXPECT_THAT(error_of(given),
-              AllOf(HasSubstr(place_in(given, "kind = |\"caustics\"")),
-                    HasSubstr("= \"caustics\" is an effect of the picture, which every level keeps")));
+TEST(CellEffects, OfThePictureStayWhereNoSetNamesOne) {
+  NEEDS_EFFECTS;
+  const auto protocol =
+      protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 1}]"), "pool_light");
+  const auto scene = sim::read_scene(base::find_input("data/scenes/pool_light.toml"));
+  for (const char* level : {"none", "foam"}) {
+    const CellEffects of = effects_of(protocol, level, scene);
+    EXPECT_FALSE(of.picture) << level;
+    EXPECT_EQ(scene_with(scene, of).picture_effects.size(), 2u) << level;
+  }
+  EXPECT_THAT(levels_in_words(protocol, scene),
+              HasSubstr("none: no effects, foam: air_drag rate_per_s = 1 "));
+}
+
+TEST(CellEffects, OfThePictureVaryWhereASetNamesOne) {
+  const auto protocol = protocol_with(
+      "effects = [\"none\", \"foam\", \"scene\"]",
+      set_of("keep = [\"caustics\"]\neffect = [{kind = \"shadows\", strength = 0.5}]"), "pool_light");
+  const auto scene = sim::read_scene(base::find_input("data/scenes/pool_light.toml"));
+  EXPECT_EQ(error_of(protocol), "");
+  EXPECT_EQ(
+      levels_in_words(protocol, scene),
+      "none: no effects, foam: shadows strength = 0.5; caustics strength = 1, scene: shadows strength = "
+      "1; caustics strength = 1");
+  const auto none = scene_with(scene, effects_of(protocol, "none", scene));
+  EXPECT_THAT(none.picture_effects, IsEmpty());
+  RunOptions options;
+  options.display = "headless";
+  options.backend = "cpu";
+  const CellStimuli stimuli(options, protocol, {}, {});
+  for (std::size_t cell = 0; cell < 3; ++cell) {
+    const auto live = stimuli.choice_of(protocol.design.cells[cell]).picture_effects;
+    const auto baked = order_of(protocol, plan_bakes(protocol)[cell], {}).fluid.picture_effects;
+    ASSERT_TRUE(live && baked);
+    EXPECT_EQ(live->size(), cell == 0 ? 0u : 2u);
+    EXPECT_EQ(sim::format_picture_effects(*live), sim::format_picture_effects(*baked));
+  }
+}
+
+TEST(CellEffects, OfThePictureThatCannotBeAreRefusedWithTheirPlace) {
+  const auto expect = [](const std::string& sets, const std::string& scene, const std::string& marked,
+                         const char* problem, const char* mend) {
+    const auto protocol = protocol_with(two_levels, set_of(sets), scene);
+    EXPECT_THAT(error_of(protocol),
+                AllOf(HasSubstr(place_in(protocol, marked)), HasSubstr(problem), HasSubstr(mend)));
+  };
+  expect("keep = [\"shadows\"]", "single_dam", "keep = [|\"shadows\"", "is no effect of scene SingleDam",
+         "design.effect_set.effect");
+  expect("effect = [{kind = \"shadows\", strength = 2}]", "single_dam", "strength = |2", "out of range",
+         "[0, 1]");
+  expect("effect = [{kind = \"shadows\", emission_per_s = 2}]", "single_dam", "emission_per_s = |2",
+         "is no key of shadows", "use strength");
+  expect("effect = [{kind = \"glow\", strength = 1}]", "single_dam", "kind = |\"glow\"", "not a known choice",
+         "caustics");
+  const auto same = protocol_with("effects = [\"foam\", \"scene\"]",
+                                  set_of("keep = [\"caustics\", \"shadows\"]"), "pool_light");
+  EXPECT_THAT(error_of(same), AllOf(HasSubstr(place_in(same, "\"foam\", |\"scene\"]")),
+                                    HasSubstr("is the same water and light as \"foam\" in scene PoolLight")));
+  const auto dropped =
+      protocol_with(two_levels, set_of("effect = [{kind = \"shadows\", strength = 0}]"), "single_dam");
+  EXPECT_THAT(error_of(dropped), HasSubstr("is the same water and light as \"none\""));
 }
 
 TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
@@ -130,6 +184,29 @@ TEST(CellEffects, LevelsOfTheSameWaterAreRefused) {
                     HasSubstr("is the same water as \"foam\" in scene SeaSpray"), HasSubstr("remove one")));
   const auto bare = protocol_with("effects = [\"none\", \"scene\"]", "", "single_dam");
   EXPECT_THAT(error_of(bare), HasSubstr("is the same water as \"none\" in scene SingleDam"));
+}
+
+TEST(CellEffects, ThatLeaveNoTemperatureToPaintAreRefused) {
+  NEEDS_EFFECTS;
+  const std::string overlay = "overlay = \"temperature\"\n", scene_and = "effects = [\"scene\", ";
+  const auto expect = [](const study::Protocol& protocol, const std::string& problem) {
+    EXPECT_THAT(error_of(protocol),
+                AllOf(HasSubstr(place_in(protocol, "overlay = |\"temperature\"")), HasSubstr(problem)));
+  };
+  EXPECT_EQ(error_of(protocol_with(overlay, "", "hot_jet")), "");
+  expect(protocol_with(overlay, "", "sea_spray"), "finds no heat in scene SeaSpray\n");
+  expect(protocol_with(overlay + scene_and + "\"none\"]", "", "hot_jet"),
+         "finds no heat in scene HotJet at level \"none\"");
+  const auto heat_with = [&](const std::string& keys) {
+    return protocol_with(overlay + scene_and + "\"foam\"]",
+                         set_of("effect = [{kind = \"heat\", diffusivity_m2_s = 0.01" + keys + "}]"),
+                         "hot_jet");
+  };
+  EXPECT_EQ(error_of(heat_with("")), "") << "from 293.15 to 353.15 K as the scene's";
+  EXPECT_EQ(error_of(heat_with(", wall_k = 300")), "") << "and so is this";
+  expect(heat_with(", wall_k = 373.15"),
+         "other colours in scene HotJet at level \"foam\", temperature 293.15 to 373.15 K, than at level "
+         "\"scene\", temperature 293.15 to 353.15 K");
 }
 
 TEST(CellEffects, ReachTheFluidOfTheirCells) {

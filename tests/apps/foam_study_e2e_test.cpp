@@ -97,10 +97,13 @@ TEST_F(FoamStudyE2e, ThePageTellsTheLevelsAndTestsNoClaimAboutMethods) {
                           HasSubstr("H4 to H6, which are about methods alone, are not tested")));
 }
 
-TEST_F(FoamStudyE2e, PowerSaysThatItKnowsNoEffects) {
-  const Ended power = run_program({vip_stats, "power", foam_protocol(), "--n", "4"});
-  EXPECT_EQ(power.exit_code, 1);
-  EXPECT_THAT(power.err, AllOf(HasSubstr("varies effects"), HasSubstr("--observer ptpe:effects=... ")));
+TEST_F(FoamStudyE2e, PowerTellsHowManyPeopleItTakes) {
+  const Ended power =
+      run_program({vip_stats, "power", foam_protocol(), "--n", "24", "--effect", "0.76", "--studies", "200"});
+  ASSERT_EQ(power.exit_code, 0) << power.err;
+  EXPECT_THAT(power.out,
+              AllOf(HasSubstr("effects supported (true: power)"), HasSubstr("foam over none"),
+                    HasSubstr("truth   0.76"), HasSubstr("World \"null\""), Not(HasSubstr("paper"))));
 }
 
 TEST_F(FoamStudyE2e, ABundleFreezesTheProtocolWithoutClaimsAboutMethods) {

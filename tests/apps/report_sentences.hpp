@@ -37,6 +37,9 @@ inline std::vector<Case> head_and_methods() {
       {"Effects were a factor of # with the levels *#*.",
        in_each("/study/protocols", "effects", Json::object()),
        in_each("/study/protocols", "effects", {{"none", "no effects"}, {"foam", "keeps foam"}})},
+      {"Over the water of every stimulus of # # was painted.",
+       in_each("/study/protocols", "overlay", nullptr),
+       in_each("/study/protocols", "overlay", "temperature")},
       {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
        "out "
        "and # analysed, with # of # planned trials (# answered ones left out).",

@@ -28,9 +28,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sim::BakeFrame frame;
   sim::BakePicture picture;
   attempt([&] { read_file(bytes); });
-  for (const std::uint32_t format : {1u, 2u, 3u, 4u}) {
+  for (const std::uint32_t format : {1u, 2u, 3u, 4u, 5u}) {
     attempt([&] { sim::parse_bake_header(bytes, format, "fuzz"); });
-    attempt([&] { sim::decode_particles(bytes, format, {0.05F, 0.1F}, 1 << 20, "fuzz", scratch, frame); });
+    const sim::ParticleLayout layout{format, {0.05F, 0.1F}, 1 << 20, format >= 5};
+    attempt([&] { sim::decode_particles(bytes, layout, "fuzz", scratch, frame); });
     attempt([&] { sim::decode_picture(bytes, format, 2, {}, 32, 18, "fuzz", scratch, picture); });
     attempt([&] { sim::decode_picture(bytes, format, 2, previous, 32, 18, "fuzz", scratch, picture); });
   }

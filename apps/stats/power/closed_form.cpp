@@ -56,7 +56,8 @@ std::optional<double> closed_form_power(const PowerRequest& request, const stats
     case HypothesisKind::Preference:
       break;
   }
-  if (request.interval_bias != 0) return {};
+  const bool of_shares = !request.protocol.design.effects.empty();  // by t, not exactly
+  if (request.interval_bias != 0 || of_shares) return {};
   const auto power = stats::binomial_power(n, truth, 0.5, level, Alternative::Greater);
   return power ? std::optional(power->power) : std::nullopt;
 }

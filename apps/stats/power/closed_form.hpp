@@ -9,7 +9,7 @@
 namespace apps {
 
 /// Of a test with this true difference (or preference for `a`) at n participants: p < alpha in the direction
-/// claimed. Task 1 as if answers were continuous; the mixed model has no formula.
+/// claimed. Task 1 as if answers were continuous; the mixed model and levels of effects have no formula.
 std::optional<double> closed_form_power(const PowerRequest& request, const stats::Hypothesis& hypothesis,
                                         const stats::HypothesisTest& test, double truth, int n);
 

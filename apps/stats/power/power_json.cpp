@@ -21,7 +21,7 @@ Json notes_of(const PowerRequest& request, PowerKind kind) {
       Json::array({"Every figure's *_se is its Monte-Carlo standard error; shares of k of n studies use (k + "
                    "1) / (n + 2).",
                    "No dropouts and no exclusions are simulated: add the share that you expect to lose."});
-  if (request.protocol.needs_gaze && kind != PowerKind::Pilot)
+  if (request.protocol.needs_gaze && kind != PowerKind::Pilot && request.protocol.design.effects.empty())
     notes.push_back("Gaze is taken to be tracked: without it H1 and H5 are not testable whatever the power.");
   if (kind != PowerKind::Pilot)
     notes.push_back(
@@ -114,7 +114,7 @@ Json hypothesis_json(const HypothesisPower& hypothesis, const std::vector<int>& 
     add_figure(point, "supported", at.supported);
     add_figure(point, "any", at.any);
     add_figure(point, "any_false", at.any_false);
-    add_figure(point, "paper_rule", at.paper);
+    if (!hypothesis.paper_rule.empty()) add_figure(point, "paper_rule", at.paper);
     out["curve"].push_back(std::move(point));
   }
   for (const auto& test : hypothesis.tests) out["tests"].push_back(test_json(test, n));

@@ -50,7 +50,8 @@ void print_hypothesis(const Json& hypothesis, const Json& settings, const std::v
   print_row(id + verdict, curve, "supported", columns);
   if (tests > 1) print_row("  at least one test holds", curve, "any", columns);
   if (claims < tests) print_row("  at least one false claim holds", curve, "any_false", columns);
-  print_row("  by the paper's rule", curve, "paper_rule", columns);
+  if (!hypothesis.at("paper_rule").get<std::string>().empty())
+    print_row("  by the paper's rule", curve, "paper_rule", columns);
   if (!hypothesis.at("n_for_power").is_null())
     std::printf("    power %g from n = %d\n", settings.at("power").get<double>(),
                 hypothesis.at("n_for_power").get<int>());

@@ -44,9 +44,10 @@ const char* power_kind_name(PowerKind kind) {
 }
 
 PowerKind power_kind(const study::Protocol& protocol) {
-  if (!protocol.design.effects.empty()) {
+  if (!protocol.design.effects.empty() && !protocol.design.pairs) {
     throw base::Error("protocol " + protocol.name,
-                      "varies effects, and the worlds of power are about methods and frame rates alone",
+                      "varies effects of stimuli that are rated, and the worlds of power know effects of "
+                      "pairs alone",
                       "simulate it: vip-study run with --observer ptpe:effects=... for several numbers of "
                       "participants, then vip-stats report");
   }

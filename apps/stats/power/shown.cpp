@@ -31,9 +31,14 @@ void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
 }  // namespace
 
 ShownFactors::ShownFactors(const study::Design& design) {
-  for (const auto& cell : design.cells)
-    cells.push_back({index_or_add(scenes, cell.stimulus.scene), index_or_add(n_stars, cell.stimulus.n_star),
-                     index_or_add(methods, cell.stimulus.method)});
+  std::vector<std::string> alone;  // methods without their level
+  for (const auto& cell : design.cells) {
+    const study::StimulusSpec& what = cell.stimulus;
+    cells.push_back({index_or_add(scenes, what.scene), index_or_add(n_stars, what.n_star),
+                     index_or_add(methods, study::treatment_name(what))});
+    if (!design.effects.empty() && treatments.size() < methods.size())
+      treatments.push_back({index_or_add(effects, what.effects), index_or_add(alone, what.method)});
+  }
 }
 
 std::vector<ShownTrial> planned_trials(const study::Protocol& protocol, std::uint64_t seed, int n) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libstudy/protocol/protocol.hpp"
+#include "stats/analysis/factor_levels.hpp"
 
 namespace apps {
 
@@ -16,8 +17,11 @@ struct ShownFactors {
   struct Place {
     int scene = 0, n_star = 0, method = 0;
   };
-  std::vector<std::string> scenes, n_stars, methods;
-  std::vector<Place> cells;  ///< as Design::cells
+  std::vector<std::string> scenes, n_stars;
+  std::vector<std::string> methods;  ///< where effects are a factor, with their level: treatment_name()
+  std::vector<Place> cells;          ///< as Design::cells
+  std::vector<std::string> effects;  ///< levels of the factor; empty: effects are none
+  std::vector<stats::FactorPlace> treatments;  ///< of `methods`: level of effects, and method
 };
 
 struct ShownTrial {

@@ -5,6 +5,7 @@
 
 #include "apps/stats/power/answers.hpp"
 #include "apps/stats/power/closed_form.hpp"
+#include "apps/stats/power/effect_levels.hpp"
 #include "libstudy/base/random.hpp"
 #include "stats/analysis/task2.hpp"
 
@@ -22,6 +23,7 @@ struct Judged {
 
 /// True difference a - b, or preference for a.
 double truth_of(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test) {
+  if (!factors.effects.empty()) return effect_truth(scenario, factors, test);
   const auto index = [](const std::vector<std::string>& list, const std::string& item) {
     return static_cast<std::size_t>(std::find(list.begin(), list.end(), item) - list.begin());
   };
@@ -133,6 +135,7 @@ class Simulation {
 
   std::vector<stats::Hypothesis> analyse_task2(const Answers& answers, int n) const {
     const auto& plan = request_.plan.plan;
+    if (!factors_.effects.empty()) return {effect_hypothesis(of_first(answers.task2, n), factors_, plan)};
     const auto pairs =
         stats::count_preferences(of_first(answers.task2, n), static_cast<int>(factors_.methods.size()), plan);
     return stats::task2_hypotheses(pairs, factors_.methods, plan, "");

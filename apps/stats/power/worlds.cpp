@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/stats/power/effect_levels.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -178,8 +179,9 @@ World task2_world(const PowerRequest& request, const ShownFactors& factors, cons
 std::vector<World> make_worlds(const PowerRequest& request, const ShownFactors& factors) {
   std::vector<World> out;
   for (const auto& id : request.worlds)
-    out.push_back(request.protocol.design.pairs ? task2_world(request, factors, id)
-                                                : task1_world(request, factors, id));
+    out.push_back(!factors.effects.empty()        ? effect_world(request, factors, id)
+                  : request.protocol.design.pairs ? task2_world(request, factors, id)
+                                                  : task1_world(request, factors, id));
   return out;
 }
 

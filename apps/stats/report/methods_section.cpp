@@ -41,6 +41,9 @@ std::string protocols_text(const Field& study) {
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
     out += effects_text(protocol, title);
+    if (protocol["overlay"].there())
+      out += "Over the water of every stimulus of " + title + " " + words(protocol["overlay"]) +
+             " was painted. ";
     if (!protocol["mixed_pictures"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers in which pictures of one scene were compared though they differ in "

@@ -40,7 +40,8 @@ Json protocol_json(const TaskData& data) {
       {"settings", data.settings},
       {"unblinded", data.unblinded},
       {"mixed_pictures", data.mixed_pictures},
-      {"effects", effects_json(data)}};
+      {"effects", effects_json(data)},
+      {"overlay", data.protocol.paint_temperature ? Json("temperature") : Json()}};
 }
 
 std::vector<std::string> notes_of(const TaskData& data) {

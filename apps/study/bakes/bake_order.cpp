@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -75,6 +76,17 @@ std::string effects_words(const sim::BakeHeader& header) {
   return words.empty() ? "no effects" : words;
 }
 
+std::string picture_words(const sim::BakeHeader& header) {
+  auto effects = sim::baked_scene(header).picture_effects;
+  std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
+  const std::string words = sim::picture_effects_in_words(effects);
+  return words.empty() ? "no effects of the picture" : words;
+}
+
+std::string overlay_words(const sim::BakeHeader& header) {
+  return (header.overlay.empty() ? "nothing" : header.overlay) + " painted over them";
+}
+
 }  // namespace
 
 sim::BakeHeader header_of(const BakeOrder& order) {
@@ -82,6 +94,8 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.scene_text = sim::scene_text(order.fluid.scene);
   sim::Scene scene = sim::read_scene(order.fluid.scene);
   if (order.fluid.effects) scene.effects = *order.fluid.effects;
+  if (order.fluid.picture_effects)
+    header.picture_effects = sim::format_picture_effects(*order.fluid.picture_effects);
   if (sim::any_free(scene.obstacles) && !order.pictures)
     throw base::Error(order.fluid.scene.string(),
                       "has free obstacles, of which a bake of particles holds nothing",
@@ -97,6 +111,13 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.tank_size_m = scene.tank_size_m;
   header.effects = sim::format_effects(scene.effects);
   header.max_foam = foam_of(scene);
+  if (TemperatureScale(scene).heat()) header.reference_k = sim::reference_temperature(scene);
+  if (order.fluid.paint_temperature) {
+    if (!header.reference_k)
+      throw base::Error(order.fluid.scene.string(), "has no heat, and so no temperatures to paint",
+                        "list heat as an [[effect]], or leave the overlay out");
+    header.overlay = "temperature";
+  }
   header.view = view_of(order, scene, traits.adaptive());
   if (order.pictures) {
     header.picture_width_px = order.size.width;
@@ -120,9 +141,14 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
   out.add("n_*", std::to_string(found.n_star), std::to_string(wanted.n_star));
   if (found.scene_sha256 == wanted.scene_sha256) {
     out.add("", effects_words(found), effects_words(wanted));
+    out.add("", picture_words(found), picture_words(wanted));
     const bool drawn = found.has_pictures();  // they show foam whether its particles are kept or not
     if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
       out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");
+    if (drawn)
+      out.add("pictures with", overlay_words(found), overlay_words(wanted));
+    else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
+      out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
   // A file rounds the step of a protocol.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)

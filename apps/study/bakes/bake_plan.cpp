@@ -88,7 +88,10 @@ BakeOrder order_of(const study::Protocol& protocol, const PlannedStimulus& one, 
   order.fluid.scene = base::find_input(one.what.scene);
   order.fluid.method = one.what.method;
   order.fluid.n_star = one.what.n_star;
-  order.fluid.effects = cell_effects(protocol, one.what);
+  const CellEffects effects = cell_effects(protocol, one.what);
+  order.fluid.effects = effects.water;
+  order.fluid.picture_effects = effects.picture;
+  order.fluid.paint_temperature = protocol.design.paint_temperature;
   order.fluid.content_step_s = protocol.content.content_step_s;
   if (one.rate) order.fluid.fixed_rate = sim::FrameRate{one.rate->mean, one.rate->sd};
   order.frames = one.frames;

@@ -21,6 +21,7 @@ namespace {
 
 /// Positions of 16 bit an axis, which no frame packs worse than that.
 constexpr std::uint64_t bytes_of_particle = 6;
+constexpr std::uint64_t bytes_of_temperature = 2;
 /// Place and radius.
 constexpr std::uint64_t bytes_of_foam = 8;
 /// Pictures of the scenes take about 0.6 a pixel.
@@ -171,7 +172,8 @@ std::uint64_t most_bytes(const sim::BakeHeader& header) {
   const auto particles = sim::particle_count(sim::parse_method(header.method), header.n_star);
   const auto pixels = std::int64_t{header.picture_width_px} * header.picture_height_px;
   return static_cast<std::uint64_t>(header.frame_count) *
-         (bytes_of_particle * static_cast<std::uint64_t>(particles) +
+         ((bytes_of_particle + (header.reference_k ? bytes_of_temperature : 0)) *
+              static_cast<std::uint64_t>(particles) +
           bytes_of_foam * static_cast<std::uint64_t>(header.max_foam) +
           bytes_of_pixel * static_cast<std::uint64_t>(pixels));
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "libsim/scene/picture_effects.hpp"
+#include "apps/common/temperature_scale.hpp"
+#include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
@@ -14,42 +15,79 @@ namespace {
 
 using sim::Effect;
 using sim::EffectKind;
+using sim::PictureEffect;
+using sim::PictureEffectKind;
 
 bool lists(const std::vector<Effect>& effects, EffectKind kind) {
   return std::any_of(effects.begin(), effects.end(),
                      [&](const Effect& one) { return one.kind == kind && one.coefficient > 0; });
 }
 
+bool lists(const std::vector<PictureEffect>& effects, PictureEffectKind kind) {
+  return sim::strength_of(effects, kind) > 0;
+}
+
+/// The picture's behind the water's.
 std::vector<std::string> all_kinds() {
   std::vector<std::string> out;
   for (std::size_t k = 0; k < sim::effect_count; ++k)
     out.emplace_back(sim::traits_of(static_cast<EffectKind>(k)).word);
+  for (const std::string& word : sim::picture_effect_words()) out.push_back(word);
   return out;
 }
 
-bool is_of_the_picture(const std::string& word) {
+std::optional<PictureEffectKind> picture_effect_named(const std::string& word) {
   const auto words = sim::picture_effect_words();
-  return std::find(words.begin(), words.end(), word) != words.end();
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end()) return {};
+  return static_cast<PictureEffectKind>(found - words.begin());
 }
 
-constexpr const char* stays = "is an effect of the picture, which every level keeps";
-constexpr const char* leave_out = "leave it out";
+/// The entry of a kind that the scene lists.
+template <class Listed, class Kind>
+Listed kept(const base::TomlTable& set, std::size_t place, const std::vector<Listed>& listed, Kind kind,
+            const std::string& scene) {
+  if (!lists(listed, kind)) {
+    set.fail_at(
+        "keep", place,
+        std::string("= ") + base::toml_quoted(sim::traits_of(kind).word) + " is no effect of scene " + scene,
+        "list it there, or give it here as [[design.effect_set.effect]]");
+  }
+  return *std::find_if(listed.begin(), listed.end(), [&](const Listed& one) { return one.kind == kind; });
+}
+
+struct Kept {
+  std::vector<Effect> water;
+  std::vector<PictureEffect> picture;
+};
 
 /// keep: kinds that stay as the scene lists them.
-std::vector<Effect> kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
-  std::vector<Effect> out;
+Kept kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
+  Kept out;
   const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string word = "= " + base::toml_quoted(words[i]);
-    if (is_of_the_picture(words[i])) set.fail_at("keep", i, word + " " + stays, leave_out);
-    const auto kind = sim::effect_named(words[i]);
-    if (!kind) set.fail_at("keep", i, word + " is no effect", "use one of " + base::joined(all_kinds()));
-    if (!lists(scene.effects, *kind)) {
-      set.fail_at("keep", i, word + " is no effect of scene " + scene.name,
-                  "list it there, or give it here as [[design.effect_set.effect]]");
+    if (const auto of_picture = picture_effect_named(words[i])) {
+      out.picture.push_back(kept(set, i, scene.picture_effects, *of_picture, scene.name));
+      continue;
     }
-    out.push_back(*std::find_if(scene.effects.begin(), scene.effects.end(),
-                                [&](const Effect& one) { return one.kind == *kind; }));
+    const auto kind = sim::effect_named(words[i]);
+    if (!kind) {
+      set.fail_at("keep", i, "= " + base::toml_quoted(words[i]) + " is no effect",
+                  "use one of " + base::joined(all_kinds()));
+    }
+    out.water.push_back(kept(set, i, scene.effects, *kind, scene.name));
+  }
+  return out;
+}
+
+/// Its coefficient's key and those of its options.
+std::vector<std::string> keys_of(const std::string& word) {
+  if (picture_effect_named(word)) return {"strength"};
+  const EffectKind kind = *sim::effect_named(word);
+  std::vector<std::string> out{sim::traits_of(kind).key};
+  for (std::size_t k = 0; k < sim::option_count; ++k) {
+    const auto& option = sim::traits_of(static_cast<sim::EffectOption>(k));
+    if (option.of == kind) out.emplace_back(option.key);
   }
   return out;
 }
@@ -57,18 +95,11 @@ std::vector<Effect> kept_effects(const base::TomlTable& set, const sim::Scene& s
 /// Keys that a kind of effect lacks.
 void check_keys(const base::TomlTable& set) {
   for (const auto& table : set.tables("effect")) {
-    if (const std::string word = table.string("kind"); is_of_the_picture(word))
-      table.fail("kind", "= " + base::toml_quoted(word) + " " + stays, leave_out);
-    const auto kind = sim::effect_named(table.choice("kind", all_kinds()));
-    std::vector<std::string> known{sim::traits_of(*kind).key};
-    for (std::size_t k = 0; k < sim::option_count; ++k) {
-      const auto& option = sim::traits_of(static_cast<sim::EffectOption>(k));
-      if (option.of == *kind) known.emplace_back(option.key);
-    }
+    const std::string word = table.choice("kind", all_kinds());
+    const auto known = keys_of(word);
     for (const std::string& key : table.keys()) {
       if (key == "kind" || std::find(known.begin(), known.end(), key) != known.end()) continue;
-      table.fail(key, std::string("is no key of ") + sim::traits_of(*kind).word,
-                 "use " + base::joined(known));
+      table.fail(key, "is no key of " + word, "use " + base::joined(known));
     }
   }
 }
@@ -84,64 +115,135 @@ void check_needs(const base::TomlTable& set, const std::vector<Effect>& kept,
   }
 }
 
-std::vector<Effect> read_set(const base::TomlTable& set, const sim::Scene& scene) {
+CellEffects read_set(const base::TomlTable& set, const sim::Scene& scene) {
   check_keys(set);
-  const auto kept = kept_effects(set, scene);
-  const auto all = sim::read_effects(set.tables("effect"), kept);
-  check_needs(set, kept, all);
-  return all;
+  const Kept kept = kept_effects(set, scene);
+  const auto water = sim::read_effects(set.tables("effect"), kept.water);
+  check_needs(set, kept.water, water);
+  auto picture = sim::read_picture_effects(set.tables("effect"));
+  picture.insert(picture.end(), kept.picture.begin(), kept.picture.end());
+  return {water, picture};
 }
 
 base::TomlTable design_of(const study::Protocol& protocol) {
   return base::parse_toml(protocol.text, protocol.place).table("design");
 }
 
-std::string words_of(const std::vector<Effect>& effects) {
-  const std::string words = sim::effects_in_words(effects);
+bool names_picture(const base::TomlTable& set) {
+  const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
+  const auto tables = set.tables("effect");
+  return std::any_of(words.begin(), words.end(), picture_effect_named) ||
+         std::any_of(tables.begin(), tables.end(),
+                     [](const auto& table) { return picture_effect_named(table.string("kind")); });
+}
+
+/// Whether levels differ in effects of the picture; else each level has the scene's.
+bool varies_picture(const base::TomlTable& design) {
+  const auto sets = design.tables("effect_set");
+  return std::any_of(sets.begin(), sets.end(), names_picture);
+}
+
+std::string words_of(const CellEffects& effects) {
+  std::string words = sim::effects_in_words(*effects.water);
+  const std::string picture =
+      effects.picture ? sim::picture_effects_in_words(*effects.picture) : std::string();
+  if (!picture.empty()) words += (words.empty() ? "" : "; ") + picture;
   return words.empty() ? "no effects" : words;
+}
+
+/// No two levels look the same.
+void check_levels(const study::Protocol& protocol, const sim::Scene& scene) {
+  const auto& levels = protocol.design.effects;
+  const char* same_as =
+      varies_picture(design_of(protocol)) ? " is the same water and light as " : " is the same water as ";
+  std::vector<std::string> held;
+  for (const study::EffectSet& level : levels) {
+    const CellEffects of = effects_of(protocol, level.name, scene);
+    const std::string effects = sim::format_effects(*of.water) +
+                                sim::format_picture_effects(of.picture.value_or(scene.picture_effects));
+    const auto same = std::find(held.begin(), held.end(), effects);
+    if (same != held.end()) {
+      design_of(protocol).fail_at("effects", held.size(),
+                                  "= \"" + level.name + "\"" + same_as + "\"" +
+                                      levels[static_cast<std::size_t>(same - held.begin())].name +
+                                      "\" in scene " + scene.name,
+                                  "remove one of the two, or give them different effects");
+    }
+    held.push_back(effects);
+  }
+}
+
+/// Of the water of each level, or of the scene's own.
+std::vector<TemperatureScale> scales_of(const study::Protocol& protocol, const sim::Scene& scene) {
+  if (protocol.design.effects.empty()) return {TemperatureScale(scene)};
+  std::vector<TemperatureScale> out;
+  for (const study::EffectSet& level : protocol.design.effects) {
+    out.emplace_back(scene_with(scene, effects_of(protocol, level.name, scene)));
+  }
+  return out;
+}
+
+/// All that is compared has temperatures, in the same colours.
+void check_temperatures(const study::Protocol& protocol, const sim::Scene& scene) {
+  const auto scales = scales_of(protocol, scene);
+  const auto& levels = protocol.design.effects;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const TemperatureScale& scale = scales[i];
+    const std::string where =
+        "scene " + scene.name + (levels.empty() ? "" : " at level \"" + levels[i].name + "\"");
+    if (!scale.heat()) {
+      design_of(protocol).fail("overlay", "= \"temperature\" finds no heat in " + where,
+                               "give it the effect heat, or remove the overlay");
+    }
+    if (scales.front().same_colours(scale)) continue;
+    design_of(protocol).fail("overlay",
+                             "= \"temperature\" has other colours in " + where + ", " + scale.words() +
+                                 ", than at level \"" + levels.front().name + "\", " + scales.front().words(),
+                             "name the same temperatures at every level");
+  }
 }
 
 }  // namespace
 
-std::vector<Effect> effects_of(const study::Protocol& protocol, const std::string& level,
-                               const sim::Scene& scene) {
-  std::vector<Effect> out;
-  if (level == study::scene_effects_level) out = scene.effects;
+CellEffects effects_of(const study::Protocol& protocol, const std::string& level, const sim::Scene& scene) {
+  const base::TomlTable design = design_of(protocol);
+  CellEffects out{std::vector<Effect>(), std::vector<PictureEffect>()};
+  if (level == study::scene_effects_level) out = {scene.effects, scene.picture_effects};
   if (level != study::scene_effects_level && level != study::no_effects_level) {
-    for (const auto& set : design_of(protocol).tables("effect_set"))
+    for (const auto& set : design.tables("effect_set"))
       if (set.string("name") == level) out = read_set(set, scene);
   }
-  std::sort(out.begin(), out.end(), [](const Effect& a, const Effect& b) { return a.kind < b.kind; });
+  const auto by_kind = [](const auto& a, const auto& b) { return a.kind < b.kind; };
+  std::sort(out.water->begin(), out.water->end(), by_kind);
+  std::sort(out.picture->begin(), out.picture->end(), by_kind);
+  if (!varies_picture(design)) out.picture.reset();
   return out;
 }
 
-std::optional<std::vector<Effect>> cell_effects(const study::Protocol& protocol,
-                                                const study::StimulusSpec& what) {
+sim::Scene scene_with(sim::Scene scene, const CellEffects& effects) {
+  if (effects.water) scene.effects = *effects.water;
+  if (effects.picture) scene.picture_effects = *effects.picture;
+  return scene;
+}
+
+CellEffects cell_effects(const study::Protocol& protocol, const study::StimulusSpec& what) {
   if (what.effects.empty()) return {};
   return effects_of(protocol, what.effects, sim::read_scene(base::find_input(what.scene)));
 }
 
 void check_cell_effects(const study::Protocol& protocol) {
-  const auto& levels = protocol.design.effects;
-  if (levels.empty()) return;
+  if (protocol.design.effects.empty() && !protocol.design.paint_temperature) return;
   std::set<std::string> scenes;
   for (const study::Cell& cell : protocol.design.cells) {
     if (!scenes.insert(cell.stimulus.scene).second) continue;
     const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
-    std::vector<std::string> held;
-    for (const study::EffectSet& level : levels) {
-      const std::string effects = sim::format_effects(effects_of(protocol, level.name, scene));
-      const auto same = std::find(held.begin(), held.end(), effects);
-      if (same != held.end()) {
-        design_of(protocol).fail_at("effects", held.size(),
-                                    "= \"" + level.name + "\" is the same water as \"" +
-                                        levels[static_cast<std::size_t>(same - held.begin())].name +
-                                        "\" in scene " + scene.name,
-                                    "remove one of the two, or give them different effects");
-      }
-      held.push_back(effects);
-    }
+    check_levels(protocol, scene);
+    if (protocol.design.paint_temperature) check_temperatures(protocol, scene);
   }
+}
+
+std::string temperatures_in_words(const study::Protocol& protocol, const sim::Scene& scene) {
+  return scales_of(protocol, scene).front().words();
 }
 
 std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene) {

@@ -10,21 +10,33 @@
 
 namespace apps {
 
-/// What a level's fluid has in this scene, by kind. base::Error at file:line:column of the protocol: a kind
+/// What a cell has instead of what its scene's file lists, by kind.
+struct CellEffects {
+  std::optional<std::vector<sim::Effect>> water = {};  ///< none: the design does not vary effects
+  std::optional<std::vector<sim::PictureEffect>> picture =
+      {};  ///< none: no level names one; the scene's stay
+};
+
+/// Of a level in this scene; the water's are there. base::Error at file:line:column of the protocol: a kind
 /// that there is not, that the scene does not list (keep), that needs another one, a key that the kind lacks,
 /// a number out of range.
-std::vector<sim::Effect> effects_of(const study::Protocol& protocol, const std::string& level,
-                                    const sim::Scene& scene);
+CellEffects effects_of(const study::Protocol& protocol, const std::string& level, const sim::Scene& scene);
 
-/// Of a cell; none where the design does not vary effects, so that the scene has its own. Reads the scene.
-std::optional<std::vector<sim::Effect>> cell_effects(const study::Protocol& protocol,
-                                                     const study::StimulusSpec& what);
+/// The scene with these instead.
+sim::Scene scene_with(sim::Scene scene, const CellEffects& effects);
 
-/// The errors of every level in every scene, and two levels that are the same water in one.
+/// Of a cell. Reads its scene.
+CellEffects cell_effects(const study::Protocol& protocol, const study::StimulusSpec& what);
+
+/// The errors of every level in every scene, and two levels that look the same in one. Where temperature
+/// is painted: a cell without heat, and two levels that would paint one temperature in two colours.
 void check_cell_effects(const study::Protocol& protocol);
 
 /// "none: no effects; foam: foam emission_per_s = 0.3 ...": each level in this scene; empty without the
 /// factor.
 std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene);
+
+/// "temperature 293.15 to 353.15 K": what is painted in this scene, at every level.
+std::string temperatures_in_words(const study::Protocol& protocol, const sim::Scene& scene);
 
 }  // namespace apps

@@ -32,7 +32,10 @@ ReadingSpeed read_whole(const sim::BakeReader& bake, const std::function<void()>
   const std::int64_t frames = bake.header().frame_count;
   sim::BakeFrame frame;
   ReadingSpeed speed;
-  speed.particles = read_all("particles", frames, stop, [&](auto i) { bake.read_frame(i, frame); });
+  speed.particles = read_all("particles", frames, stop, [&](auto i) {
+    bake.read_frame(i, frame);
+    speed.temperature_error_k = std::max(speed.temperature_error_k, frame.temperature_error_k);
+  });
   if (!bake.header().has_pictures()) return speed;
   sim::PictureReader reader(bake);
   speed.pictures = read_all("pictures", frames, stop, [&](auto i) { reader.read(i); });

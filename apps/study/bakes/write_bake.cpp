@@ -56,11 +56,13 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
 
   sim::BakeWriter writer(out, header, overwrite);
   std::vector<sim::RenderParticle> particles, foam;
+  std::vector<float> temperature_k;
   for (frame = 0; frame < header.frame_count; ++frame) {
     hooks.stop();
     const study::FrameFacts facts = fluid->prepare(frame);
     fluid->simulation().read_particles(particles);
-    writer.add_frame(facts.simulation_time_s, particles, fluid->simulation().account());
+    if (header.reference_k) fluid->simulation().read_field(sim::ParticleField::Temperature, temperature_k);
+    writer.add_frame(facts.simulation_time_s, particles, fluid->simulation().account(), temperature_k);
     if (header.max_foam > 0) {
       fluid->simulation().read_foam(foam);
       writer.add_foam(foam);

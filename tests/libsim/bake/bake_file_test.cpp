@@ -125,7 +125,8 @@ TEST(BakeFile, HeadersThatCannotBeAreRefused) {
   const auto error_with = [](const auto& change) {
     sim::BakeHeader header = bake_test::header(3, 32, 18);
     change(header);
-    return error_of([&] { sim::parse_bake_header(sim::format_bake_header(header), sim::bake_format, "f"); });
+    return error_of(
+        [&] { sim::parse_bake_header(sim::format_bake_header(header), sim::format_of(header), "f"); });
   };
   using Header = sim::BakeHeader;
   EXPECT_EQ(error_with([](Header&) {}), "");
@@ -138,6 +139,9 @@ TEST(BakeFile, HeadersThatCannotBeAreRefused) {
   EXPECT_THAT(error_with([](Header& h) { h.max_foam = -1; }), HasSubstr("count of foam"));
   EXPECT_THAT(error_with([](Header& h) { h.effects = std::string(70000, ' '); }),
               HasSubstr("70000 characters"));
+  EXPECT_EQ(error_with([](Header& h) { h.reference_k = 293.15; }), "");
+  EXPECT_THAT(error_with([](Header& h) { h.reference_k = -1; }), HasSubstr("reference temperature"));
+  EXPECT_THAT(error_with([](Header& h) { h.overlay = "temperature"; }), HasSubstr("overlay"));
 }
 
 TEST(BakeFile, AccountsThatCannotBeAreRefused) {
@@ -287,8 +291,7 @@ TEST(BakeFile, LyingCountsAreRefusedBeforeMemoryIsTaken) {
   sim::pack(sim::Bytes(600), 1, payload);
   sim::BakeFrame frame;
   const auto decode = [&](std::int64_t most) {
-    return error_of(
-        [&] { sim::decode_particles(payload, sim::bake_format, radii, most, "f", scratch, frame); });
+    return error_of([&] { sim::decode_particles(payload, {4, radii, most, false}, "f", scratch, frame); });
   };
   EXPECT_THAT(decode(1000), HasSubstr("states 33554432 particles"));
   EXPECT_THAT(decode(sim::max_bake_particles), HasSubstr("more data than its bytes can hold"));

@@ -1,0 +1,35 @@
+#pragma once
+/// The colours of temperatures over the water: one scale a scene, whatever its water has come to.
+
+#include <span>
+#include <string>
+
+#include "libsim/render/fluid_renderer.hpp"
+#include "libsim/scene/scene.hpp"
+
+namespace apps {
+
+/// From the coldest to the hottest that a scene with heat names (sim::temperatures_of).
+class TemperatureScale {
+ public:
+  /// Without heat it is never asked for an overlay.
+  explicit TemperatureScale(const sim::Scene& scene);
+
+  /// Does the scene list heat with a diffusivity above 0, so that its water has temperatures?
+  bool heat() const { return heat_; }
+  /// above_k: K above the scene's reference, one a particle; must outlive the overlay.
+  sim::Overlay overlay(std::span<const float> above_k) const;
+  /// "temperature 293.15 to 353.15 K".
+  std::string words() const;
+
+  /// Does the other one give every temperature the same colour?
+  bool same_colours(const TemperatureScale& other) const {
+    return least_k_ == other.least_k_ && most_k_ == other.most_k_;
+  }
+
+ private:
+  bool heat_;
+  double reference_k_ = 0, least_k_ = 0, most_k_ = 1;
+};
+
+}  // namespace apps
