@@ -16,6 +16,7 @@ using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 constexpr double farthest_m = 1e4;
 constexpr double thinnest_m = 1e-3;
+constexpr double most_friction = 10;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
@@ -130,6 +131,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
     out.start.turn = product(rotation(direction(table, "rotation_axis"), angle), out.start.turn);
   }
   read_motion(table, origin_m, out);
+  out.friction = table.number_or("friction", 0, {0, most_friction});
   if (!in_tank(out, out.start, tank_size_m))
     table.fail("centre_m", "puts a part of the obstacle outside the tank",
                "keep all of it within tank.size_m from tank.origin_m; only above it may stand out");
@@ -170,7 +172,7 @@ Pose pose_at(const Obstacle& o, double time_s) {
 
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s) {
   std::vector<BodyMotion> out;
-  for (const Obstacle& o : obstacles) out.push_back({pose_at(o, time_s), {}, {}, {}, {}});
+  for (const Obstacle& o : obstacles) out.push_back({.pose = pose_at(o, time_s)});
   return out;
 }
 
@@ -229,6 +231,12 @@ Vector inertia_m2(const Obstacle& o) {
 bool any_free(const std::vector<Obstacle>& obstacles) {
   return std::any_of(obstacles.begin(), obstacles.end(),
                      [](const Obstacle& o) { return o.motion == ObstacleMotion::Free; });
+}
+
+bool any_meet(const std::vector<Obstacle>& obstacles) {
+  return any_free(obstacles) &&
+         (obstacles.size() > 1 ||
+          std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.friction > 0; }));
 }
 
 bool any_mesh(const std::vector<Obstacle>& obstacles) {
@@ -291,6 +299,7 @@ std::string obstacles_in_words(const std::vector<Obstacle>& obstacles) {
     if (o.motion == ObstacleMotion::Swings)
       out += ", swings by " + vector(o.way_m) + " m in " + base::shortest(o.period_s) + " s";
     if (o.motion == ObstacleMotion::Free) out += ", free, " + base::shortest(o.density_kg_m3) + " kg/m3";
+    if (o.friction > 0) out += ", friction " + base::shortest(o.friction);
     out += "\n";
   }
   return out;

@@ -47,6 +47,8 @@ struct BodyMotion {
   /// the water that goes along has a share in it.
   std::array<double, 3> owed_n_s{};
   std::array<double, 3> walls_n_s{};  ///< what walls gave it in the last frame
+  /// What other obstacles gave it in the last frame, also to one that is not free: they sum to 0.
+  std::array<double, 3> others_n_s{};
 };
 
 /// A rigid body. SI units.
@@ -64,6 +66,7 @@ struct Obstacle {
   std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
   double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
   double density_kg_m3 = 0;             ///< of a free body, the same in all of it
+  double friction = 0;  ///< Coulomb's coefficient of its surface against free bodies, or of a free body's
 };
 
 inline constexpr std::size_t most_obstacles = 16;
@@ -84,6 +87,8 @@ double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about its own axes over its mass, of an even density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
+/// Is one free that may meet another, or has friction?
+bool any_meet(const std::vector<Obstacle>& obstacles);
 bool any_mesh(const std::vector<Obstacle>& obstacles);
 /// The shortest way through the middle, m; of a mesh twice the depth of its deepest place.
 double thickness_m(const Obstacle& obstacle);

@@ -1,0 +1,324 @@
+#pragma once
+/// Rigid bodies that meet: a substep of all of them in one block of threads.
+
+#include "libsim/exec/one_block.hpp"
+#include "libsim/particles/body_drive.hpp"
+#include "libsim/particles/contact.hpp"
+#include "libsim/particles/contact_rows.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// Two bodies, or one and a wall.
+struct Partners {
+  int first, second;  ///< second < 0: the wall ~second
+};
+
+/// A contact among those that are solved.
+struct ListedContact {
+  Contact contact;
+  Partners between;
+};
+
+/// Takes free bodies to the substep's end. Contacts are inelastic, with Coulomb's friction. They are looked
+/// for where bodies are when the substep begins, and let surfaces come as near as they are to each other: who
+/// is deeper is parted by places, without speed. Walls have the last word.
+struct Meeting {
+  Body* bodies;  ///< of those that are not free: at the substep's end
+  FreeBody* free;
+  const MeshGrid* meshes;  ///< as Solids has them
+  const float* friction;   ///< of each
+  Vec3* by_others;         ///< what others gave each in this frame, m_* m/s
+  Walls walls;
+  BodyDrive drive;
+  float spacing;  ///< of the finest particles, m
+  int count;
+  int feelers;  ///< the most that a body has
+  bool rough;   ///< one has friction
+
+  /// Depth that stays, and the most that a substep takes away, as shares of the spacing.
+  static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
+  /// What a substep takes of the depth beyond.
+  static constexpr float mended = 0.5f;
+  /// How far contacts are looked for beyond what speeds close, as a share of the smaller body.
+  static constexpr float wide = 0.02f;
+
+  SIM_FN int width() const { return rough ? 3 : 1; }
+  SIM_FN int pairs() const { return count * (count - 1) / 2; }
+  SIM_FN int groups() const { return pairs() + count * walls.count; }
+  /// Pairs come first, then each body's walls.
+  SIM_FN Partners partners(int group) const {
+    if (group >= pairs()) {
+      const int k = group - pairs();
+      return {k / walls.count, ~(k % walls.count)};
+    }
+    int first = 0;
+    for (; group >= count - 1 - first; ++first) group -= count - 1 - first;
+    return {first, first + 1 + group};
+  }
+
+  struct Room {
+    std::size_t bytes = 0;
+    Body* start;      ///< where bodies are when the substep begins
+    BodyRate* rates;  ///< how they move, till they meet
+    float* speeds;    ///< of their fastest places, m/s
+    int* found;       ///< contacts of each group; of pairs at first: may they meet?
+    Contact* felt;    ///< by both of each pair
+    Contact* picked;  ///< most_contacts of each group
+    ListedContact* list;
+    int* listed;      ///< how many
+    float* friction;  ///< of those listed
+    ContactRow* rows;
+  };
+  /// The parts of the room; of none, its size alone.
+  SIM_FN Room parts_of(unsigned char* room) const {
+    const auto n = static_cast<std::size_t>(count);
+    const auto most = static_cast<std::size_t>(groups() * most_contacts);
+    Room out;
+    take(room, out.bytes, out.start, n);
+    take(room, out.bytes, out.rates, n);
+    take(room, out.bytes, out.speeds, n);
+    take(room, out.bytes, out.found, static_cast<std::size_t>(groups()));
+    take(room, out.bytes, out.felt, static_cast<std::size_t>(2 * pairs() * feelers));
+    take(room, out.bytes, out.picked, most);
+    take(room, out.bytes, out.list, most);
+    take(room, out.bytes, out.listed, 1);
+    take(room, out.bytes, out.friction, most);
+    take(room, out.bytes, out.rows, most * static_cast<std::size_t>(width()));
+    return out;
+  }
+  std::size_t bytes() const { return parts_of(nullptr).bytes; }
+
+  struct InRoom {
+    const Meeting& m;
+    Room room;
+
+    SIM_FN bool is_free(int b) const { return m.free[b].mass > 0; }
+    SIM_FN Feelers feelers_of(int b) const { return {room.start[b], mesh_of(m.meshes, b)}; }
+    SIM_FN Solids solids() const { return {m.walls, room.start, m.count, m.drive.dt, m.meshes}; }
+    SIM_FN Vec3 velocity_at(int b, Vec3 x) const {
+      return room.rates[b].velocity + cross(room.rates[b].spin, x - room.start[b].centre);
+    }
+
+    /// Where a body is, and how it would go on.
+    SIM_FN void begin(int b) const {
+      if (m.drive.first) m.by_others[b] = {0, 0, 0};
+      Body body = m.bodies[b];
+      FreeBody& it = m.free[b];
+      if (is_free(b)) {
+        m.drive(it);
+        room.rates[b] = {(1 / it.mass) * it.momentum, spin_of(it, body.turn, it.spin), 1 / it.mass};
+      } else {
+        room.rates[b] = {body.velocity, body.spin, 0};
+        body.centre += -m.drive.dt * body.velocity;
+        body.turn = turned_by(body.turn, -m.drive.dt * body.spin);
+      }
+      room.start[b] = body;
+      room.speeds[b] = length(room.rates[b].velocity) + length(room.rates[b].spin) * feelers_of(b).reach();
+    }
+
+    /// How far a gap may reach that is looked at, m.
+    SIM_FN float pad(Partners pair) const {
+      float fastest = 0;
+      for (int b = 0; b < m.count; ++b) fastest = at_least(room.speeds[b], fastest);
+      float size = feelers_of(pair.first).reach();
+      if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);
+      // What is struck may go on to others.
+      return wide * size + 0.25f * m.drive.dt * fastest;
+    }
+    SIM_FN void screen(int group) const {
+      const auto [a, b] = m.partners(group);
+      const float speed = room.speeds[a] + room.speeds[b];
+      const float far = pad({a, b}) + m.drive.dt * speed;
+      room.found[group] = (is_free(a) || is_free(b)) && reaches(a, b, far) && reaches(b, a, far);
+    }
+    SIM_FN bool reaches(int a, int b, float far) const {
+      const float reach = feelers_of(a).reach() + far;
+      const Vec3 centre = room.start[a].centre;
+      if (length(centre - room.start[b].centre) > reach + feelers_of(b).reach()) return false;
+      // Beyond its grid a mesh tells no bound.
+      return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
+    }
+
+    /// One feeler of one of a pair.
+    SIM_FN void feel(int k) const {
+      const int group = k / (2 * m.feelers);
+      if (!room.found[group]) return;
+      const Partners pair = m.partners(group);
+      const bool back = k / m.feelers % 2;
+      const int self = back ? pair.second : pair.first;
+      const int other = back ? pair.first : pair.second;
+      const Feelers own = feelers_of(self);
+      Contact& out = room.felt[k];
+      out.ahead = 3e38f;
+      if (k % m.feelers >= own.count() || spares(other, self, back)) return;
+      out = own.meets(k % m.feelers, solids(), other);
+      out.ahead =
+          out.gap + m.drive.dt * dot(out.normal, velocity_at(self, out.at) - velocity_at(other, out.at));
+      if (back) out.normal = -1.0f * out.normal;
+    }
+    /// A ball's centre tells all.
+    SIM_FN bool spares(int other, int self, bool back) const {
+      const bool ball = !mesh_of(m.meshes, other) && feelers_of(other).count() == 1;
+      const bool balls = ball && !mesh_of(m.meshes, self) && feelers_of(self).count() == 1;
+      return balls ? back : ball;
+    }
+
+    struct OfPair {
+      const Contact* felt;
+      SIM_FN Contact operator()(int k) const { return felt[k]; }
+    };
+    struct OfWall {
+      const InRoom& here;
+      int body, wall;
+      SIM_FN Contact operator()(int k) const {
+        Contact out = here.feelers_of(body).meets(k, here.m.walls, wall);
+        out.ahead = out.gap + here.m.drive.dt * dot(out.normal, here.velocity_at(body, out.at));
+        return out;
+      }
+    };
+    SIM_FN void pick(int group) const {
+      const Partners it = m.partners(group);
+      Contact* const out = room.picked + group * most_contacts;
+      if (it.second >= 0) {
+        if (!room.found[group]) return;
+        const int n = 2 * m.feelers;
+        room.found[group] = pick_contacts(OfPair{room.felt + group * n}, n, pad(it), out);
+      } else {
+        const int n = is_free(it.first) ? feelers_of(it.first).corners() : 0;
+        room.found[group] = pick_contacts(OfWall{*this, it.first, ~it.second}, n, pad(it), out);
+      }
+    }
+    SIM_FN void list(int) const {
+      int n = 0;
+      for (int group = 0; group < m.groups(); ++group) {
+        for (int k = 0; k < room.found[group]; ++k)
+          room.list[n++] = {room.picked[group * most_contacts + k], m.partners(group)};
+      }
+      *room.listed = n;
+    }
+
+    SIM_FN void lay(int c) const {
+      const ListedContact& it = room.list[c];
+      const int a = it.between.first, b = it.between.second;
+      ContactRow* const rows = room.rows + c * m.width();
+      rows[0] = row_along(it, it.contact.normal);
+      rows[0].wanted = -at_least(it.contact.gap, 0.0f) / m.drive.dt;
+      if (!m.rough) return;
+      const float own = m.friction[a];
+      room.friction[c] = b < 0 ? own : sqrtf(own * m.friction[b]);
+      Vec3 sliding = velocity_at(a, it.contact.at);
+      if (b >= 0) sliding = sliding - velocity_at(b, it.contact.at);
+      const Vec3 along = across(it.contact.normal, sliding);
+      rows[1] = row_along(it, along);
+      rows[2] = row_along(it, cross(it.contact.normal, along));
+    }
+    /// A unit vector across n, along v if that has a part across it.
+    SIM_FN static Vec3 across(Vec3 n, Vec3 v) {
+      Vec3 part = v - dot(n, v) * n;
+      if (length(part) < 1e-4f) part = fabsf(n.x) < 0.7f ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0});
+      return (1 / length(part)) * part;
+    }
+    SIM_FN ContactRow row_along(const ListedContact& it, Vec3 way) const {
+      ContactRow out{};
+      out.first = it.between.first;
+      out.second = it.between.second;
+      out.way = way;
+      out.ease = arm(out.first, it.contact.at, way, out.lever, out.turn);
+      if (out.second >= 0) out.ease += arm(out.second, it.contact.at, way, out.other_lever, out.other_turn);
+      return out;
+    }
+    SIM_FN float arm(int b, Vec3 at, Vec3 way, Vec3& lever, Vec3& turn) const {
+      lever = cross(at - room.start[b].centre, way);
+      turn = is_free(b) ? spin_of(m.free[b], room.start[b].turn, lever) : Vec3{0, 0, 0};
+      return room.rates[b].ease + dot(lever, turn);
+    }
+
+    SIM_FN ContactRows rows(bool rub) const {
+      return {room.rows, rub ? room.friction : nullptr, room.rates, *room.listed, m.width()};
+    }
+    SIM_FN void solve(int) const {
+      if (*room.listed > 0) {
+        rows(m.rough).solve();
+        for (int r = 0; r < *room.listed * m.width(); ++r) take_push(room.rows[r]);
+      }
+      part();
+    }
+    SIM_FN void take_push(const ContactRow& row) const {
+      if (row.push == 0) return;
+      FreeBody& it = m.free[row.first];
+      const Vec3 push = row.push * row.way;
+      it.momentum += push;
+      it.spin += row.push * row.lever;
+      if (row.second < 0) {
+        it.by_walls += push;
+        return;
+      }
+      FreeBody& other = m.free[row.second];
+      other.momentum += -1.0f * push;
+      other.spin += -row.push * row.other_lever;
+      m.by_others[row.first] += push;
+      m.by_others[row.second] += -1.0f * push;
+    }
+    /// Rates of a way apart alone, which no momentum keeps.
+    SIM_FN void part() const {
+      const float dt = m.drive.dt;
+      bool deep = false;
+      for (int c = 0; c < *room.listed; ++c) {
+        ContactRow& row = room.rows[c * m.width()];
+        const float depth = -room.list[c].contact.gap;
+        const float mend = at_most(mended * (depth - slop * m.spacing), fastest_mend * m.spacing);
+        deep = deep || mend > 0;
+        row.wanted = (depth < 0 ? depth : at_least(mend, 0.0f)) / dt - rows(false).speed(row);
+      }
+      for (int b = 0; b < m.count; ++b) {
+        room.rates[b].velocity = {0, 0, 0};
+        room.rates[b].spin = {0, 0, 0};
+      }
+      if (!deep) return;
+      for (int r = 0; r < *room.listed * m.width(); ++r) room.rows[r].push = 0;
+      rows(false).solve();
+    }
+
+    SIM_FN void move(int b) const {
+      FreeBody& it = m.free[b];
+      if (!is_free(b)) return;
+      const float dt = m.drive.dt;
+      Body& body = m.bodies[b];
+      const BodyRate& apart = room.rates[b];
+      const Vec3 from = body.centre;
+      body.centre = fused(from, dt / it.mass, it.momentum) + dt * apart.velocity;
+      turn_on(body, it, dt);
+      body.turn = turned_by(body.turn, dt * apart.spin);
+      body.spin += apart.spin;
+      body.centre += WallContact{m.walls, body, it, dt, mesh_of(m.meshes, b)}.way_back();
+      body.velocity = (1 / dt) * (body.centre - from);
+    }
+  };
+
+  template <class Block>
+  SIM_FN void operator()(Block block, unsigned char* room) const {
+    const InRoom here{*this, parts_of(room)};
+    block.each(count, Step<&InRoom::begin>{here});
+    block.each(pairs(), Step<&InRoom::screen>{here});
+    block.each(2 * pairs() * feelers, Step<&InRoom::feel>{here});
+    block.each(groups(), Step<&InRoom::pick>{here});
+    block.each(1, Step<&InRoom::list>{here});
+    block.each(*here.room.listed, Step<&InRoom::lay>{here});
+    block.each(1, Step<&InRoom::solve>{here});
+    block.each(count, Step<&InRoom::move>{here});
+  }
+
+ private:
+  template <void (InRoom::*step)(int) const>
+  struct Step {
+    const InRoom& here;
+    SIM_FN void operator()(int i) const { (here.*step)(i); }
+  };
+  template <class T>
+  SIM_FN static void take(unsigned char* room, std::size_t& bytes, T*& out, std::size_t n) {
+    out = room ? reinterpret_cast<T*>(room + bytes) : nullptr;
+    bytes += (n * sizeof(T) + 15) / 16 * 16;
+  }
+};
+
+}  // namespace sim::SIM_BACKEND
