@@ -38,9 +38,9 @@ struct Feelers {
     if (!is_box()) return {0, k ? h.y : -h.y, 0};
     return {k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z};
   }
-  /// s: -1 .. 1 from one end to the other.
-  SIM_FN Vec3 on_edge(int edge, float s) const {
-    const Vec3 h = body.half;
+  /// s: -1 .. 1 from one end to the other; of the box whose half sides are this share of the body's.
+  SIM_FN Vec3 on_edge(int edge, float s, Vec3 share) const {
+    const Vec3 h = scaled(body.half, share);
     if (!is_box()) return {0, s * h.y, 0};
     const float u = edge & 1 ? 1.0f : -1.0f;
     const float v = edge & 2 ? 1.0f : -1.0f;
@@ -50,14 +50,24 @@ struct Feelers {
   }
   SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
 
-  /// Where feeler k is nearest to another body; `ahead` is left open. At an edge of the other, the nearest
-  /// surface of a corner changes with the last bit: the normal is that of a place a little deeper in the
-  /// body, which lies clear of one face or the other.
+  /// Where feeler k is nearest to another body; `ahead` is left open. What is nearest to a corner on
+  /// another's edge changes with the last bit. So the other is looked at from a little deeper in the body,
+  /// where it shows a plane, and the gap is the corner's from that plane.
   SIM_FN Contact meets(int k, const Solids& solids, int other) const {
-    const Vec3 own = k < corners() ? corner(k) : nearest_on_edge(k - corners(), solids, other);
+    Vec3 own, deeper;
+    if (k < corners()) {
+      own = corner(k);
+      deeper = mesh ? own - mesh->step * mesh->near(own).normal : scaled(own, inset());
+    } else {
+      const float s = nearest_on_edge(k - corners(), solids, other);
+      own = on_edge(k - corners(), s, {1, 1, 1});
+      deeper = on_edge(k - corners(), s, inset());
+    }
     const Vec3 at = in_world(own);
-    const Vec3 normal = solids.near(other, in_world(inset(own))).normal;
-    return {at - body.radius * normal, normal, solids.distance(other, at) - body.radius, 0};
+    const Vec3 from = in_world(deeper);
+    const Body::Near near = solids.near(other, from);
+    const float gap = near.distance + dot(near.normal, at - from) - body.radius;
+    return {at - body.radius * near.normal, near.normal, gap, 0};
   }
   /// The same for a corner and a wall.
   SIM_FN Contact meets(int k, const Walls& walls, int wall) const {
@@ -67,38 +77,39 @@ struct Feelers {
   }
 
  private:
-  SIM_FN Vec3 inset(Vec3 own) const {
-    if (mesh) return own - mesh->step * mesh->near(own).normal;
-    if (!is_box()) return own;
+  /// What of a box's half sides lies deeper than a twentieth of the shortest.
+  SIM_FN Vec3 inset() const {
+    if (!is_box()) return {1, 1, 1};
     const Vec3 h = body.half;
-    const float way = 0.1f * at_most(at_most(h.x, h.y), h.z);
-    const auto within = [way](float x, float half) { return at_most(at_least(x, way - half), half - way); };
-    return {within(own.x, h.x), within(own.y, h.y), within(own.z, h.z)};
+    const float way = 0.05f * at_most(at_most(h.x, h.y), h.z);
+    return {1 - way / h.x, 1 - way / h.y, 1 - way / h.z};
   }
+  SIM_FN static Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
   /// By the golden section: along a straight line the distance from a convex body has one low.
-  SIM_FN Vec3 nearest_on_edge(int edge, const Solids& solids, int other) const {
+  SIM_FN float nearest_on_edge(int edge, const Solids& solids, int other) const {
+    const Vec3 share = inset();
     constexpr float golden = 0.618034f;
     constexpr int halvings = 16;  ///< to 1/2200 of the edge
     float low = -1, high = 1;
     float a = high - golden * (high - low), b = low + golden * (high - low);
-    float at_a = solids.distance(other, in_world(on_edge(edge, a)));
-    float at_b = solids.distance(other, in_world(on_edge(edge, b)));
+    float at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
+    float at_b = solids.distance(other, in_world(on_edge(edge, b, share)));
     for (int k = 0; k < halvings; ++k) {
       if (at_a <= at_b) {
         high = b;
         b = a;
         at_b = at_a;
         a = high - golden * (high - low);
-        at_a = solids.distance(other, in_world(on_edge(edge, a)));
+        at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
       } else {
         low = a;
         a = b;
         at_a = at_b;
         b = low + golden * (high - low);
-        at_b = solids.distance(other, in_world(on_edge(edge, b)));
+        at_b = solids.distance(other, in_world(on_edge(edge, b, share)));
       }
     }
-    return on_edge(edge, 0.5f * (low + high));
+    return 0.5f * (low + high);
   }
 };
 

@@ -60,6 +60,7 @@ struct Meeting {
     std::size_t bytes = 0;
     Body* start;      ///< where bodies are when the substep begins
     BodyRate* rates;  ///< how they move, till they meet
+    BodyRate* along;  ///< as ContactRows has it
     float* speeds;    ///< of their fastest places, m/s
     int* found;       ///< contacts of each group; of pairs at first: may they meet?
     Contact* felt;    ///< by both of each pair
@@ -76,6 +77,7 @@ struct Meeting {
     Room out;
     take(room, out.bytes, out.start, n);
     take(room, out.bytes, out.rates, n);
+    take(room, out.bytes, out.along, n);
     take(room, out.bytes, out.speeds, n);
     take(room, out.bytes, out.found, static_cast<std::size_t>(groups()));
     take(room, out.bytes, out.felt, static_cast<std::size_t>(2 * pairs() * feelers));
@@ -234,7 +236,13 @@ struct Meeting {
     }
 
     SIM_FN ContactRows rows(bool rub) const {
-      return {room.rows, rub ? room.friction : nullptr, room.rates, *room.listed, m.width()};
+      return {.rows = room.rows,
+              .friction = rub ? room.friction : nullptr,
+              .bodies = room.rates,
+              .along = room.along,
+              .body_count = m.count,
+              .contacts = *room.listed,
+              .width = m.width()};
     }
     SIM_FN void solve(int) const {
       if (*room.listed > 0) {
