@@ -24,6 +24,7 @@ struct ContactRow {
   float wanted;             ///< least speed of parting; of friction the speed of sliding, 0
   float push;               ///< so far, m_* m/s
   bool open;                ///< neither at rest nor at its bound
+  float most;               ///< that bound of friction, m_* m/s
   float left, step;         ///< of conjugate gradients: speed that is missing, direction of pushes
 };
 
@@ -36,7 +37,7 @@ struct ContactRows {
   int body_count;
   int contacts, width;
 
-  static constexpr int most_rounds = 12, most_steps = 32;
+  static constexpr int most_rounds = 24, most_steps = 32;
   static constexpr float still = 1e-5f;  ///< changes of speed that end them, m/s
 
   SIM_FN float speed(const ContactRow& row) const { return speed(row, bodies); }
@@ -98,6 +99,7 @@ struct ContactRows {
     change(row[0], share * u, most);
     change(row[1], share * v, most);
     row[0].open = row[1].open = whole < bound;
+    row[0].most = row[1].most = bound;
   }
 
   /// Conjugate gradients over the open rows. One that would pull is shut, and the rest begin anew.
@@ -116,7 +118,7 @@ struct ContactRows {
       int shut = -1;
       if (go(way_to_bound(worth / steep, shut)) <= 0.3f * still) return;
       if (shut >= 0) {
-        rows[shut].push = 0;
+        rows[shut].push = bound_of(shut, rows[shut].step < 0);
         rows[shut].open = false;
       }
       worth = turn_to(shut < 0 ? 1 / worth : 0);
@@ -148,14 +150,21 @@ struct ContactRows {
     }
     return steep;
   }
-  SIM_FN float way_to_bound(float way, int& bound) const {
-    for (int r = 0; r < row_count(); r += width) {
+  SIM_FN float way_to_bound(float way, int& shut) const {
+    for (int r = 0; r < row_count(); ++r) {
       const ContactRow& row = rows[r];
-      if (!row.open || row.step >= 0 || row.push + way * row.step >= 0) continue;
-      way = -row.push / row.step;
-      bound = r;
+      if (!row.open || row.step == 0) continue;
+      const float bound = bound_of(r, row.step < 0);
+      if (row.step < 0 ? row.push + way * row.step >= bound : row.push + way * row.step <= bound) continue;
+      way = at_least((bound - row.push) / row.step, 0.0f);
+      shut = r;
     }
     return way;
+  }
+  /// Of a row's pushes: a normal never pulls, and friction follows the pushes that the sweep left.
+  SIM_FN float bound_of(int r, bool low) const {
+    if (r % width == 0) return low ? 0.0f : 3e38f;
+    return low ? -rows[r].most : rows[r].most;
   }
   /// Returns the most that a row then misses, m/s.
   SIM_FN float go(float way) const {
