@@ -24,7 +24,7 @@ struct ContactRow {
   float wanted;             ///< least speed of parting; of friction the speed of sliding, 0
   float push;               ///< so far, m_* m/s
   bool open;                ///< neither at rest nor at its bound
-  float most;               ///< that bound of friction, m_* m/s
+  float most;               ///< that bound, m_* m/s; of friction it follows from the normal's push
   float left, step;         ///< of conjugate gradients: speed that is missing, direction of pushes
 };
 
@@ -78,7 +78,7 @@ struct ContactRows {
     float most = 0;
     for (int c = 0; c < contacts; ++c) {
       ContactRow* const row = rows + c * width;
-      change(row[0], at_least(row[0].push + missing(row[0]), 0.0f), most);
+      change(row[0], at_most(at_least(row[0].push + missing(row[0]), 0.0f), row[0].most), most);
       if (rubs(c)) rub(row + 1, friction[c] * row[0].push, most);
     }
     return most;
@@ -106,7 +106,7 @@ struct ContactRows {
   SIM_FN void descend() const {
     for (int r = 0; r < row_count(); ++r) {
       ContactRow& row = rows[r];
-      if (r % width == 0) row.open = row.push > 0;
+      if (r % width == 0) row.open = row.push > 0 && row.push < row.most;
       if (r % width != 0 && !rubs(r / width)) row.open = false;
       row.left = row.wanted - speed(row);
     }
@@ -163,8 +163,8 @@ struct ContactRows {
   }
   /// Of a row's pushes: a normal never pulls, and friction follows the pushes that the sweep left.
   SIM_FN float bound_of(int r, bool low) const {
-    if (r % width == 0) return low ? 0.0f : 3e38f;
-    return low ? -rows[r].most : rows[r].most;
+    if (!low) return rows[r].most;
+    return r % width == 0 ? 0.0f : -rows[r].most;
   }
   /// Returns the most that a row then misses, m/s.
   SIM_FN float go(float way) const {

@@ -95,6 +95,7 @@ struct Meeting {
     Room room;
 
     SIM_FN bool is_free(int b) const { return m.free[b].mass > 0; }
+    SIM_FN bool is_ball(int b) const { return !mesh_of(m.meshes, b) && feelers_of(b).count() == 1; }
     SIM_FN Feelers feelers_of(int b) const { return {room.start[b], mesh_of(m.meshes, b)}; }
     SIM_FN Solids solids() const { return {m.walls, room.start, m.count, m.drive.dt, m.meshes}; }
     SIM_FN Vec3 velocity_at(int b, Vec3 x) const {
@@ -118,14 +119,25 @@ struct Meeting {
       room.speeds[b] = length(room.rates[b].velocity) + length(room.rates[b].spin) * feelers_of(b).reach();
     }
 
+    SIM_FN float fastest() const {
+      float out = 0;
+      for (int b = 0; b < m.count; ++b) out = at_least(room.speeds[b], out);
+      return out;
+    }
+    /// More than any contact needs that can be: of a body that is pinned, others' pushes end here, and walls
+    /// have the last word.
+    SIM_FN float most_push(float speed) const {
+      float mass = 0;
+      for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;
+      return 4 * mass * speed;
+    }
+
     /// How far a gap may reach that is looked at, m.
     SIM_FN float pad(Partners pair) const {
-      float fastest = 0;
-      for (int b = 0; b < m.count; ++b) fastest = at_least(room.speeds[b], fastest);
       float size = feelers_of(pair.first).reach();
       if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);
       // What is struck may go on to others.
-      return wide * size + 0.25f * m.drive.dt * fastest;
+      return wide * size + 0.25f * m.drive.dt * fastest();
     }
     SIM_FN void screen(int group) const {
       const auto [a, b] = m.partners(group);
@@ -160,9 +172,7 @@ struct Meeting {
     }
     /// A ball's centre tells all.
     SIM_FN bool spares(int other, int self, bool back) const {
-      const bool ball = !mesh_of(m.meshes, other) && feelers_of(other).count() == 1;
-      const bool balls = ball && !mesh_of(m.meshes, self) && feelers_of(self).count() == 1;
-      return balls ? back : ball;
+      return is_ball(self) && is_ball(other) ? back : is_ball(other);
     }
 
     struct OfPair {
@@ -203,16 +213,17 @@ struct Meeting {
       const ListedContact& it = room.list[c];
       const int a = it.between.first, b = it.between.second;
       ContactRow* const rows = room.rows + c * m.width();
-      rows[0] = row_along(it, it.contact.normal);
+      rows[0] = row_along(it, it.contact.normal, true);
       rows[0].wanted = -at_least(it.contact.gap, 0.0f) / m.drive.dt;
+      rows[0].most = b < 0 ? 3e38f : most_push(fastest());
       if (!m.rough) return;
       const float own = m.friction[a];
       room.friction[c] = b < 0 ? own : sqrtf(own * m.friction[b]);
       Vec3 sliding = velocity_at(a, it.contact.at);
       if (b >= 0) sliding = sliding - velocity_at(b, it.contact.at);
       const Vec3 along = across(it.contact.normal, sliding);
-      rows[1] = row_along(it, along);
-      rows[2] = row_along(it, cross(it.contact.normal, along));
+      rows[1] = row_along(it, along, false);
+      rows[2] = row_along(it, cross(it.contact.normal, along), false);
     }
     /// A unit vector across n, along v if that has a part across it.
     SIM_FN static Vec3 across(Vec3 n, Vec3 v) {
@@ -220,18 +231,22 @@ struct Meeting {
       if (length(part) < 1e-4f) part = fabsf(n.x) < 0.7f ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0});
       return (1 / length(part)) * part;
     }
-    SIM_FN ContactRow row_along(const ListedContact& it, Vec3 way) const {
+    SIM_FN ContactRow row_along(const ListedContact& it, Vec3 way, bool normal) const {
       ContactRow out{};
       out.first = it.between.first;
       out.second = it.between.second;
       out.way = way;
-      out.ease = arm(out.first, it.contact.at, way, out.lever, out.turn);
-      if (out.second >= 0) out.ease += arm(out.second, it.contact.at, way, out.other_lever, out.other_turn);
+      out.ease = arm(out.first, it.contact.at, way, normal, out.lever, out.turn);
+      if (out.second >= 0)
+        out.ease += arm(out.second, it.contact.at, way, normal, out.other_lever, out.other_turn);
       return out;
     }
-    SIM_FN float arm(int b, Vec3 at, Vec3 way, Vec3& lever, Vec3& turn) const {
+    /// A push towards the middle of a ball turns it by no rounding either.
+    SIM_FN float arm(int b, Vec3 at, Vec3 way, bool normal, Vec3& lever, Vec3& turn) const {
+      lever = turn = {0, 0, 0};
+      if (normal && is_ball(b)) return room.rates[b].ease;
       lever = cross(at - room.start[b].centre, way);
-      turn = is_free(b) ? spin_of(m.free[b], room.start[b].turn, lever) : Vec3{0, 0, 0};
+      if (is_free(b)) turn = spin_of(m.free[b], room.start[b].turn, lever);
       return room.rates[b].ease + dot(lever, turn);
     }
 
@@ -271,19 +286,24 @@ struct Meeting {
     SIM_FN void part() const {
       const float dt = m.drive.dt;
       bool deep = false;
+      float most = 0;
       for (int c = 0; c < *room.listed; ++c) {
         ContactRow& row = room.rows[c * m.width()];
         const float depth = -room.list[c].contact.gap;
         const float mend = at_most(mended * (depth - slop * m.spacing), fastest_mend * m.spacing);
         deep = deep || mend > 0;
         row.wanted = (depth < 0 ? depth : at_least(mend, 0.0f)) / dt - rows(false).speed(row);
+        most = at_least(fabsf(row.wanted), most);
       }
       for (int b = 0; b < m.count; ++b) {
         room.rates[b].velocity = {0, 0, 0};
         room.rates[b].spin = {0, 0, 0};
       }
       if (!deep) return;
-      for (int r = 0; r < *room.listed * m.width(); ++r) room.rows[r].push = 0;
+      for (int r = 0; r < *room.listed * m.width(); ++r) {
+        room.rows[r].push = 0;
+        if (room.rows[r].second >= 0) room.rows[r].most = most_push(most);
+      }
       rows(false).solve();
     }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libsim/scene/mesh_reader.hpp"
+#include "libsim/scene/overlap.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
@@ -50,15 +51,15 @@ Vector reach(const Obstacle& o, const Pose& pose) {
   for (std::size_t k = 0; k < 3; ++k) {
     Vector side{};
     side[k] = half[k];
-    const Vector in_world = turned(pose.turn, side);
-    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(in_world[a]);
+    const Vector way = turned(pose.turn, side);
+    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(way[a]);
   }
   return out;
 }
 
 bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
   return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
-    const Vector at = sum(turned(pose.turn, own), 1, pose.centre_m);
+    const Vector at = in_world(pose, own);
     const bool low = at[0] < -1e-9 || at[1] < -1e-9 || at[2] < -1e-9;
     return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open above
   });
@@ -148,6 +149,21 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   return out;
 }
 
+/// The last obstacle against those before it.
+void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obstacles) {
+  const Obstacle& last = obstacles.back();
+  for (std::size_t k = 0; k + 1 < obstacles.size(); ++k) {
+    const Obstacle& other = obstacles[k];
+    if (last.motion != ObstacleMotion::Free && other.motion != ObstacleMotion::Free) continue;
+    const double deep = overlap_m(last, other);
+    if (deep <= least_overlap_m) continue;
+    table.fail("centre_m",
+               "puts the obstacle " + base::shortest(deep) + " m deep into obstacle " +
+                   std::to_string(k + 1) + " of the file, and one of them is free",
+               "put them apart: what is free begins outside of others");
+  }
+}
+
 }  // namespace
 
 const char* shape_name(ObstacleShape shape) {
@@ -184,6 +200,10 @@ Vector half_sides_m(const Obstacle& o) {
   }
   if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
   return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
+}
+
+Vector in_world(const Pose& pose, const Vector& own_m) {
+  return sum(turned(pose.turn, own_m), 1, pose.centre_m);
 }
 
 double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_m) {
@@ -270,6 +290,7 @@ std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector&
     if (out.back().motion == ObstacleMotion::Free && scene.has("central_force"))
       table.fail("motion", "is free in a scene with a central force, which would not pull it",
                  "leave central_force out, or keep the obstacle fixed");
+    check_apart(table, out);
     if (top_speed(out.back()) > most_speed_m_s)
       table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
                  "raise time.v_ref_m_s or slow the obstacle down");

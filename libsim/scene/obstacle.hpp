@@ -76,6 +76,8 @@ const char* shape_name(ObstacleShape shape);
 Pose pose_at(const Obstacle& obstacle, double time_s);
 /// All of them so, at rest.
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
+/// Where a point of the body's own axes lies.
+std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& own_m);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Is the point inside? Quicker than its distance.
@@ -97,9 +99,9 @@ double top_speed(const Obstacle& obstacle);
 
 /// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
 /// key, a size that is not positive, an axis without direction, a place or a way that leaves the tank, more
-/// than most_obstacles, one that is faster than most_speed_m_s; in a mesh's file at file:line. origin_m:
-/// Scene::origin_m, which places then count from. beside: the folder that files of meshes count from, if the
-/// text has one.
+/// than most_obstacles, one that is faster than most_speed_m_s, a free one that begins inside another or
+/// another in it; in a mesh's file at file:line. origin_m: Scene::origin_m, which places then count from.
+/// beside: the folder that files of meshes count from, if the text has one.
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
                                      const std::array<double, 3>& origin_m, double most_speed_m_s,
                                      const std::optional<std::filesystem::path>& beside = {});
