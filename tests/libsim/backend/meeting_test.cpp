@@ -216,6 +216,7 @@ SIM_TEST(Meeting, WhatMovesPushesWithItsOwnSpeed) {
     EXPECT_GT(two.bodies[1].centre.x - two.bodies[0].centre.x, 0.3f - 1e-4f);
   }
   EXPECT_NEAR(two.velocity(1).x, 1, 1e-4f);
+  EXPECT_NEAR(two.bodies[1].centre.x - two.bodies[0].centre.x, 0.3f, 1e-3f) << "they touch";
 }
 
 SIM_TEST(Meeting, WhatTurnsPushesWithTheSpeedOfThePlace) {
