@@ -10,7 +10,7 @@ struct Contact {
   Vec3 at;
   Vec3 normal;  ///< out of the other, towards the body
   float gap;    ///< between the surfaces, m; negative: so deep
-  float ahead;  ///< the gap at the substep's end, were there no contact
+  float ahead;  ///< the least gap until the substep's end, were there no contact
 };
 
 /// The places by which a body meets others. Of a shape: the corners of the box round which it lies and the

@@ -153,6 +153,10 @@ struct Meeting {
       return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
     }
 
+    /// Who parts may be stopped by others, and is looked at as if it stayed.
+    SIM_FN void look_ahead(Contact& it, Vec3 speed) const {
+      it.ahead = it.gap + m.drive.dt * at_most(dot(it.normal, speed), 0.0f);
+    }
     /// One feeler of one of a pair.
     SIM_FN void feel(int k) const {
       const int group = k / (2 * m.feelers);
@@ -166,8 +170,7 @@ struct Meeting {
       out.ahead = 3e38f;
       if (k % m.feelers >= own.count() || spares(other, self, back)) return;
       out = own.meets(k % m.feelers, solids(), other);
-      out.ahead =
-          out.gap + m.drive.dt * dot(out.normal, velocity_at(self, out.at) - velocity_at(other, out.at));
+      look_ahead(out, velocity_at(self, out.at) - velocity_at(other, out.at));
       if (back) out.normal = -1.0f * out.normal;
     }
     /// A ball's centre tells all.
@@ -184,7 +187,7 @@ struct Meeting {
       int body, wall;
       SIM_FN Contact operator()(int k) const {
         Contact out = here.feelers_of(body).meets(k, here.m.walls, wall);
-        out.ahead = out.gap + here.m.drive.dt * dot(out.normal, here.velocity_at(body, out.at));
+        here.look_ahead(out, here.velocity_at(body, out.at));
         return out;
       }
     };

@@ -158,8 +158,8 @@ void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obst
     const double deep = overlap_m(last, other);
     if (deep <= least_overlap_m) continue;
     table.fail("centre_m",
-               "puts the obstacle " + base::shortest(deep) + " m deep into obstacle " +
-                   std::to_string(k + 1) + " of the file, and one of them is free",
+               "puts the obstacle " + base::shortest(std::round(deep * 1e5) / 1e5) +
+                   " m deep into obstacle " + std::to_string(k + 1) + " of the file, and one of them is free",
                "put them apart: what is free begins outside of others");
   }
 }

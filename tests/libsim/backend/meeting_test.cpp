@@ -91,6 +91,20 @@ SIM_TEST(Meeting, AHeavyBoxRestsOnALightOne) {
   }
 }
 
+/// Water between two bodies may push one away, and the floor stops it.
+SIM_TEST(Meeting, ABoxThatIsPushedDownStillBearsAnother) {
+  BodiesApart two;
+  two.gravity = g;
+  two.add_floor();
+  two.add(BodiesApart::box({0, 0.1f, 0}, {0.4f, 0.2f, 0.4f}), 1);
+  two.add(BodiesApart::box({0.01f, 0.3f, 0.02f}, {0.3f, 0.2f, 0.3f}), 100);
+  for (int step = 0; step < 180; ++step) {
+    two.frees[0].force = {0, -1000, 0};
+    two.step();
+  }
+  EXPECT_NEAR(two.bodies[1].centre.y, 0.3f, 2e-4f);
+}
+
 SIM_TEST(Meeting, ATowerStands) {
   BodiesApart tower;
   tower.gravity = g;
