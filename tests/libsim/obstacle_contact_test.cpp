@@ -308,7 +308,8 @@ std::vector<Obstacle> two_that_meet() {
 TEST(ObstacleContact, ASavedRunGoesOnBitForBit) {
   const test::TemporaryFolder folder;
   const auto scene = pool(two_that_meet());
-  auto options = options_of();
+  auto options = options_of(sim::MethodKind::OursTsp);
+  options.temporal.fixed_tau = -10;
   const auto whole = sim::make_simulation(scene, options);
   for (int frame = 0; frame < 20; ++frame) whole->step_frame();
   EXPECT_NE(whole->read_obstacles().at(0).others_n_s[1], 0);
@@ -356,6 +357,35 @@ TEST(ObstacleContact, TheHeaviestLiesOnTheLightest) {
   EXPECT_EQ(fluid->report().guards.not_finite, 0u);
   EXPECT_GT(fluid->read_obstacles().at(1).pose.centre_m[1], 0.59)
       << "it lies on the light one, which holds it";
+}
+
+/// Water between two faces that close has no way out but along them.
+TEST(ObstacleContact, LittleWaterIsCaughtBetweenFaces) {
+  const auto scene = pool({free_one(box({0.75, 0.16, 0.5}, {0.4, 0.3, 0.4}), 3000),
+                           free_one(box({0.75, 0.85, 0.5}, {0.4, 0.3, 0.4}), 4000)});
+  const auto fluid = sim::make_simulation(scene, options_of());
+  int most = 0;
+  double deepest_m = 0, leap_m_s = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    fluid->step_frame();
+    const auto now = fluid->read_obstacles();
+    int inside = 0;
+    for (const auto& p : fluid->read_state()) {
+      const sim::Vec3d at{static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)};
+      for (std::size_t b = 0; b < now.size(); ++b) {
+        const double depth = -sim::signed_distance(scene.obstacles[b], now[b].pose, at);
+        inside += depth > 0.02 * fluid->spacing_m();
+        deepest_m = std::max(deepest_m, depth);
+      }
+    }
+    most = std::max(most, inside);
+    leap_m_s = std::max(leap_m_s, now[1].velocity_m_s[1]);
+  }
+  // Measured: 4 of 976, 0.13 d, 0.5 m/s.
+  EXPECT_LE(most, 10);
+  EXPECT_LT(deepest_m, 0.25 * fluid->spacing_m());
+  EXPECT_LT(leap_m_s, 1);
+  EXPECT_EQ(fluid->report().guards.not_finite, 0u);
 }
 
 }  // namespace
