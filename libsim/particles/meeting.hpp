@@ -271,19 +271,20 @@ struct Meeting {
     }
     SIM_FN void take_push(const ContactRow& row) const {
       if (row.push == 0) return;
-      FreeBody& it = m.free[row.first];
       const Vec3 push = row.push * row.way;
-      it.momentum += push;
-      it.spin += row.push * row.lever;
+      move_by(row.first, push, row.push * row.lever);
       if (row.second < 0) {
-        it.by_walls += push;
+        m.free[row.first].by_walls += push;
         return;
       }
-      FreeBody& other = m.free[row.second];
-      other.momentum += -1.0f * push;
-      other.spin += -row.push * row.other_lever;
+      move_by(row.second, -1.0f * push, -row.push * row.other_lever);
       m.by_others[row.first] += push;
       m.by_others[row.second] += -1.0f * push;
+    }
+    SIM_FN void move_by(int b, Vec3 push, Vec3 moment) const {
+      if (!is_free(b)) return;
+      m.free[b].momentum += push;
+      m.free[b].spin += moment;
     }
     /// Rates of a way apart alone, which no momentum keeps.
     SIM_FN void part() const {
