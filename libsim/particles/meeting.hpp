@@ -66,7 +66,10 @@ struct Meeting {
     Contact* felt;    ///< by both of each pair
     Contact* picked;  ///< most_contacts of each group
     ListedContact* list;
-    int* listed;      ///< how many
+    int* listed;                 ///< how many
+    int *touches, *touch_begin;  ///< as ContactRows has them
+    ContactProgress* progress;
+    int* deep;        ///< is one deeper than may stay?
     float* friction;  ///< of those listed
     ContactRow* rows;
   };
@@ -84,6 +87,10 @@ struct Meeting {
     take(room, out.bytes, out.picked, most);
     take(room, out.bytes, out.list, most);
     take(room, out.bytes, out.listed, 1);
+    take(room, out.bytes, out.touches, 2 * most);
+    take(room, out.bytes, out.touch_begin, n + 1);
+    take(room, out.bytes, out.progress, 1);
+    take(room, out.bytes, out.deep, 1);
     take(room, out.bytes, out.friction, most);
     take(room, out.bytes, out.rows, most * static_cast<std::size_t>(width()));
     return out;
@@ -93,6 +100,12 @@ struct Meeting {
   struct InRoom {
     const Meeting& m;
     Room room;
+
+    template <void (InRoom::*step)(int) const>
+    struct Step {
+      const InRoom& here;
+      SIM_FN void operator()(int i) const { (here.*step)(i); }
+    };
 
     SIM_FN bool is_free(int b) const { return m.free[b].mass > 0; }
     SIM_FN bool is_ball(int b) const { return !mesh_of(m.meshes, b) && feelers_of(b).count() == 1; }
@@ -210,6 +223,15 @@ struct Meeting {
           room.list[n++] = {room.picked[group * most_contacts + k], m.partners(group)};
       }
       *room.listed = n;
+      int touch = 0;
+      for (int b = 0; b < m.count; ++b) {
+        room.touch_begin[b] = touch;
+        for (int c = 0; c < n; ++c) {
+          if (room.list[c].between.first == b) room.touches[touch++] = 2 * c;
+          if (room.list[c].between.second == b) room.touches[touch++] = 2 * c + 1;
+        }
+      }
+      room.touch_begin[m.count] = touch;
     }
 
     SIM_FN void lay(int c) const {
@@ -258,16 +280,23 @@ struct Meeting {
               .friction = rub ? room.friction : nullptr,
               .bodies = room.rates,
               .along = room.along,
+              .at = room.progress,
+              .touches = room.touches,
+              .touch_begin = room.touch_begin,
               .body_count = m.count,
               .contacts = *room.listed,
               .width = m.width()};
     }
-    SIM_FN void solve(int) const {
-      if (*room.listed > 0) {
-        rows(m.rough).solve();
-        for (int r = 0; r < *room.listed * m.width(); ++r) take_push(room.rows[r]);
-      }
-      part();
+    template <class Threads>
+    SIM_FN void solve(Threads threads) const {
+      if (*room.listed > 0) rows(m.rough).solve(threads);
+      threads.each(1, Step<&InRoom::take_pushes>{*this});
+      threads.each(m.count, Step<&InRoom::rest>{*this});
+      if (*room.deep) rows(false).solve(threads);
+    }
+    SIM_FN void take_pushes(int) const {
+      for (int r = 0; r < *room.listed * m.width(); ++r) take_push(room.rows[r]);
+      want_apart();
     }
     SIM_FN void take_push(const ContactRow& row) const {
       if (row.push == 0) return;
@@ -286,29 +315,27 @@ struct Meeting {
       m.free[b].momentum += push;
       m.free[b].spin += moment;
     }
-    /// Rates of a way apart alone, which no momentum keeps.
-    SIM_FN void part() const {
+    /// From here on rates are of a way apart alone, which no momentum keeps.
+    SIM_FN void want_apart() const {
       const float dt = m.drive.dt;
-      bool deep = false;
       float most = 0;
+      *room.deep = 0;
       for (int c = 0; c < *room.listed; ++c) {
         ContactRow& row = room.rows[c * m.width()];
         const float depth = -room.list[c].contact.gap;
         const float mend = at_most(mended * (depth - slop * m.spacing), fastest_mend * m.spacing);
-        deep = deep || mend > 0;
+        if (mend > 0) *room.deep = 1;
         row.wanted = (depth < 0 ? depth : at_least(mend, 0.0f)) / dt - rows(false).speed(row);
         most = at_least(fabsf(row.wanted), most);
       }
-      for (int b = 0; b < m.count; ++b) {
-        room.rates[b].velocity = {0, 0, 0};
-        room.rates[b].spin = {0, 0, 0};
-      }
-      if (!deep) return;
       for (int r = 0; r < *room.listed * m.width(); ++r) {
         room.rows[r].push = 0;
         if (room.rows[r].second >= 0) room.rows[r].most = most_push(most);
       }
-      rows(false).solve();
+    }
+    SIM_FN void rest(int b) const {
+      room.rates[b].velocity = {0, 0, 0};
+      room.rates[b].spin = {0, 0, 0};
     }
 
     SIM_FN void move(int b) const {
@@ -330,21 +357,23 @@ struct Meeting {
   template <class Block>
   SIM_FN void operator()(Block block, unsigned char* room) const {
     const InRoom here{*this, parts_of(room)};
-    block.each(count, Step<&InRoom::begin>{here});
-    block.each(pairs(), Step<&InRoom::screen>{here});
-    block.each(2 * pairs() * feelers, Step<&InRoom::feel>{here});
-    block.each(groups(), Step<&InRoom::pick>{here});
-    block.each(1, Step<&InRoom::list>{here});
-    block.each(*here.room.listed, Step<&InRoom::lay>{here});
-    block.each(1, Step<&InRoom::solve>{here});
-    block.each(count, Step<&InRoom::move>{here});
+    block.each(count, InRoom::Step<&InRoom::begin>{here});
+    block.each(pairs(), InRoom::Step<&InRoom::screen>{here});
+    block.each(2 * pairs() * feelers, InRoom::Step<&InRoom::feel>{here});
+    block.each(groups(), InRoom::Step<&InRoom::pick>{here});
+    block.each(1, InRoom::Step<&InRoom::list>{here});
+    block.each(*here.room.listed, InRoom::Step<&InRoom::lay>{here});
+    block.by_one_warp(Solve{here});
+    block.each(count, InRoom::Step<&InRoom::move>{here});
   }
 
  private:
-  template <void (InRoom::*step)(int) const>
-  struct Step {
+  struct Solve {
     const InRoom& here;
-    SIM_FN void operator()(int i) const { (here.*step)(i); }
+    template <class Threads>
+    SIM_FN void operator()(Threads threads) const {
+      here.solve(threads);
+    }
   };
   template <class T>
   SIM_FN static void take(unsigned char* room, std::size_t& bytes, T*& out, std::size_t n) {
