@@ -52,20 +52,20 @@ struct ContactRows {
   int body_count;
   int contacts, width;
 
-  static constexpr int most_rounds = 12, most_steps = 32;
+  static constexpr int most_rounds = 8, last_rounds = 4, most_steps = 32;
   static constexpr float still = 1e-5f;  ///< changes of speed that end them, m/s
 
   SIM_FN float speed(const ContactRow& row) const { return speed(row, bodies); }
 
-  /// The bodies' rates are then those that the rows' pushes give.
+  /// The bodies' rates are then those that the rows' pushes give. Where friction does not settle, it stays as
+  /// it came to be, and the rest does.
   template <class Threads>
   SIM_FN void solve(Threads threads) const {
-    for (int round = 1; round <= most_rounds; ++round) {
-      // A sweep has the last word: it keeps pushes from pulling, and friction within its cone.
-      threads.each(1, Step<&ContactRows::sweep>{*this});
-      if (at->swept <= still || round == most_rounds) return;
-      descend(threads);
-    }
+    if (settles(threads, most_rounds) || !friction) return;
+    threads.each(0, Step<&ContactRows::sweep>{*this});  // all have read what the last sweep told
+    ContactRows normals = *this;
+    normals.friction = nullptr;
+    normals.settles(threads, last_rounds);
   }
 
  private:
@@ -74,6 +74,17 @@ struct ContactRows {
     const ContactRows& here;
     SIM_FN void operator()(int i) const { (here.*step)(i); }
   };
+
+  template <class Threads>
+  SIM_FN bool settles(Threads threads, int rounds) const {
+    for (int round = 1; round <= rounds; ++round) {
+      // A sweep has the last word: it keeps pushes from pulling, and friction within its cone.
+      threads.each(1, Step<&ContactRows::sweep>{*this});
+      if (at->swept <= still) return true;
+      if (round < rounds) descend(threads);
+    }
+    return false;
+  }
 
   SIM_FN static float speed(const ContactRow& row, const BodyRate* rates) {
     const BodyRate& a = rates[row.first];
