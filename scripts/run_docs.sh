@@ -21,6 +21,7 @@ README.md|vip-study run|person||
 docs/figures.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/methods.md|vip-view --headless data/scenes/boat.toml|s/frames 61 --every 60/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
+docs/methods.md|vip-view --headless data/scenes/crates.toml|s/frames 81 --every 80/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libsim/scene/mesh_reader.hpp"
+#include "libsim/scene/overlap.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
@@ -16,6 +17,7 @@ using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 constexpr double farthest_m = 1e4;
 constexpr double thinnest_m = 1e-3;
+constexpr double most_friction = 10;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
@@ -49,15 +51,15 @@ Vector reach(const Obstacle& o, const Pose& pose) {
   for (std::size_t k = 0; k < 3; ++k) {
     Vector side{};
     side[k] = half[k];
-    const Vector in_world = turned(pose.turn, side);
-    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(in_world[a]);
+    const Vector way = turned(pose.turn, side);
+    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(way[a]);
   }
   return out;
 }
 
 bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
   return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
-    const Vector at = sum(turned(pose.turn, own), 1, pose.centre_m);
+    const Vector at = in_world(pose, own);
     const bool low = at[0] < -1e-9 || at[1] < -1e-9 || at[2] < -1e-9;
     return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open above
   });
@@ -130,6 +132,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
     out.start.turn = product(rotation(direction(table, "rotation_axis"), angle), out.start.turn);
   }
   read_motion(table, origin_m, out);
+  out.friction = table.number_or("friction", 0, {0, most_friction});
   if (!in_tank(out, out.start, tank_size_m))
     table.fail("centre_m", "puts a part of the obstacle outside the tank",
                "keep all of it within tank.size_m from tank.origin_m; only above it may stand out");
@@ -144,6 +147,21 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
                  "move it less far, or put it farther from the walls");
   }
   return out;
+}
+
+/// The last obstacle against those before it.
+void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obstacles) {
+  const Obstacle& last = obstacles.back();
+  for (std::size_t k = 0; k + 1 < obstacles.size(); ++k) {
+    const Obstacle& other = obstacles[k];
+    if (last.motion != ObstacleMotion::Free && other.motion != ObstacleMotion::Free) continue;
+    const double deep = overlap_m(last, other);
+    if (deep <= least_overlap_m) continue;
+    table.fail("centre_m",
+               "puts the obstacle " + base::shortest(std::round(deep * 1e5) / 1e5) +
+                   " m deep into obstacle " + std::to_string(k + 1) + " of the file, and one of them is free",
+               "put them apart: what is free begins outside of others");
+  }
 }
 
 }  // namespace
@@ -170,7 +188,7 @@ Pose pose_at(const Obstacle& o, double time_s) {
 
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s) {
   std::vector<BodyMotion> out;
-  for (const Obstacle& o : obstacles) out.push_back({pose_at(o, time_s), {}, {}, {}, {}});
+  for (const Obstacle& o : obstacles) out.push_back({.pose = pose_at(o, time_s)});
   return out;
 }
 
@@ -182,6 +200,10 @@ Vector half_sides_m(const Obstacle& o) {
   }
   if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
   return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
+}
+
+Vector in_world(const Pose& pose, const Vector& own_m) {
+  return sum(turned(pose.turn, own_m), 1, pose.centre_m);
 }
 
 double signed_distance(const Obstacle& o, const Pose& pose, const Vector& point_m) {
@@ -231,6 +253,12 @@ bool any_free(const std::vector<Obstacle>& obstacles) {
                      [](const Obstacle& o) { return o.motion == ObstacleMotion::Free; });
 }
 
+bool any_meet(const std::vector<Obstacle>& obstacles) {
+  return any_free(obstacles) &&
+         (obstacles.size() > 1 ||
+          std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.friction > 0; }));
+}
+
 bool any_mesh(const std::vector<Obstacle>& obstacles) {
   return std::any_of(obstacles.begin(), obstacles.end(),
                      [](const Obstacle& o) { return o.shape == ObstacleShape::Mesh; });
@@ -262,6 +290,7 @@ std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector&
     if (out.back().motion == ObstacleMotion::Free && scene.has("central_force"))
       table.fail("motion", "is free in a scene with a central force, which would not pull it",
                  "leave central_force out, or keep the obstacle fixed");
+    check_apart(table, out);
     if (top_speed(out.back()) > most_speed_m_s)
       table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
                  "raise time.v_ref_m_s or slow the obstacle down");
@@ -291,6 +320,7 @@ std::string obstacles_in_words(const std::vector<Obstacle>& obstacles) {
     if (o.motion == ObstacleMotion::Swings)
       out += ", swings by " + vector(o.way_m) + " m in " + base::shortest(o.period_s) + " s";
     if (o.motion == ObstacleMotion::Free) out += ", free, " + base::shortest(o.density_kg_m3) + " kg/m3";
+    if (o.friction > 0) out += ", friction " + base::shortest(o.friction);
     out += "\n";
   }
   return out;

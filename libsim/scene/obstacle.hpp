@@ -47,6 +47,8 @@ struct BodyMotion {
   /// the water that goes along has a share in it.
   std::array<double, 3> owed_n_s{};
   std::array<double, 3> walls_n_s{};  ///< what walls gave it in the last frame
+  /// What other obstacles gave it in the last frame, also to one that is not free: they sum to 0.
+  std::array<double, 3> others_n_s{};
 };
 
 /// A rigid body. SI units.
@@ -64,6 +66,7 @@ struct Obstacle {
   std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
   double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
   double density_kg_m3 = 0;             ///< of a free body, the same in all of it
+  double friction = 0;  ///< Coulomb's coefficient of its surface against free bodies, or of a free body's
 };
 
 inline constexpr std::size_t most_obstacles = 16;
@@ -73,6 +76,8 @@ const char* shape_name(ObstacleShape shape);
 Pose pose_at(const Obstacle& obstacle, double time_s);
 /// All of them so, at rest.
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
+/// Where a point of the body's own axes lies.
+std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& own_m);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Is the point inside? Quicker than its distance.
@@ -84,6 +89,8 @@ double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about its own axes over its mass, of an even density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
+/// Is one free that may meet another, or has friction?
+bool any_meet(const std::vector<Obstacle>& obstacles);
 bool any_mesh(const std::vector<Obstacle>& obstacles);
 /// The shortest way through the middle, m; of a mesh twice the depth of its deepest place.
 double thickness_m(const Obstacle& obstacle);
@@ -92,9 +99,9 @@ double top_speed(const Obstacle& obstacle);
 
 /// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
 /// key, a size that is not positive, an axis without direction, a place or a way that leaves the tank, more
-/// than most_obstacles, one that is faster than most_speed_m_s; in a mesh's file at file:line. origin_m:
-/// Scene::origin_m, which places then count from. beside: the folder that files of meshes count from, if the
-/// text has one.
+/// than most_obstacles, one that is faster than most_speed_m_s, a free one that begins inside another or
+/// another in it; in a mesh's file at file:line. origin_m: Scene::origin_m, which places then count from.
+/// beside: the folder that files of meshes count from, if the text has one.
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
                                      const std::array<double, 3>& origin_m, double most_speed_m_s,
                                      const std::optional<std::filesystem::path>& beside = {});

@@ -206,6 +206,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
     return o.motion == ObstacleMotion::Turns || o.motion == ObstacleMotion::Swings;
   });
   out.free_obstacles = any_free(scene.obstacles);
+  out.obstacles_meet = any_meet(scene.obstacles);
   out.levels = method.adaptive();
   out.forced_targets = options.forced_targets.has_value();
   out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;

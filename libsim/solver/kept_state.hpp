@@ -37,6 +37,7 @@ void keep_fluid(Archive& archive, FluidState& state) {
   // Where the last substep left them: a frame begins there.
   if (state.obstacles.there()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
+  if (state.obstacles.meet()) archive(state.obstacles.by_others);
   // Only methods with levels look at neighbours before anything moves.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);

@@ -1,3 +1,7 @@
+#include <algorithm>
+
+#include "libsim/particles/contact.hpp"
+#include "libsim/scene/mesh.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
@@ -14,6 +18,19 @@ Vec3d vector(Vec3 v) {
 double mass_unit(const FluidState& state) {
   const auto edge = static_cast<double>(state.finest_support) / 2;
   return static_cast<double>(state.parameters.rest_density) * edge * edge * edge;
+}
+
+void begin_meeting(ObstacleState& o) {
+  std::vector<float> friction;
+  o.feelers = Feelers::most_of_shapes;
+  for (const Obstacle& obstacle : o.obstacles) {
+    friction.push_back(static_cast<float>(obstacle.friction));
+    o.rough = o.rough || obstacle.friction > 0;
+    if (obstacle.mesh) o.feelers = std::max(o.feelers, static_cast<int>(obstacle.mesh->contacts_m().size()));
+  }
+  o.friction.from_host(friction);
+  o.by_others.resize(o.obstacles.size());
+  o.by_others.zero();
 }
 
 FreeBody free_of(const Obstacle& o, const FluidState& state) {
@@ -69,6 +86,7 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);
+    if (any_meet(o.obstacles)) begin_meeting(o);
     told = true;
   }
   if (!told) return;
@@ -105,8 +123,10 @@ std::vector<BodyMotion> motions_of(const FluidState& state, double time_s) {
   if (o.free.size() == 0) return out;
   const std::vector<Body> bodies = o.bodies.to_host();
   const std::vector<FreeBody> free = o.free.to_host();
+  const std::vector<Vec3> by_others = o.by_others.to_host();
   const double unit = mass_unit(state);
   for (std::size_t k = 0; k < out.size(); ++k) {
+    for (std::size_t a = 0; a < 3 && o.meet(); ++a) out[k].others_n_s[a] = unit * vector(by_others[k])[a];
     if (free[k].mass == 0) continue;
     const Body& body = bodies[k];
     out[k].spin_rad_s = vector(body.spin);

@@ -341,6 +341,7 @@ TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   EXPECT_TRUE(std::isinf(spray.weber));
   EXPECT_NEAR(scales("pool_light").reynolds, 1350, 0.5);
   EXPECT_NEAR(scales("boat").reynolds, 1700, 0.5);
+  EXPECT_NEAR(scales("crates").reynolds, 800, 0.5);
 }
 
 TEST(PictureEffects, AreReadFromASceneFileBesideTheOthers) {

@@ -1,6 +1,6 @@
 /// Obstacles that the water and gravity move.
 
-#include "libsim/particles/free_body.hpp"
+#include "libsim/particles/body_drive.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -13,20 +13,14 @@ struct Move {
   FreeBody* free;
   const MeshGrid* meshes;  ///< as Solids has them
   Walls walls;
-  Guards* guards;
-  float gravity, dt, most_speed;
-  bool first;  ///< of the frame
+  BodyDrive drive;
 
   SIM_FN void operator()(int b) const {
     FreeBody& it = free[b];
     if (it.mass == 0) return;
-    if (first) it.by_walls = {0, 0, 0};
-    if (first) it.counted = it.counted_of_effects = {};
     Body& body = bodies[b];
-    it.momentum += dt * it.force;
-    it.momentum.y -= it.mass * gravity * dt;
-    it.spin += dt * it.torque;
-    limit(it);
+    const float dt = drive.dt;
+    drive(it);
     const WallContact contact{walls, body, it, dt, mesh_of(meshes, b)};
     contact.stop();
     const Vec3 from = body.centre;
@@ -34,12 +28,6 @@ struct Move {
     turn_on(body, it, dt);
     body.centre += contact.way_back();
     body.velocity = (1 / dt) * (body.centre - from);
-  }
-  SIM_FN void limit(FreeBody& it) const {
-    const float speed = length(it.momentum) / it.mass;
-    if (speed <= most_speed) return;
-    atomic_add(&guards->speed_limited, std::uint64_t{1});
-    it.momentum = (most_speed / speed) * it.momentum;
   }
 };
 
@@ -96,17 +84,12 @@ struct Push {
 
 void move(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   auto& o = state.obstacles;
-  const auto& k = state.parameters;
   for_each("move bodies", o.count(),
            Move{.bodies = o.bodies.data(),
                 .free = o.free.data(),
                 .meshes = o.meshes.data(),
                 .walls = state.walls,
-                .guards = state.guard(),
-                .gravity = k.gravity,
-                .dt = k.dt,
-                .most_speed = k.most_speed,
-                .first = state.substep == 0});
+                .drive = body_drive(state)});
 }
 
 void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
@@ -124,14 +107,24 @@ void push(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
 }
 
 std::string if_free(const Demand& demand) { return demand.free_obstacles ? "an obstacle is free" : ""; }
+std::string if_alone(const Demand& demand) { return demand.obstacles_meet ? "" : if_free(demand); }
 
 }  // namespace
+
+BodyDrive body_drive(FluidState& state) {
+  const auto& k = state.parameters;
+  return {.guards = state.guard(),
+          .gravity = k.gravity,
+          .dt = k.dt,
+          .most_speed = k.most_speed,
+          .first = state.substep == 0};
+}
 
 Stage bodies_move_stage() {
   return stage_of<move>({.name = "bodies move",
                          .source = "Newton's and Euler's laws, inelastic contact with walls",
                          .phase = Phase::Substep,
-                         .called_for = if_free});
+                         .called_for = if_alone});
 }
 
 Stage bodies_pushed_stage() {

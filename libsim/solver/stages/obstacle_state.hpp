@@ -23,8 +23,15 @@ struct ObstacleState {
   Array<MeshGrid> meshes;     ///< as `bodies`
   Array<float> distances;     ///< of all their grids
   Array<Vec3> mesh_contacts;  ///< of all of them
+  // None while no free obstacle meets another or has friction:
+  Array<Vec3> by_others;              ///< what others gave each in this frame, m_* m/s
+  Array<float> friction;              ///< coefficient of each
+  bool rough = false;                 ///< one is not 0
+  int feelers = 0;                    ///< the most that one has
+  Array<unsigned char> meeting_room;  ///< scratch memory
 
   bool there() const { return bodies.size() > 0; }
+  bool meet() const { return by_others.size() > 0; }
   bool told() const { return sums.size() > 0; }
   int count() const { return static_cast<int>(bodies.size()); }
   void begin_frame() {

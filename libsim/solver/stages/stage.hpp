@@ -17,6 +17,7 @@ struct Demand {
   bool outlets = false;           ///< the scene has one
   bool moving_obstacles = false;  ///< the scene has one that goes a way of its own
   bool free_obstacles = false;    ///< the scene has one that the water moves
+  bool obstacles_meet = false;    ///< and that one may meet another, or has friction
   bool settling = false;          ///< the gate is closed and the water comes to rest
   bool levels = false;            ///< particles split and merge
   bool forced_targets = false;    ///< a test gives their targets

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libsim/particles/body_drive.hpp"
 #include "libsim/solver/stages/stage.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -25,8 +26,10 @@ Stage graded_targets_stage();
 Stage split_and_merge_stage();
 /// Brings moving obstacles to their places at the substep's end.
 Stage obstacles_stage();
-/// Moves obstacles that are free.
+/// Moves an obstacle that is free and meets walls alone, which are smooth.
 Stage bodies_move_stage();
+/// Moves obstacles that are free, and holds them apart from others.
+Stage bodies_meet_stage();
 /// Takes what the water gave them.
 Stage bodies_pushed_stage();
 /// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
@@ -95,6 +98,9 @@ using CoarsePressureView =
                columns(Column::Ease)>;
 /// Shifts the predicted positions by the pressure on cells.
 void press(FluidState& state, CoarsePressureView particles);
+
+/// What moves free obstacles in the present substep.
+BodyDrive body_drive(FluidState& state);
 
 // For the account of what the walls give. While it listens, kernels leave the clamp at the walls to a pass of
 // its own, which tells the account.

@@ -1,0 +1,145 @@
+#pragma once
+/// Where rigid bodies meet each other and the tank's walls.
+
+#include "libsim/particles/free_body.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// A place where a body meets another or a wall.
+struct Contact {
+  Vec3 at;
+  Vec3 normal;  ///< out of the other, towards the body
+  float gap;    ///< between the surfaces, m; negative: so deep
+  float ahead;  ///< the least gap until the substep's end, were there no contact
+};
+
+/// The places by which a body meets others. Of a shape: the corners of the box round which it lies and the
+/// nearest place of each of that box's edges, as balls of its radius. Of a mesh: its contacts.
+struct Feelers {
+  const Body& body;
+  const MeshGrid* mesh;  ///< nullptr: another shape
+
+  static constexpr int most_of_shapes = 20;
+
+  SIM_FN bool is_box() const { return body.half.x > 0; }
+  SIM_FN int corners() const {
+    if (mesh) return mesh->contact_count;
+    return is_box() ? 8 : body.half.y > 0 ? 2 : 1;
+  }
+  SIM_FN int edges() const { return mesh || body.half.y == 0 ? 0 : is_box() ? 12 : 1; }
+  SIM_FN int count() const { return corners() + edges(); }
+  /// Farthest of the body from its centre, m.
+  SIM_FN float reach() const { return length(body.half) + body.radius; }
+
+  /// In the body's own axes.
+  SIM_FN Vec3 corner(int k) const {
+    if (mesh) return mesh->contacts[k];
+    const Vec3 h = body.half;
+    if (!is_box()) return {0, k ? h.y : -h.y, 0};
+    return {k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z};
+  }
+  /// s: -1 .. 1 from one end to the other; of the box whose half sides are this share of the body's.
+  SIM_FN Vec3 on_edge(int edge, float s, Vec3 share) const {
+    const Vec3 h = scaled(body.half, share);
+    if (!is_box()) return {0, s * h.y, 0};
+    const float u = edge & 1 ? 1.0f : -1.0f;
+    const float v = edge & 2 ? 1.0f : -1.0f;
+    if (edge < 4) return {s * h.x, u * h.y, v * h.z};
+    if (edge < 8) return {u * h.x, s * h.y, v * h.z};
+    return {u * h.x, v * h.y, s * h.z};
+  }
+  SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
+
+  /// Where feeler k is nearest to another body; `ahead` is left open. What is nearest to a corner on
+  /// another's edge changes with the last bit. So the other is looked at from a little deeper in the body,
+  /// where it shows a plane, and the gap is the corner's from that plane.
+  SIM_FN Contact meets(int k, const Solids& solids, int other) const {
+    Vec3 own, deeper;
+    if (k < corners()) {
+      own = corner(k);
+      deeper = mesh ? own - mesh->step * mesh->near(own).normal : scaled(own, inset());
+    } else {
+      const float s = nearest_on_edge(k - corners(), solids, other);
+      own = on_edge(k - corners(), s, {1, 1, 1});
+      deeper = on_edge(k - corners(), s, inset());
+    }
+    const Vec3 at = in_world(own);
+    const Vec3 from = in_world(deeper);
+    const Body::Near near = solids.near(other, from);
+    const float gap = near.distance + dot(near.normal, at - from) - body.radius;
+    return {at - body.radius * near.normal, near.normal, gap, 0};
+  }
+  /// The same for a corner and a wall.
+  SIM_FN Contact meets(int k, const Walls& walls, int wall) const {
+    const Vec3 at = in_world(corner(k));
+    const Vec3 normal = walls.planes[wall].normal;
+    return {at - body.radius * normal, normal, walls.distance(wall, at) - body.radius, 0};
+  }
+
+ private:
+  /// What of a box's half sides lies deeper than a twentieth of the shortest.
+  SIM_FN Vec3 inset() const {
+    if (!is_box()) return {1, 1, 1};
+    const Vec3 h = body.half;
+    const float way = 0.05f * at_most(at_most(h.x, h.y), h.z);
+    return {1 - way / h.x, 1 - way / h.y, 1 - way / h.z};
+  }
+  SIM_FN static Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  /// By the golden section: along a straight line the distance from a convex body has one low.
+  SIM_FN float nearest_on_edge(int edge, const Solids& solids, int other) const {
+    const Vec3 share = inset();
+    constexpr float golden = 0.618034f;
+    constexpr int halvings = 16;  ///< to 1/2200 of the edge
+    float low = -1, high = 1;
+    float a = high - golden * (high - low), b = low + golden * (high - low);
+    float at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
+    float at_b = solids.distance(other, in_world(on_edge(edge, b, share)));
+    for (int k = 0; k < halvings; ++k) {
+      if (at_a <= at_b) {
+        high = b;
+        b = a;
+        at_b = at_a;
+        a = high - golden * (high - low);
+        at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
+      } else {
+        low = a;
+        a = b;
+        at_a = at_b;
+        b = low + golden * (high - low);
+        at_b = solids.distance(other, in_world(on_edge(edge, b, share)));
+      }
+    }
+    return 0.5f * (low + high);
+  }
+};
+
+/// Contacts that two bodies, or a body and a wall, are held apart by at once.
+inline constexpr int most_contacts = 4;
+
+/// Of n contacts those that hold two bodies apart: the one that will be deepest, then time and again the one
+/// that lies farthest from all picked, of those whose gap `pad` could close. Returns how many.
+template <class Contacts>
+SIM_FN int pick_contacts(const Contacts& all, int n, float pad, Contact* picked) {
+  int count = 0;
+  while (count < most_contacts) {
+    float best = count == 0 ? -pad : 1e-4f * pad * pad;
+    int found = -1;
+    for (int k = 0; k < n; ++k) {
+      const Contact it = all(k);
+      if (!(it.ahead < pad)) continue;
+      float worth = count == 0 ? -it.ahead : 3e38f;
+      for (int j = 0; j < count; ++j) {
+        const Vec3 way = it.at - picked[j].at;
+        worth = at_most(dot(way, way), worth);
+      }
+      if (worth <= best) continue;
+      best = worth;
+      found = k;
+    }
+    if (found < 0) break;
+    picked[count++] = all(found);
+  }
+  return count;
+}
+
+}  // namespace sim::SIM_BACKEND
