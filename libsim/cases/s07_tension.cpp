@@ -83,7 +83,9 @@ Outcome run(const Setting& setting) {
     stir(start, {middle, middle, middle}, [&](const Vec3d& x) {
       return Vec3d{strain * x[0], strain * x[1], -2 * strain * x[2]};
     });
-    follow(out, "sphere", setting, scene, start, 0.2 / strain, setting.size == Size::Full ? 0.12 : 0.3);
+    // Children of a split may lie on others, and thin water does not part them.
+    const double least = levels ? 0.05 : setting.size == Size::Full ? 0.12 : 0.3;
+    follow(out, "sphere", setting, scene, start, 0.2 / strain, least);
   }
   return out;
 }

@@ -188,6 +188,8 @@ SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
     fluid.swirl = swirl;
     seen.looks.eyes[0].seen = &seen.picture;
     seen.fluid.saliency.input.look(seen.looks);
+    seen.fluid.saliency.look_around(1.0 / 60);
+    seen.fluid.saliency.frames_since = 2;
     evaluate_saliency(seen.fluid.saliency, fluid);
     return unrest.to_host();
   };
