@@ -97,23 +97,23 @@ struct GuardCounts {
   std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back by a wall or an obstacle
   std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles
-  std::uint64_t saliency_not_finite = 0;  ///< particle-frames whose saliency was NaN or infinite: s = 0
+  std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite: s = 0
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
 
-/// Splits and merges since the simulation was made. particles = particles at the start + born - merges +
-/// FrameReport::particles_in - particles_out.
+/// Splits and merges since the simulation was made; particles and turns of the levels in which something was
+/// so are particle-turns. particles = particles at the start + born - merges + FrameReport::particles_in -
+/// particles_out.
 struct LevelEvents {
   std::uint64_t splits = 0;
   std::uint64_t born = 0;            ///< particles that splits added: 2^k - 1 each
   std::uint64_t merges = 0;          ///< pairs that became one
-  std::uint64_t split_deferred = 0;  ///< particle-frames in which the throttle made a split wait
-  std::uint64_t split_at_wall = 0;   ///< particle-frames in which no children fitted between the walls
-  std::uint64_t split_no_room = 0;   ///< particle-frames in which the capacity refused a split
-  std::uint64_t merge_overlap =
-      0;                         ///< particle-frames whose every partner would have overlapped a larger one
-  std::uint64_t merge_step = 0;  ///< particle-frames in which a finer neighbour forbade a merge
-  double energy_lost_j = 0;      ///< kinetic energy lost in merges
+  std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle made a split wait
+  std::uint64_t split_at_wall = 0;   ///< particle-turns in which no children fitted between the walls
+  std::uint64_t split_no_room = 0;   ///< particle-turns in which the capacity refused a split
+  std::uint64_t merge_overlap = 0;  ///< particle-turns whose every partner would have overlapped a larger one
+  std::uint64_t merge_step = 0;     ///< particle-turns in which a finer neighbour forbade a merge
+  double energy_lost_j = 0;         ///< kinetic energy lost in merges
 };
 
 /// What temporal acceleration went by in a frame, and did.
@@ -240,7 +240,8 @@ class Simulation {
   /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
   virtual void force_targets(const TargetRegion&) {}
   virtual LiveNumbers live_numbers() const { return {}; }
-  /// Changes them from the next frame on; base::Error when one is out of range.
+  /// Changes them from the next frame on, alpha from the next turn of the levels; base::Error when one is out
+  /// of range.
   virtual void change(const LiveNumbers&) {}
   /// The scene lists these effects from the next frame on: the schedule is compiled anew, and the water goes
   /// on from where it is, with the same particles, velocities, levels and guards. What an effect alone keeps
@@ -275,8 +276,8 @@ class Simulation {
   virtual std::vector<float> radii_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
-  /// Saliency behind the levels of the last frame, in the order of read_particles; what a particle became of
-  /// has its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none:
+  /// Saliency behind the levels that were chosen last, in the order of read_particles; what a particle became
+  /// of has its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none:
   /// another method, or no frame yet.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
   /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the

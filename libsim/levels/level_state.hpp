@@ -66,11 +66,11 @@ struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
   std::uint64_t born;            ///< particles that this added: 2^k - 1 each
   std::uint64_t merges;          ///< pairs that became one particle: as many are gone
-  std::uint64_t split_deferred;  ///< particle-frames in which the throttle made a split wait
-  std::uint64_t split_at_wall;   ///< particle-frames in which no children fitted between the walls
-  std::uint64_t split_no_room;   ///< particle-frames in which the capacity refused a split
-  std::uint64_t merge_overlap;   ///< particle-frames whose every partner would have overlapped a larger one
-  std::uint64_t merge_step;      ///< particle-frames in which a finer neighbour forbade a merge
+  std::uint64_t split_deferred;  ///< particle-turns in which the throttle made a split wait
+  std::uint64_t split_at_wall;   ///< particle-turns in which no children fitted between the walls
+  std::uint64_t split_no_room;   ///< particle-turns in which the capacity refused a split
+  std::uint64_t merge_overlap;   ///< particle-turns whose every partner would have overlapped a larger one
+  std::uint64_t merge_step;      ///< particle-turns in which a finer neighbour forbade a merge
   std::uint64_t energy_lost_uj;  ///< kinetic energy lost in merges, 1e-6 J
 };
 
@@ -120,7 +120,7 @@ struct LevelState {
 /// Two bits a frame, the newest lowest: a particle that has wanted `level` for four frames.
 SIM_FN std::uint8_t steady_history(int level) { return static_cast<std::uint8_t>(0x55 * level); }
 
-/// The least of the last four targets.
+/// The least target of the last four frames.
 SIM_FN int least_of_history(std::uint8_t history) {
   int least = 3;
   for (int back = 0; back < 4; ++back) {

@@ -6,7 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Steps ages and histories, and finds who wants to be coarser and has wanted it for four frames.
+/// Steps ages and histories, and finds who wants to be coarser and has wanted it for four frames; a
+/// target counts for all frames since the turn before.
 struct Remember {
   const std::uint8_t* level;
   const std::uint8_t* target;

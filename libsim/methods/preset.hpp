@@ -75,7 +75,7 @@ struct Readings {
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for each split.
   double split_offset[3] = {0.794, 1.09, 0.866};
-  /// At most this share of the particles splits in a frame, and no two within one spacing; 1 = no throttle.
+  /// At most this share of the particles splits in a turn, and no two within one spacing; 1 = no throttle.
   double split_share = 0.05;
   /// Partners of a merge must want the same level; false: both want a coarser one.
   bool merge_same_target = false;

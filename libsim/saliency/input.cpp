@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "stats/base/error.hpp"
@@ -65,6 +66,11 @@ bool is_zero(const Vec3d& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 Vec3d axis_of(const View& view) {
   const Mat4 pose = rigid_inverse(view.view);
   return {-pose[8], -pose[9], -pose[10]};
+}
+
+Vec3d place_of(const View& view) {
+  const Mat4 pose = rigid_inverse(view.view);
+  return {pose[12], pose[13], pose[14]};
 }
 
 Vec3 narrow(const Vec3d& v) {
@@ -133,14 +139,19 @@ bool SaliencyInput::look(const Looks& looks, bool pictures) {
 }
 
 double SaliencyInput::OneEye::turned_deg(const Gaze& to, const View& by) const {
+  constexpr double per_radian = 180 / std::numbers::pi;
   if (is_zero(marked)) return 180;
   Vec3d now = direction_of(to);
-  if (is_zero(now)) {
+  const bool lost = is_zero(now);
+  if (lost) {
     if (marked_valid) return 0;
     now = axis_of(by);
   }
+  const Vec3d place = lost ? place_of(by) : to.origin_m;
+  const double shift =
+      std::hypot(place[0] - marked_place[0], place[1] - marked_place[1], place[2] - marked_place[2]);
   const double cosine = now[0] * marked[0] + now[1] * marked[1] + now[2] * marked[2];
-  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::acos(-1.0);
+  return per_radian * (std::acos(std::clamp(cosine, -1.0, 1.0)) + std::atan(shift));
 }
 
 double SaliencyInput::turned_deg(const Looks& looks) const {
@@ -157,11 +168,14 @@ double SaliencyInput::turned_deg() const {
   return most;
 }
 
-void SaliencyInput::mark_gazes() {
+void SaliencyInput::mark_gazes(double hold_s) {
   for (auto& eye : eyes_) {
     const Vec3d direction = direction_of(eye.gaze);
-    eye.marked_valid = !is_zero(direction);
-    eye.marked = eye.marked_valid ? direction : axis_of(eye.view);
+    const bool lost = is_zero(direction);
+    if (lost && eye.marked_valid && eye.lost_s <= hold_s) continue;
+    eye.marked_valid = !lost;
+    eye.marked = lost ? axis_of(eye.view) : direction;
+    eye.marked_place = lost ? place_of(eye.view) : eye.gaze.origin_m;
   }
 }
 

@@ -24,11 +24,13 @@ class SaliencyInput {
   /// than two, a camera that is not finite, a G-buffer whose arrays are not whole.
   bool look(const Looks& looks, bool pictures = true);
   /// Degrees by which a gaze has turned since mark_gazes(), in these looks or in the last ones: the larger of
-  /// two eyes. Without a gaze the view's axis counts. One that gets lost has not turned; before the first
-  /// mark all have by 180.
+  /// two eyes. An eye that was shifted counts as one that turned, by the angle of the shift at one metre.
+  /// Without a gaze the view's axis counts. One that gets lost has not turned; before the first mark all have
+  /// by 180.
   double turned_deg(const Looks& looks) const;
   double turned_deg() const;
-  void mark_gazes();
+  /// Not of a gaze that was lost less than hold_s ago: it is where it was.
+  void mark_gazes(double hold_s);
   /// Gives GL the buffers of the pictures back, which look() keeps. They must be back before GL draws.
   void give_back();
   /// The eye of a program that never calls look().
@@ -55,7 +57,8 @@ class SaliencyInput {
     Gaze gaze;
     View view;
     double visual_scale = 1;
-    Vec3d marked{};  ///< direction at the last mark; 0: there was none
+    Vec3d marked{};        ///< direction at the last mark; 0: there was none
+    Vec3d marked_place{};  ///< of the eye, m
     bool marked_valid = false;
     Vec3d last_direction{};  ///< of the last valid gaze; 0 when there was none
     double lost_s = 0;       ///< since then
@@ -67,7 +70,8 @@ class SaliencyInput {
     template <class Archive>
     void keep(Archive& archive) {
       bool there = picture.depth != nullptr;
-      archive(gaze, view, visual_scale, marked, marked_valid, last_direction, lost_s, picture_view, there);
+      archive(gaze, view, visual_scale, marked, marked_place, marked_valid, last_direction, lost_s,
+              picture_view, there);
       if (!there) return;
       archive(picture.normal_stride, picture.width, picture.height, picture.radius_scale, depth, normal);
       if constexpr (Archive::reads) {

@@ -51,7 +51,7 @@ struct Looks {
   std::vector<EyeLook> eyes;
 };
 
-/// Saliency of one particle as it was evaluated at the start of the last frame (paper 3.2).
+/// Saliency of one particle as it was evaluated when levels were chosen last (paper 3.2).
 struct ParticleSaliency {
   float acuity = 0;    ///< f_a, Eq. 3
   float manifold = 0;  ///< f_m, Eq. 5

@@ -78,7 +78,7 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
 void SaliencyState::begin_frame(LevelTurns& turns, double dt_s) {
   turns.begin_frame(readings, input.turned_deg());
   look_around(dt_s);
-  if (turns.due) input.mark_gazes();
+  if (turns.due) input.mark_gazes(readings.gaze_hold_s);
 }
 
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {

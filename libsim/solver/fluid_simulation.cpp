@@ -91,7 +91,8 @@ class FluidSimulation final : public Simulation {
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
     set_substeps(substeps_taken_.taken);
-    if (follows_gaze()) state_.saliency.begin_frame(state_.levels.turns, frame_dt());
+    if (follows_gaze() && !options_.forced_targets)
+      state_.saliency.begin_frame(state_.levels.turns, frame_dt());
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);

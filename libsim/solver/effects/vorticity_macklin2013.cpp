@@ -119,7 +119,7 @@ std::string if_seen(const Demand& demand) {
   return demand.saliency && counts ? "saliency sees it" : "";
 }
 
-/// Saliency looks once a frame.
+/// Saliency looks once a frame at most.
 void show_swirl(FluidState& state, ShowView p) {
   const auto& k = state.parameters;
   if (state.substep + 1 < k.substeps) return;

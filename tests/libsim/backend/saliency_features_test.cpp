@@ -30,6 +30,43 @@ std::vector<SaliencyParts> parts_of(const std::vector<Vec4>& points, const Looks
   return parts.to_host();
 }
 
+/// Degrees by which the gaze has turned in each of these looks, a frame apart; a mark after each.
+std::vector<double> turns_of(const std::vector<Gaze>& gazes, const std::vector<View>& views) {
+  SaliencyInput input;
+  std::vector<double> out;
+  for (std::size_t k = 0; k < gazes.size(); ++k) {
+    const Looks looks{{{gazes[k], views[k % views.size()], nullptr}}};
+    const double before = input.turned_deg(looks);
+    input.look(looks);
+    EXPECT_EQ(input.turned_deg(), before);
+    out.push_back(before);
+    input.next_frame(0.1, 0.25);
+    input.mark_gazes(0.25);
+  }
+  return out;
+}
+
+SIM_TEST(SaliencyGaze, TurnsWithTheEyeAndItsPlaceAndStaysInABlink) {
+  const View view = view_along_z(64, 48);
+  const double slope = std::tan(3 * std::acos(-1.0) / 180);
+  const Gaze ahead{{0, 0, 0}, {0, 0, -1}, true}, aside{{0, 0, 0}, {slope, 0, -1}, true};
+  const Gaze stepped{{slope, 0, 0}, {0, 0, -1}, true}, lost{};
+  auto turned = turns_of({ahead, ahead, aside, ahead, stepped}, {view});
+  EXPECT_EQ(turned[0], 180);
+  EXPECT_NEAR(turned[1], 0, 1e-6);
+  EXPECT_NEAR(turned[2], 3, 1e-6);
+  EXPECT_NEAR(turned[4], 3, 1e-6) << "as far as an eye that turns by what a metre away is the shift";
+  // Held for 0.25 s, of frames of 0.1 s, it is where it was, whatever the head does.
+  turned = turns_of({aside, lost, lost, aside}, {view, view_of({0, 0, 0}, {1, 0, -1}, 64, 48)});
+  EXPECT_EQ(turned[1], 0);
+  EXPECT_EQ(turned[2], 0);
+  EXPECT_NEAR(turned[3], 0, 1e-6);
+  // Lost for longer, it is the view's axis.
+  turned = turns_of({aside, lost, lost, lost, lost, aside}, {view});
+  EXPECT_NEAR(turned[4], 0, 1e-6);
+  EXPECT_NEAR(turned[5], 3, 1e-6);
+}
+
 SIM_TEST(Acuity, IsOneAtTheGazeAtTheImagePlaneAndHalfAtTwice) {
   const View view = view_along_z(64, 48);
   const auto parts = parts_of({{0, 0, -1, 0.3f}, {0, 0, -2, 0.3f}, {0, 0, -0.2f, 0.3f}, {0, 0, 1, 0.3f}},
