@@ -27,7 +27,7 @@ struct BodyTurn {
 /// A free body in a system of equations for velocities (libsim/solver/effects/sticking.hpp).
 struct FreeRow {
   BodyTurn gained, residual, direction, bent;
-  BodySum taken;  ///< from particles in one pass: momentum in place of ways
+  Momentum push, moment;  ///< taken from particles in one pass, in units of FreeRows
 };
 
 /// q turned by the way of a turn about the world's axes, rad.

@@ -15,13 +15,17 @@ struct FreeRows {
   const Body* bodies;
   const FreeBody* free;
   int count;
+  /// Of their sums, m_* m/s: residuals and directions are as many times faster than the fluid as the stiffest
+  /// particle's term is larger than 1, and fixed point holds only so much.
+  float unit;
 
   SIM_FN bool has(int b) const { return rows && free[b].mass > 0; }
   /// Of the residual and of A p what particles give; forgets what they gave.
   SIM_FN BodyTurn given(int b) const {
-    const BodySum sum = rows[b].taken;
-    rows[b].taken = {};
-    return {(1 / free[b].mass) * sum.push.value(), spin_of(free[b], bodies[b].turn, sum.moment.value())};
+    FreeRow& row = rows[b];
+    const Vec3 push = unit * row.push.value(), moment = unit * row.moment.value();
+    row.push = row.moment = {};
+    return {(1 / free[b].mass) * push, spin_of(free[b], bodies[b].turn, moment)};
   }
   /// m a a'.
   SIM_FN float product(int b, BodyTurn a, BodyTurn other) const {
@@ -108,12 +112,12 @@ struct StickingBodies {
     each<First>(at, v, [&](int b, Vec3 part) {
       out += part;
       if (!free.has(b)) return;
-      BodySum sum{};
-      const Vec3 push = mass_units_of(at.w, finest_support) * part;
-      sum.push.add(1, push);
-      sum.moment.add(1, cross(xyz(at) - solids.bodies[b].centre, push));
-      free.rows[b].taken.push.add_at_once(sum.push);
-      free.rows[b].taken.moment.add_at_once(sum.moment);
+      const Vec3 push = (mass_units_of(at.w, finest_support) / free.unit) * part;
+      Momentum sum{}, moment{};
+      sum.add(1, push);
+      moment.add(1, cross(xyz(at) - solids.bodies[b].centre, push));
+      free.rows[b].push.add_at_once(sum);
+      free.rows[b].moment.add_at_once(moment);
     });
     return out;
   }

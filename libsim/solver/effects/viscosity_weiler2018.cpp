@@ -306,11 +306,15 @@ void solve_for(FluidState& state, Columns p, Selection select) {
     o.rows.resize(o.free.size());
     o.rows.zero();
   }
-  const FreeRows free{o.free.size() > 0 ? o.rows.data() : nullptr, o.bodies.data(), o.free.data(), o.count()};
-  const StickingBodies bodies{.solids = state.solids(),
-                              .free = free,
-                              .rate = stick * k.dt * k.effects[EffectKind::Viscosity],
-                              .finest_support = state.finest_support};
+  const float rate = stick * k.dt * k.effects[EffectKind::Viscosity];
+  const float d = 0.5f * state.finest_support;
+  const FreeRows free{.rows = o.free.size() > 0 ? o.rows.data() : nullptr,
+                      .bodies = o.bodies.data(),
+                      .free = o.free.data(),
+                      .count = o.count(),
+                      .unit = 1 + rate / (StickingBodies::nearest * d * d)};
+  const StickingBodies bodies{
+      .solids = state.solids(), .free = free, .rate = rate, .finest_support = state.finest_support};
   solve_for(state, p, select, bodies);
   const BodyListener to = state.effects_listener();
   if (!to.sums) return;

@@ -196,6 +196,40 @@ SIM_TEST(Sticking, AFreeBodyAndTheFluidKeepTheirMomentumHoweverFewTheSteps) {
   }
 }
 
+/// One layer of thick honey at 1 m/s on a heavy box of 2 m x 1 m x 2 m: terms of 70 to 280 times the
+/// particle, of thousands of particles, fit into the sums.
+SIM_TEST(Sticking, AHeavyBodyUnderALayerOfThickHoneyComesToTheCommonSpeed) {
+  NEEDS_EFFECTS;
+  for (const float d : {0.02f, 0.01f}) {
+    constexpr int side = 60;
+    std::vector<Vec4> points, v;
+    for (int k = 0; k < side * side; ++k) {
+      const auto i = static_cast<float>(k % side - side / 2), j = static_cast<float>(k / side - side / 2);
+      points.push_back({d * (i + 0.5f), 0.2f * d, d * (j + 0.5f), 2 * d});
+      v.push_back({1, 0, 0, 0});
+    }
+    Body box = body_of({1, 0.5f, 1}, 0);
+    box.centre = {0, -0.5f, 0};
+    auto state = honey_round(points, {box}, 1);
+    state.finest_support = 2 * d;
+    state.parameters.effects.values[index_of(EffectKind::Viscosity)] = 5;
+    state.particles.all().velocity.from_host(v);
+    FreeBody free{};
+    free.mass = free.volume = 4 / (d * d * d);
+    free.inertia = (free.mass / 3) * Vec3{1.25f, 2, 1.25f};
+    state.obstacles.free.from_host({free});
+    const auto after = velocities_by(EffectKind::Viscosity, state);
+    const float units = side * side;
+    const Vec3 told = state.obstacles.sums.to_host()[1].push.value();
+    const float gained = -told.x / (state.parameters.dt * free.mass);
+    EXPECT_NEAR(gained / (units / free.mass), 1, 0.05f) << d;
+    float kept = 0;
+    for (const Vec4& one : after) kept += one.x / units;
+    EXPECT_LT(kept, 0.05f) << d;
+    EXPECT_NEAR(gained * free.mass, (1 - kept) * units, 1e-3f * units) << d;
+  }
+}
+
 /// Adhesion of this work beside a tension.
 void add_adhesion(FluidState& state, float tension, float work) {
   state.parameters.effects.values[index_of(EffectKind::Cohesion)] = tension;
