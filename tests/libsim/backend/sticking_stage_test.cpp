@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 
+#include "libsim/solver/fluid_simulation.hpp"
 #include "tests/libsim/backend/effects_crowds.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -102,6 +103,19 @@ SIM_TEST(Sticking, ABodyIsToldWhatTheFluidLoses) {
       EXPECT_LT(length(moment - change.spin), 2e-5f * change.all) << coarsest << ", " << steps;
     }
   }
+}
+
+SIM_TEST(Sticking, WithoutViscosityItsRowsAreFreed) {
+  NEEDS_EFFECTS;
+  const auto points = shell();
+  auto state = honey_round(points, {ball()}, 1);
+  velocities_by(EffectKind::Viscosity, state);
+  EXPECT_EQ(state.obstacles.rows.size(), 1u);
+  exchange_effects(state, Scene{}, all_columns());
+  EXPECT_EQ(state.obstacles.rows.size(), 1u) << "it is still on";
+  state.parameters.effects = {};
+  exchange_effects(state, Scene{}, all_columns());
+  EXPECT_EQ(state.obstacles.rows.size(), 0u);
 }
 
 SIM_TEST(Sticking, WhatGoesWithABodyIsLeftAlone) {
