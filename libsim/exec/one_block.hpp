@@ -5,17 +5,80 @@
 
 namespace sim::SIM_BACKEND {
 
+/// The indices from `first` below `end` that one thread walks.
+struct Walk {
+  int first, stride, end;
+
+  template <class F>
+  SIM_FN void each(F f) const {
+    for (int i = first; i < end; i += stride) f(i);
+  }
+  /// Of f(i), in one order.
+  template <class F>
+  SIM_FN float sum(F f) const {
+    float out = 0;
+    for (int i = first; i < end; i += stride) out += f(i);
+    return out;
+  }
+  /// The least f(i) below `most`, and where it first is; else `most` and `end`.
+  template <class F>
+  SIM_FN float least(float most, int& where, F f) const {
+    where = end;
+    for (int i = first; i < end; i += stride) {
+      const float it = f(i);
+      if (it < most) {
+        most = it;
+        where = i;
+      }
+    }
+    return most;
+  }
+};
+
 #ifdef SIM_CUDA
 
 /// The first warp of a block; the host only names the type.
 struct OneWarp {
   template <class F>
   SIM_FN void each(int n, F f) const {
+    walk(n).each(f);
 #ifdef __CUDA_ARCH__
-    for (int i = static_cast<int>(threadIdx.x); i < n; i += 32) f(i);
     __syncwarp();
+#endif
+  }
+  /// f(0) + ... + f(n-1), the same bits for all lanes and in each run. All lanes call it together, with one
+  /// n; f reads what their each() before wrote.
+  template <class F>
+  SIM_FN float sum(int n, F f) const {
+    float out = walk(n).sum(f);
+#ifdef __CUDA_ARCH__
+    for (int far = 16; far > 0; far /= 2) out += __shfl_xor_sync(0xffffffffu, out, far);
+#endif
+    return out;
+  }
+  /// The least f(i) below `most`, and where it first is, the same for all lanes; else `most` and n. Called as
+  /// sum() is, with one `most`.
+  template <class F>
+  SIM_FN float least(int n, float most, int& where, F f) const {
+    float out = walk(n).least(most, where, f);
+#ifdef __CUDA_ARCH__
+    for (int far = 16; far > 0; far /= 2) {
+      const float other = __shfl_xor_sync(0xffffffffu, out, far);
+      const int there = __shfl_xor_sync(0xffffffffu, where, far);
+      const bool better = other < out || (other == out && there < where);
+      out = better ? other : out;
+      where = better ? there : where;
+    }
+#endif
+    return out;
+  }
+
+ private:
+  SIM_FN static Walk walk(int n) {
+#ifdef __CUDA_ARCH__
+    return {static_cast<int>(threadIdx.x), 32, n};
 #else
-    for (int i = 0; i < n; ++i) f(i);
+    return {0, 1, n};
 #endif
   }
 };
@@ -102,6 +165,16 @@ struct OneBlock {
     each(n, f);
   }
   void wait() const {}
+  /// f(0) + ... + f(n-1), in one order.
+  template <class F>
+  float sum(int n, F f) const {
+    return Walk{0, 1, n}.sum(f);
+  }
+  /// The least f(i) below `most`, and where it first is; else `most` and n.
+  template <class F>
+  float least(int n, float most, int& where, F f) const {
+    return Walk{0, 1, n}.least(most, where, f);
+  }
   /// f(warp), whose each() may wait for fewer threads: for steps over few indices.
   template <class F>
   void by_one_warp(F f) const {

@@ -29,18 +29,13 @@ struct ContactRow {
   float left, step, along;
 };
 
-/// What one thread tells the others. Each is read before the next wait, and written after it.
+/// What one thread tells the others. It is read before the next wait, and written after it.
 struct ContactProgress {
-  float swept;   ///< the most that a sweep changed a speed, m/s
-  float missed;  ///< the most that an open row misses, m/s
-  float worth;   ///< of the direction: what it would gain
-  float share;   ///< of the last direction in the next
-  float way;     ///< along the direction
-  int shut;      ///< the row that comes to its bound; < 0: none
+  float swept;  ///< the most that a sweep changed a speed, m/s
 };
 
 /// Contacts of `width` rows each: the normal, and with friction two ways to slide. Each step waits for the
-/// one before; sums are one thread's, in one order.
+/// one before; sweeps are one thread's, and sums have one order.
 struct ContactRows {
   ContactRow* rows;
   const float* friction;  ///< coefficient of each contact; nullptr: all slide freely
@@ -134,49 +129,95 @@ struct ContactRows {
   }
 
   /// Conjugate gradients over the open rows. One that comes to its bound is shut, and the rest begin anew.
+  /// All threads know the same sums, and so go the same way.
   template <class Threads>
   SIM_FN void descend(Threads threads) const {
-    threads.each(row_count(), Step<&ContactRows::open>{*this});
-    threads.each(1, Step<&ContactRows::begin>{*this});
-    for (int k = 0; k < most_steps && at->worth > 0; ++k) {
-      threads.each(row_count(), Step<&ContactRows::aim>{*this});
+    const int n = row_count();
+    threads.each(n, Step<&ContactRows::open>{*this});
+    float worth = threads.sum(n, Worth{rows});
+    float share = 0;
+    for (int k = 0; k < most_steps && worth > 0; ++k) {
+      threads.each(n, Aim{rows, share});
       threads.each(body_count, Step<&ContactRows::look_along>{*this});
-      threads.each(row_count(), Step<&ContactRows::look>{*this});
-      threads.each(1, Step<&ContactRows::find_way>{*this});
-      if (at->way <= 0 && at->shut < 0) return;
-      threads.each(row_count(), Step<&ContactRows::go>{*this});
-      threads.each(body_count, Step<&ContactRows::go_body>{*this});
-      threads.each(1, Step<&ContactRows::weigh>{*this});
-      if (at->missed <= 0.3f * still) return;
+      threads.each(n, Step<&ContactRows::look>{*this});
+      const float steep = threads.sum(n, Steep{rows});
+      // In directions that move nobody there is nothing left to gain.
+      if (!(steep > 1e-6f * worth)) return;
+      int shut, any;
+      const float way = threads.least(n, worth / steep, shut, ToBound{*this});
+      threads.each(n, Go{*this, way, shut});
+      threads.each(body_count, GoBody{*this, way});
+      const float missed = -threads.least(n, 0, any, Missed{rows});
+      if (missed <= 0.3f * still) return;
+      const float next = threads.sum(n, Worth{rows});
+      share = shut == n ? next / worth : 0.0f;
+      worth = next;
     }
   }
+  /// What is missing says what a step along it gains.
+  struct Worth {
+    const ContactRow* rows;
+    SIM_FN float operator()(int r) const {
+      return rows[r].open ? rows[r].left * rows[r].left / rows[r].ease : 0.0f;
+    }
+  };
+  /// Less than 0 by what an open row misses, m/s.
+  struct Missed {
+    const ContactRow* rows;
+    SIM_FN float operator()(int r) const { return rows[r].open ? -fabsf(rows[r].left) : 0.0f; }
+  };
+  /// What a way of 1 along the direction changes of that gain.
+  struct Steep {
+    const ContactRow* rows;
+    SIM_FN float operator()(int r) const { return rows[r].step * rows[r].along; }
+  };
+  /// The next direction: what is missing, and of the last direction the share that keeps them conjugate.
+  struct Aim {
+    ContactRow* rows;
+    float share;
+    SIM_FN void operator()(int r) const {
+      ContactRow& row = rows[r];
+      row.step = row.open ? row.left / row.ease + share * row.step : 0.0f;
+    }
+  };
+  /// The way along the direction at which a row comes to its bound.
+  struct ToBound {
+    const ContactRows& here;
+    SIM_FN float operator()(int r) const {
+      const ContactRow& row = here.rows[r];
+      if (row.step == 0) return 3e38f;
+      return at_least((here.bound_of(r, row.step < 0) - row.push) / row.step, 0.0f);
+    }
+  };
+  /// Along the direction, to its lowest place or to the first bound.
+  struct Go {
+    const ContactRows& here;
+    float way;
+    int shut;
+    SIM_FN void operator()(int r) const {
+      ContactRow& row = here.rows[r];
+      if (!row.open) return;
+      row.push += way * row.step;
+      row.left -= way * row.along;
+      if (r != shut) return;
+      row.push = here.bound_of(r, row.step < 0);
+      row.open = false;
+    }
+  };
+  struct GoBody {
+    const ContactRows& here;
+    float way;
+    SIM_FN void operator()(int b) const {
+      here.bodies[b].velocity += way * here.along[b].velocity;
+      here.bodies[b].spin += way * here.along[b].spin;
+    }
+  };
   SIM_FN void open(int r) const {
     ContactRow& row = rows[r];
     if (r % width == 0) row.open = row.push > 0 && row.push < row.most;
     if (r % width != 0 && !rubs(r / width)) row.open = false;
     row.left = row.wanted - speed(row);
     row.step = 0;
-  }
-  SIM_FN void begin(int) const {
-    at->worth = worth();
-    at->share = 0;
-  }
-  /// What is missing says what a step along it gains.
-  SIM_FN float worth() const {
-    float out = 0, most = 0;
-    for (int r = 0; r < row_count(); ++r) {
-      const ContactRow& row = rows[r];
-      if (!row.open) continue;
-      out += row.left * row.left / row.ease;
-      most = at_least(fabsf(row.left), most);
-    }
-    at->missed = most;
-    return out;
-  }
-  /// The next direction: what is missing, and of the last direction the share that keeps them conjugate.
-  SIM_FN void aim(int r) const {
-    ContactRow& row = rows[r];
-    row.step = row.open ? row.left / row.ease + at->share * row.step : 0.0f;
   }
   SIM_FN void look_along(int b) const {
     BodyRate out{{0, 0, 0}, {0, 0, 0}, 0};
@@ -192,47 +233,10 @@ struct ContactRows {
     along[b] = out;
   }
   SIM_FN void look(int r) const { rows[r].along = speed(rows[r], along); }
-  /// The way to the direction's lowest place, or to the first bound.
-  SIM_FN void find_way(int) const {
-    float steep = 0;
-    for (int r = 0; r < row_count(); ++r) steep += rows[r].step * rows[r].along;
-    at->way = 0;
-    at->shut = -1;
-    // In directions that move nobody there is nothing left to gain.
-    if (!(steep > 1e-6f * at->worth)) return;
-    float way = at->worth / steep;
-    for (int r = 0; r < row_count(); ++r) {
-      const ContactRow& row = rows[r];
-      if (row.step == 0) continue;
-      const float bound = bound_of(r, row.step < 0);
-      if (row.step < 0 ? row.push + way * row.step >= bound : row.push + way * row.step <= bound) continue;
-      way = at_least((bound - row.push) / row.step, 0.0f);
-      at->shut = r;
-    }
-    at->way = way;
-  }
   /// Of a row's pushes: a normal never pulls, and friction follows the pushes that the sweep left.
   SIM_FN float bound_of(int r, bool low) const {
     if (!low) return rows[r].most;
     return r % width == 0 ? 0.0f : -rows[r].most;
-  }
-  SIM_FN void go(int r) const {
-    ContactRow& row = rows[r];
-    if (!row.open) return;
-    row.push += at->way * row.step;
-    row.left -= at->way * row.along;
-    if (r != at->shut) return;
-    row.push = bound_of(r, row.step < 0);
-    row.open = false;
-  }
-  SIM_FN void go_body(int b) const {
-    bodies[b].velocity += at->way * along[b].velocity;
-    bodies[b].spin += at->way * along[b].spin;
-  }
-  SIM_FN void weigh(int) const {
-    const float next = worth();
-    at->share = at->shut < 0 ? next / at->worth : 0.0f;
-    at->worth = next;
   }
 };
 

@@ -24,10 +24,11 @@ struct FreeBody {
 struct BodyTurn {
   Vec3 along, round;
 };
-/// A free body in a system of equations for velocities (libsim/solver/effects/sticking.hpp).
-struct FreeRow {
+/// A body in a system of equations for velocities (libsim/solver/effects/sticking.hpp). Of one that is not
+/// free the turns are momentum, m_* m/s, and its moment.
+struct BodyRow {
   BodyTurn gained, residual, direction, bent;
-  BodySum taken;  ///< from particles in one pass: momentum in place of ways
+  Momentum push, moment;  ///< taken from particles in one pass, in units of BodyRows
 };
 
 /// q turned by the way of a turn about the world's axes, rad.

@@ -137,12 +137,13 @@ struct Meeting {
       for (int b = 0; b < m.count; ++b) out = at_least(room.speeds[b], out);
       return out;
     }
-    /// More than any contact needs that can be: of a body that is pinned, others' pushes end here, and walls
-    /// have the last word.
+    /// The most that two bodies push each other. In a wedge pushes grow as 1 / (2 sin) of its half angle:
+    /// this holds what sinks into one of 2 degrees. Of a body that is pinned, others' pushes end here, and
+    /// walls have the last word.
     SIM_FN float most_push(float speed) const {
       float mass = 0;
       for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;
-      return 4 * mass * speed;
+      return 16 * mass * speed;
     }
 
     /// How far a gap may reach that is looked at, m.

@@ -214,7 +214,10 @@ void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) 
   const bool warm = state.particles.has(Column::Temperature);
   if (warm && !was_warm) warm_up(state, scene);
   if (!warm) state.heat = {};
-  if (!(e[EffectKind::Viscosity] > 0)) state.conjugate_gradient = {};
+  if (!(e[EffectKind::Viscosity] > 0)) {
+    state.conjugate_gradient = {};
+    state.obstacles.rows = {};
+  }
   if (!(e[EffectKind::Foam] > 0)) {
     state.foam = {};
   } else if (state.foam.capacity() != static_cast<int>(e[EffectOption::FoamMost])) {

@@ -8,23 +8,30 @@
 namespace sim::SIM_BACKEND {
 
 /// Free bodies are rows of the same system as the particles: what holds the fluid is held by it, however
-/// light. So every step of the conjugate gradients keeps the momentum and the spin of both together. Without
-/// rows no body is free.
-struct FreeRows {
-  FreeRow* rows;
+/// light. So every step of the conjugate gradients keeps the momentum and the spin of both together. Rows of
+/// other bodies follow the same steps without a part in them: what they gain is what the fluid lost, however
+/// few the steps. Without rows no body is free, and nobody asks.
+struct BodyRows {
+  BodyRow* rows;
   const Body* bodies;
-  const FreeBody* free;
-  int count;
+  const FreeBody* free;  ///< nullptr: none is
+  int count;             ///< of the rows
+  /// Of their sums, m_* m/s: residuals and directions are as many times faster than the fluid as the stiffest
+  /// particle's term is larger than 1, and fixed point holds only so much.
+  float unit;
 
-  SIM_FN bool has(int b) const { return rows && free[b].mass > 0; }
+  SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
   /// Of the residual and of A p what particles give; forgets what they gave.
   SIM_FN BodyTurn given(int b) const {
-    const BodySum sum = rows[b].taken;
-    rows[b].taken = {};
-    return {(1 / free[b].mass) * sum.push.value(), spin_of(free[b], bodies[b].turn, sum.moment.value())};
+    BodyRow& row = rows[b];
+    const Vec3 push = unit * row.push.value(), moment = unit * row.moment.value();
+    row.push = row.moment = {};
+    if (!moves(b)) return {push, moment};
+    return {(1 / free[b].mass) * push, spin_of(free[b], bodies[b].turn, moment)};
   }
   /// m a a'.
   SIM_FN float product(int b, BodyTurn a, BodyTurn other) const {
+    if (!moves(b)) return 0;
     return free[b].mass * dot(a.along, other.along) +
            dot(a.round, momentum_of(free[b], bodies[b].turn, other.round));
   }
@@ -32,7 +39,6 @@ struct FreeRows {
   SIM_FN float begin() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
-      if (!has(b)) continue;
       rows[b].gained = {};
       rows[b].residual = rows[b].direction = given(b);
       out += product(b, rows[b].residual, rows[b].residual);
@@ -43,8 +49,7 @@ struct FreeRows {
   SIM_FN float bend() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
-      if (!has(b)) continue;
-      FreeRow& row = rows[b];
+      BodyRow& row = rows[b];
       row.bent = added(row.direction, -1, given(b));
       out += product(b, row.direction, row.bent);
     }
@@ -54,8 +59,7 @@ struct FreeRows {
   SIM_FN float advance(float step) const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
-      if (!has(b)) continue;
-      FreeRow& row = rows[b];
+      BodyRow& row = rows[b];
       row.gained = added(row.gained, step, row.direction);
       row.residual = added(row.residual, -step, row.bent);
       out += product(b, row.residual, row.residual);
@@ -63,8 +67,7 @@ struct FreeRows {
     return out;
   }
   SIM_FN void turn(float kept) const {
-    for (int b = 0; b < count; ++b)
-      if (has(b)) rows[b].direction = added(rows[b].residual, kept, rows[b].direction);
+    for (int b = 0; b < count; ++b) rows[b].direction = added(rows[b].residual, kept, rows[b].direction);
   }
   SIM_FN static BodyTurn added(BodyTurn a, float times, BodyTurn other) {
     return {a.along + times * other.along, a.round + times * other.round};
@@ -79,7 +82,7 @@ struct FreeRows {
 struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;
-  FreeRows free;
+  BodyRows rows;
   float rate;            ///< nu dt times the share that sticks, m2
   float finest_support;  ///< of m_*
   /// Of d, the least s: as near as particles come to walls.
@@ -97,35 +100,35 @@ struct StickingBodies {
     });
   }
   SIM_FN Vec3 way_of(int b, Vec3 x) const {
-    if (!free.has(b)) return {0, 0, 0};
-    const BodyTurn p = free.rows[b].direction;
+    if (!rows.moves(b)) return {0, 0, 0};
+    const BodyTurn p = rows.rows[b].direction;
     return p.along + cross(p.round, x - solids.bodies[b].centre);
   }
-  /// What all of them take, which free ones are told.
+  /// What all of them take, which their rows are told.
   template <bool First>
   SIM_FN Vec3 taken(Vec4 at, Vec3 v) const {
     Vec3 out{0, 0, 0};
     each<First>(at, v, [&](int b, Vec3 part) {
       out += part;
-      if (!free.has(b)) return;
-      BodySum sum{};
-      const Vec3 push = mass_units_of(at.w, finest_support) * part;
-      sum.push.add(1, push);
-      sum.moment.add(1, cross(xyz(at) - solids.bodies[b].centre, push));
-      free.rows[b].taken.push.add_at_once(sum.push);
-      free.rows[b].taken.moment.add_at_once(sum.moment);
+      if (!rows.rows) return;
+      const Vec3 push = (mass_units_of(at.w, finest_support) / rows.unit) * part;
+      Momentum sum{}, moment{};
+      sum.add(1, push);
+      moment.add(1, cross(xyz(at) - solids.bodies[b].centre, push));
+      rows.rows[b].push.add_at_once(sum);
+      rows.rows[b].moment.add_at_once(moment);
     });
     return out;
   }
 };
 
-/// Ends of the sums: what free bodies add, and their own steps.
+/// Ends of the sums: what free bodies add, and the steps of all.
 template <class Bodies>
 struct TakeRest {
   TakeTurn take;
   Bodies bodies;
   SIM_FN void operator()(float rest) const {
-    if constexpr (Bodies::there) rest += bodies.free.begin();
+    if constexpr (Bodies::there) rest += bodies.rows.begin();
     take(rest);
   }
 };
@@ -134,7 +137,7 @@ struct TakeStep {
   TakeAlong take;
   Bodies bodies;
   SIM_FN void operator()(float bent) const {
-    if constexpr (Bodies::there) bent += bodies.free.bend();
+    if constexpr (Bodies::there) bent += bodies.rows.bend();
     take(bent);
   }
 };
@@ -143,43 +146,24 @@ struct TakeNext {
   TakeTurn take;
   Bodies bodies;
   SIM_FN void operator()(float rest) const {
-    if constexpr (Bodies::there) rest += bodies.free.advance(take.step->along);
+    if constexpr (Bodies::there) rest += bodies.rows.advance(take.step->along);
     take(rest);
-    if constexpr (Bodies::there) bodies.free.turn(take.step->turn);
+    if constexpr (Bodies::there) bodies.rows.turn(take.step->turn);
   }
 };
 
-/// Tells bodies that are not free what they took of the velocities that the step found.
-template <class Selection>
-struct HearSticking {
-  Selection select;
-  const Vec4* position;
-  const Vec4* velocity;
-  StickingBodies bodies;
-  BodyListener to;
-  SIM_FN void operator()(int slot) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) return;
-    }
-    const Vec4 at = position[i];
-    const float units = mass_units_of(at.w, to.finest_support);
-    bodies.each<true>(at, xyz(velocity[i]), [&](int b, Vec3 taken) {
-      if (!bodies.free.has(b)) to.add(b, xyz(at), -(units * bodies.solids.dt) * taken);
-    });
-  }
-};
-
-/// Tells the free ones what they gained.
+/// Tells bodies what they gained.
 struct HearGained {
-  FreeRows free;
+  BodyRows rows;
   BodyListener to;
   float dt;
   SIM_FN void operator()(int b) const {
-    if (!free.has(b)) return;
-    const BodyTurn gained = free.rows[b].gained;
-    to.sums[b].push.add(-dt * free.free[b].mass, gained.along);
-    to.sums[b].moment.add(-dt, momentum_of(free.free[b], free.bodies[b].turn, gained.round));
+    const BodyTurn gained = rows.rows[b].gained;
+    const bool moves = rows.moves(b);
+    const float mass = moves ? rows.free[b].mass : 1.0f;
+    const Vec3 moment = moves ? momentum_of(rows.free[b], rows.bodies[b].turn, gained.round) : gained.round;
+    to.sums[b].push.add(-dt * mass, gained.along);
+    to.sums[b].moment.add(-dt, moment);
   }
 };
 

@@ -302,21 +302,23 @@ void solve_for(FluidState& state, Columns p, Selection select) {
   const float stick = k.effects[EffectOption::ViscosityStick];
   if (!state.obstacles.there() || stick == 0) return solve_for(state, p, select, NoBodies{});
   auto& o = state.obstacles;
-  if (o.rows.size() < o.free.size()) {
-    o.rows.resize(o.free.size());
+  const BodyListener to = state.effects_listener();
+  const bool solved = to.sums || o.free.size() > 0;
+  if (solved && o.rows.size() < o.bodies.size()) {
+    o.rows.resize(o.bodies.size());
     o.rows.zero();
   }
-  const FreeRows free{o.free.size() > 0 ? o.rows.data() : nullptr, o.bodies.data(), o.free.data(), o.count()};
-  const StickingBodies bodies{.solids = state.solids(),
-                              .free = free,
-                              .rate = stick * k.dt * k.effects[EffectKind::Viscosity],
-                              .finest_support = state.finest_support};
+  const float rate = stick * k.dt * k.effects[EffectKind::Viscosity];
+  const float d = 0.5f * state.finest_support;
+  const BodyRows rows{.rows = solved ? o.rows.data() : nullptr,
+                      .bodies = o.bodies.data(),
+                      .free = o.free.size() > 0 ? o.free.data() : nullptr,
+                      .count = solved ? o.count() : 0,
+                      .unit = 1 + rate / (StickingBodies::nearest * d * d)};
+  const StickingBodies bodies{
+      .solids = state.solids(), .rows = rows, .rate = rate, .finest_support = state.finest_support};
   solve_for(state, p, select, bodies);
-  const BodyListener to = state.effects_listener();
-  if (!to.sums) return;
-  for_each("hear sticking", p.size(),
-           HearSticking<Selection>{select, p.position(), p.velocity(), bodies, to});
-  if (free.rows) for_each("hear free bodies", o.count(), HearGained{free, to, k.dt});
+  if (to.sums) for_each("hear bodies", rows.count, HearGained{rows, to, k.dt});
 }
 
 /// Under pressure particles of one size lie on a lattice, which carries shear until it yields: fluid so thick

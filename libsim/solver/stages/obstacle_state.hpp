@@ -18,7 +18,7 @@ struct ObstacleState {
   /// Volume of each below the water's level, over that of m_*, as CellWater counts.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
-  Array<FreeRow> rows;   ///< as `free`; none before an effect solves for them
+  Array<BodyRow> rows;   ///< as `bodies`; none before an effect solves for them
   // None while no obstacle is a mesh:
   Array<MeshGrid> meshes;     ///< as `bodies`
   Array<float> distances;     ///< of all their grids

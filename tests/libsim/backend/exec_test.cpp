@@ -190,6 +190,65 @@ struct Rotate {
   };
 };
 
+/// Sums and the least of n values by all threads of a warp, each of which writes what it got.
+struct OfWarp {
+  struct Value {
+    int n;
+    SIM_FN float operator()(int i) const { return static_cast<float>((i * 7 + 3) % n); }
+  };
+  struct Found {
+    float sum, least;
+    int where;
+  };
+  struct Write {
+    Found* to;
+    Found found;
+    SIM_FN void operator()(int i) const { to[i] = found; }
+  };
+  struct Search {
+    Found* to;
+    int n;
+    float most;
+    template <class Threads>
+    SIM_FN void operator()(Threads threads) const {
+      Found found{};
+      found.sum = threads.sum(n, Value{n});
+      found.least = threads.least(n, most, found.where, Value{n});
+      threads.each(32, Write{to, found});
+    }
+  };
+  Found* to;
+  int n;
+  float most;
+  template <class Block>
+  SIM_FN void operator()(Block block, unsigned char* /*room*/) const {
+    block.by_one_warp(Search{to, n, most});
+  }
+};
+
+SIM_TEST(InOneBlock, AllOfAWarpKnowTheSumAndTheLeast) {
+  Array<unsigned char> spare;
+  Array<OfWarp::Found> out(32);
+  for (const int n : {1, 5, 32, 33, 500}) {
+    for (const float most : {0.0f, 1.0f, 1e9f}) {
+      in_one_block("test", 256, 0, spare, OfWarp{out.data(), n, most});
+      float sum = 0, least = most;
+      int where = n;
+      for (int i = 0; i < n; ++i) {
+        const float it = OfWarp::Value{n}(i);
+        sum += it;
+        if (it < least) where = i;
+        least = std::min(it, least);
+      }
+      for (const OfWarp::Found& found : out.to_host()) {
+        EXPECT_EQ(found.sum, sum) << n;
+        EXPECT_EQ(found.least, least) << n;
+        EXPECT_EQ(found.where, where) << n << ", below " << most;
+      }
+    }
+  }
+}
+
 SIM_TEST(InOneBlock, StepsWaitForEachOther) {
   // The last one's room is more than any device has beside its threads.
   Array<unsigned char> spare;

@@ -247,6 +247,25 @@ SIM_TEST(Meeting, WhatTurnsPushesWithTheSpeedOfThePlace) {
   EXPECT_NEAR(length(two.velocity(1)), 0.8f, 0.1f);
 }
 
+SIM_TEST(Meeting, ABallRestsInAWedge) {
+  for (const float degrees : {2.0f, 5.0f, 20.0f}) {
+    const float angle = degrees * 1.57079633f / 90;  // of each side to the vertical
+    const Vec3 middle{0, 2, 0};
+    BodiesApart three;
+    three.gravity = g;
+    for (const float side : {-1.0f, 1.0f}) {
+      const Vec3 away{side * std::cos(angle), -std::sin(angle), 0};
+      Body wall = BodiesApart::box(middle + 0.4f * away, {0.4f, 3, 1});
+      wall.turn = turned_by(wall.turn, {0, 0, -side * angle});
+      three.add(wall, 0);
+    }
+    three.add(BodiesApart::sphere(middle, 0.2f), 1);
+    three.step(360);
+    EXPECT_NEAR(three.bodies[2].centre.y, 2, 0.01f) << degrees;
+    EXPECT_LT(length(three.velocity(2)), 1e-3f) << degrees;
+  }
+}
+
 /// Nothing can be right then: walls win, and the body leaves as soon as it can.
 SIM_TEST(Meeting, WhatIsPinnedStaysInTheTank) {
   for (const bool box : {true, false}) {
