@@ -38,7 +38,7 @@ struct SolverParameters {
   float dt = 1.0f / 180;      ///< substep, s
   int substeps = 3;           ///< a frame
   double frame_s() const { return static_cast<double>(dt) * substeps; }
-  int iterations = 4;         ///< constraint projections a substep
+  int iterations = 4;  ///< constraint projections a substep
   /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
   float relaxation = 0.01f;
   /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.

@@ -31,9 +31,8 @@ Stage bodies_meet_stage() {
                          .source = "Newton's and Euler's laws, inelastic contact, Coulomb's friction",
                          .phase = Phase::Substep,
                          .called_for = [](const Demand& demand) -> std::string {
-                           return demand.obstacles_meet
-                                      ? "a free obstacle may meet another, or has friction"
-                                      : "";
+                           return demand.obstacles_meet ? "a free obstacle may meet another, or has friction"
+                                                        : "";
                          }});
 }
 
