@@ -252,7 +252,8 @@ SIM_TEST(Sticking, AHeavyBodyUnderALayerOfThickHoneyComesToTheCommonSpeed) {
     float kept = 0;
     for (const Vec4& one : after) kept += one.x / units;
     EXPECT_LT(kept, 0.05f) << d << ", " << viscosity;
-    EXPECT_NEAR(gained * free.mass, (1 - kept) * units, 1e-3f * units) << d << ", " << viscosity;
+    // 140,000 times a float's rounding is 0.8 %.
+    EXPECT_NEAR(gained * free.mass, (1 - kept) * units, 1e-2f * units) << d << ", " << viscosity;
   }
 }
 
