@@ -8,7 +8,7 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "libstudy/protocol/protocol.hpp"
-#include "tests/apps/study_test_support.hpp"
+#include "tests/apps/shown_study.hpp"
 
 namespace apps::test {
 namespace {
@@ -154,12 +154,12 @@ TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
 }
 
 /// Of the study's scene, coarse and short: 0.5 s about the first foam.
-class FoamShownE2e : public ::testing::Test {
+class FoamShownE2e : public ShownStudy {
  protected:
   void SetUp() override {
     if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
   }
-  FoamShownE2e() {
+  FoamShownE2e() : ShownStudy("foam", "64x36") {
     std::string text = base::read_file(foam_protocol(), 1 << 20);
     text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
     text = replaced(text, "[\"16k\"]", "[\"256\"]");
@@ -167,21 +167,6 @@ class FoamShownE2e : public ::testing::Test {
     text = replaced(text, "keep = [\"foam\"]", "effect = [{kind = \"foam\", emission_per_s = 3}]");
     base::write_file_atomically(protocol_, text);
   }
-  Ended run(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{vip_study, "run",       protocol_, "--db",      database_,
-                                       "--size",  "64x36",     "--clock", "virtual",   "--observer",
-                                       "random",  "--backend", "cpu",     "--display", "headless"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-  std::string stimulus() const {
-    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
-        .text("SELECT stimulus FROM session ORDER BY session_id DESC LIMIT 1");
-  }
-
-  TemporaryFolder folder_;
-  const std::string protocol_ = folder_ / "foam.toml", database_ = folder_ / "study.db",
-                    bakes_ = folder_ / "bakes";
 };
 
 TEST_F(FoamShownE2e, LiveCellsHaveTheEffectsOfTheirLevel) {
@@ -192,8 +177,7 @@ TEST_F(FoamShownE2e, LiveCellsHaveTheEffectsOfTheirLevel) {
 }
 
 TEST_F(FoamShownE2e, BakesHoldTheFoamOfTheirLevelAndArePlayed) {
-  const Ended baked = run_program(
-      {vip_study, "bake", "--protocol", protocol_, "--out", bakes_, "--size", "64x36", "--backend", "cpu"});
+  const Ended baked = bake();
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const sim::BakeReader with(fs::path(bakes_) / "sea_spray_256_LoRes_foam.bake"),
       without(fs::path(bakes_) / "sea_spray_256_LoRes_none.bake");

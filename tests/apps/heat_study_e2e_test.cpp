@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "libsim/bake/bake_file.hpp"
-#include "tests/apps/study_test_support.hpp"
+#include "tests/apps/shown_study.hpp"
 
 namespace apps::test {
 namespace {
@@ -20,12 +20,12 @@ using ::testing::Not;
 const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
 /// protocols/foam.toml about HotJet, coarse and short: LoRes and HiRes are compared, and painted.
-class HeatStudyE2e : public ::testing::Test {
+class HeatStudyE2e : public ShownStudy {
  protected:
   void SetUp() override {
     if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
   }
-  HeatStudyE2e() {
+  HeatStudyE2e() : ShownStudy("heat", "64x36") {
     std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
     const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");
     text.erase(begin, end - begin);
@@ -35,27 +35,6 @@ class HeatStudyE2e : public ::testing::Test {
     text = replaced(text, "duration_s = 8", "duration_s = 0.5");
     base::write_file_atomically(protocol_, text);
   }
-  Ended run(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{vip_study, "run",       protocol_, "--db",      database_,
-                                       "--size",  "64x36",     "--clock", "virtual",   "--observer",
-                                       "random",  "--backend", "cpu",     "--display", "headless"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-  Ended bake(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{vip_study, "bake",   "--protocol", protocol_,   "--out",
-                                       bakes_,    "--size", "64x36",      "--backend", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-  std::string stimulus() const {
-    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
-        .text("SELECT stimulus FROM session ORDER BY session_id DESC LIMIT 1");
-  }
-
-  TemporaryFolder folder_;
-  const std::string protocol_ = folder_ / "heat.toml", database_ = folder_ / "study.db",
-                    bakes_ = folder_ / "bakes";
 };
 
 TEST_F(HeatStudyE2e, LiveWaterIsPaintedAndEveryRecordSaysSo) {

@@ -8,7 +8,7 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
-#include "tests/apps/study_test_support.hpp"
+#include "tests/apps/shown_study.hpp"
 
 namespace apps::test {
 namespace {
@@ -22,9 +22,9 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
 /// protocols/foam.toml about PoolLight: without light on the floor, and with caustics and half of the
 /// shadows.
-class LightStudyE2e : public ::testing::Test {
+class LightStudyE2e : public ShownStudy {
  protected:
-  LightStudyE2e() { write(protocol_, ""); }
+  LightStudyE2e() : ShownStudy("light", "128x72") { write(protocol_, ""); }
   /// `small`: coarse and short, of LoRes alone.
   void write(const std::string& path, const std::string& small) const {
     std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
@@ -40,27 +40,6 @@ class LightStudyE2e : public ::testing::Test {
     }
     base::write_file_atomically(path, text);
   }
-  Ended run(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{vip_study, "run",       protocol_, "--db",      database_,
-                                       "--size",  "128x72",    "--clock", "virtual",   "--observer",
-                                       "random",  "--backend", "cpu",     "--display", "headless"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-  Ended bake(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{vip_study, "bake",   "--protocol", protocol_,   "--out",
-                                       bakes_,    "--size", "128x72",     "--backend", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-  std::string stimulus() const {
-    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
-        .text("SELECT stimulus FROM session ORDER BY session_id DESC LIMIT 1");
-  }
-
-  TemporaryFolder folder_;
-  const std::string protocol_ = folder_ / "light.toml", database_ = folder_ / "study.db",
-                    bakes_ = folder_ / "bakes";
 };
 
 // P(lit chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
