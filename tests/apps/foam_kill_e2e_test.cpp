@@ -129,8 +129,8 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   EXPECT_EQ(count_in(killed_, "SELECT count(*) FROM event WHERE kind = 'resumed'"), 1);
   EXPECT_EQ(count_in(killed_, "SELECT count(*) FROM presentation WHERE state = 'interrupted'"), 1);
   // The report counts each pair of levels once.
-  const std::string results = folder_ / "results.json";
-  const Ended reported = run_program({VIP_BIN_DIR "/vip-stats", "report", killed_, "--json", results});
+  const std::string results = folder_ / "results.json", vip_stats = VIP_BIN_DIR "/vip-stats";
+  const Ended reported = run_program({vip_stats, "report", killed_, "--json", results});
   ASSERT_EQ(reported.exit_code, 0) << reported.err;
   const auto pairs = nlohmann::json::parse(base::read_file(results, 1 << 24)).at("task2").at("pairs");
   ASSERT_EQ(pairs.size(), 3u);

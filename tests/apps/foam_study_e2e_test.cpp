@@ -57,7 +57,8 @@ class FoamStudyE2e : public ::testing::Test {
 
 // P(foam chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
 TEST_F(FoamStudyE2e, TheReportFindsWhatFoamIsWorth) {
-  const json results = report_of("1", "40"), task2 = results.at("task2");
+  const json results = report_of("1", "40");
+  const json& task2 = results.at("task2");
   EXPECT_EQ(task2.at("methods"), (json{"LoRes, none", "LoRes, foam", "HiRes, none", "HiRes, foam"}));
   const json foam = entry(task2.at("factors"), {{"factor", "effects"}, {"a", "none"}, {"b", "foam"}});
   EXPECT_EQ(foam.at("n"), 80) << "of each person the pair of LoRes and that of HiRes";

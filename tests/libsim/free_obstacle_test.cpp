@@ -250,7 +250,12 @@ TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
   const auto at = whole->read_obstacles(), again = rest->read_obstacles();
-  EXPECT_EQ(std::memcmp(at.data(), again.data(), sizeof at[0]), 0);
+  EXPECT_EQ(at[0].pose.centre_m, again[0].pose.centre_m);
+  EXPECT_EQ(at[0].pose.turn, again[0].pose.turn);
+  EXPECT_EQ(at[0].velocity_m_s, again[0].velocity_m_s);
+  EXPECT_EQ(at[0].spin_rad_s, again[0].spin_rad_s);
+  EXPECT_EQ(at[0].owed_n_s, again[0].owed_n_s);
+  EXPECT_EQ(at[0].walls_n_s, again[0].walls_n_s);
   EXPECT_NE(at[0].velocity_m_s[1], 0);
 }
 

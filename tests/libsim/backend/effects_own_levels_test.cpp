@@ -71,7 +71,8 @@ struct Crowd {
     effects.options[static_cast<std::size_t>(*coarsest_level_of(kind))] = coarsest;
   }
   bool changed(std::size_t i) const {
-    return std::memcmp(&before[i], &after[i], sizeof(Vec4)) != 0 || warmth_before[i] != warmth_after[i];
+    const Vec4 a = before[i], b = after[i];
+    return a.x != b.x || a.y != b.y || a.z != b.z || a.w != b.w || warmth_before[i] != warmth_after[i];
   }
 };
 
