@@ -8,14 +8,13 @@ namespace sim {
 /// Splits and merges stir water, and are seen: a turn in each frame costs time and makes worse pictures than
 /// one in every fourth (docs/solver_notes.md).
 struct LevelTurns {
-  bool every_frame = false;  ///< has one, as a test's targets want it
-  bool due = true;           ///< the frame that runs has one
-  int frames_since = 0;      ///< the last one; 0: there was none
-  int in_a_row = 0;          ///< frames to come that have one, whatever the period is
+  bool due = true;       ///< the frame that runs has one; stays so where a test gives targets
+  int frames_since = 0;  ///< the last one; 0: there was none
+  int in_a_row = 0;      ///< frames to come that have one, whatever the period is
 
   /// Would the coming frame have one, when a gaze has turned so far since the last?
   bool would_be(const Readings& r, double turned_deg) const {
-    return every_frame || frames_since == 0 || in_a_row > 0 || frames_since >= r.levels_period_frames ||
+    return frames_since == 0 || in_a_row > 0 || frames_since >= r.levels_period_frames ||
            turned_deg > r.saccade_deg;
   }
   /// The first frame counts as a saccade.

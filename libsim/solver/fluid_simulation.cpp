@@ -44,7 +44,6 @@ class FluidSimulation final : public Simulation {
     state_.saliency.levels = options.levels;
     if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
     state_.levels.rules = LevelRules(options.readings, options.levels);
-    state_.levels.turns.every_frame = options.forced_targets.has_value();
     if (options.forced_targets) force_targets(*options.forced_targets);
     state_.activation.rules = ActivationRules(options.readings);
     state_.activation.seed = options.temporal.seed;

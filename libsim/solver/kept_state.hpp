@@ -29,7 +29,8 @@ void keep_fluid(Archive& archive, FluidState& state) {
   keep_columns(archive, state.particles);
   if (state.particles.has(Column::Temperature)) archive(state.heat);
   keep_jets(archive, state.jets);
-  archive(state.levels.forced, state.levels.frame, state.levels.turns, state.levels.counts);
+  archive(state.levels.forced, state.levels.frame, state.levels.turns.frames_since,
+          state.levels.turns.in_a_row, state.levels.counts);
   archive(state.saliency.readings.alpha, state.saliency.input, state.saliency.normaliser,
           state.saliency.frames_since);
   keep_activation(archive, state.activation);
