@@ -227,8 +227,8 @@ class Simulation {
   /// (EyeLook::shared; the CPU, or a context on another device): read it back and look again. Buffers of GL's
   /// that were shared, here or by copy_to_gl, are the simulation's from here to copy_to_gl: GL neither reads
   /// nor draws them meanwhile. Where the coming frame chooses no levels, gazes alone are taken, and the
-  /// answer is true. base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is not
-  /// whole.
+  /// answer is true. base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is
+  /// not whole.
   virtual bool look(const Looks& looks) = 0;
   /// Whether the method looks at the picture of the last frame; other pictures need not be read back.
   virtual bool follows_picture() const = 0;
