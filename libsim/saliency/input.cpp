@@ -190,14 +190,14 @@ Eyes SaliencyInput::next_frame(double dt_s, double hold_s) {
   out.count = count_;
   for (int k = 0; k < count_; ++k) {
     OneEye& from = eyes_[static_cast<std::size_t>(k)];
-    const Mat4 pose = rigid_inverse(from.view.view);
-    Vec3d origin{pose[12], pose[13], pose[14]};
+    const Vec3d axis = axis_of(from.view);
+    Vec3d origin = place_of(from.view);
     Vec3d direction = direction_of(from.gaze);
     if (is_zero(direction)) {
       ++gaze_lost_;
       from.lost_s += dt_s;
       const bool held = !is_zero(from.last_direction) && from.lost_s <= hold_s;
-      direction = held ? from.last_direction : Vec3d{-pose[8], -pose[9], -pose[10]};
+      direction = held ? from.last_direction : axis;
     } else {
       from.lost_s = 0;
       from.last_direction = direction;
@@ -205,7 +205,7 @@ Eyes SaliencyInput::next_frame(double dt_s, double hold_s) {
     }
     Eye& eye = out.eye[k];
     eye.viewpoint = narrow(origin);
-    eye.axis = narrow({-pose[8], -pose[9], -pose[10]});
+    eye.axis = narrow(axis);
     eye.visual_scale = static_cast<float>(from.visual_scale);
     eye.gaze = eye.visual(narrow(direction));
     eye.now = eye_space(from.view.view);
