@@ -6,59 +6,35 @@
 #include <cstring>
 
 #include "libsim/scene/effects.hpp"
-#include "libsim/scene/obstacle.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
-#include "tests/libsim/fluid_helpers.hpp"
-#include "tests/libsim/mesh_shapes.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 
 namespace {
 
-using sim::Obstacle;
-using sim::ObstacleMotion;
-using sim::ObstacleShape;
+using namespace obstacle_test;
 using testing::AllOf;
 using testing::HasSubstr;
 
 #define NEEDS_EFFECTS \
   if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
-Obstacle free_sphere(double density) {
-  Obstacle out;
-  out.radius_m = 0.25;
-  out.start.centre_m = {0.5, 0.55, 0.5};
-  out.motion = ObstacleMotion::Free;
-  out.density_kg_m3 = density;
-  return out;
-}
+Obstacle free_sphere(double density) { return free_one(sphere({0.5, 0.55, 0.5}, 0.25), density); }
 sim::Scene pool_with(const Obstacle& obstacle, double depth = 0.75) {
   auto scene = fluid_test::tank({1, 1.5, 1}, {1, depth, 1}, 10);
   scene.v_ref_m_s = 3;
   scene.obstacles = {obstacle};
   return scene;
 }
-sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRes) {
-  sim::SimulationOptions out;
-  out.method = method;
-  out.n_star = 128;
-  return out;
-}
-double mass_of(const Obstacle& o) { return o.density_kg_m3 * sim::volume_m3(o); }
-
-std::string dam_with(const std::string& motion) {
-  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
-  const std::string old = "format = 1";
-  return text.replace(text.find(old), old.size(), "format = 2") +
-         "\n[[obstacle]]\nshape = \"sphere\"\ncentre_m = [2.0, 1.0, 2.0]\nradius_m = 0.5\n" + motion;
-}
+std::string ball_with(const std::string& motion) { return dam_with(sphere_table + motion); }
 
 TEST(FreeObstacles, AreReadFromASceneFile) {
-  const auto scene = sim::parse_scene(dam_with("motion = \"free\"\ndensity_kg_m3 = 300.0\n"), "scene.toml");
+  const auto scene = sim::parse_scene(ball_with("motion = \"free\"\ndensity_kg_m3 = 300.0\n"), "scene.toml");
   EXPECT_EQ(scene.obstacles.at(0).motion, ObstacleMotion::Free);
   EXPECT_EQ(scene.obstacles[0].density_kg_m3, 300);
   EXPECT_TRUE(sim::any_free(scene.obstacles));
   EXPECT_THAT(sim::obstacles_in_words(scene.obstacles), HasSubstr("free, 300 kg/m3"));
-  const auto error = [](const std::string& motion) { return fluid_test::scene_error(dam_with(motion)); };
+  const auto error = [](const std::string& motion) { return fluid_test::scene_error(ball_with(motion)); };
   EXPECT_THAT(error("motion = \"free\"\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("density_kg_m3")));
   EXPECT_THAT(error("motion = \"free\"\ndensity_kg_m3 = 0.0\n"), HasSubstr("density_kg_m3"));
   EXPECT_THAT(error("density_kg_m3 = 300.0\n"), HasSubstr("density_kg_m3")) << "only free ones have one";
@@ -93,16 +69,9 @@ TEST(FreeObstacles, MomentsOfInertiaAreThoseOfTheShape) {
 
 /// A body that nothing else touches falls as water does, and the floor stops it.
 TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
-  Obstacle brick;
-  brick.shape = ObstacleShape::Box;
-  brick.size_m = {0.4, 0.3, 0.5};
-  brick.start.centre_m = {1.2, 1.0, 1.2};
+  Obstacle brick = free_one(box({1.2, 1.0, 1.2}, {0.4, 0.3, 0.5}), 700);
   brick.start.turn = {0, 0, 0.2588190451, 0.9659258263};  // 30 degrees about z
-  brick.motion = ObstacleMotion::Free;
-  brick.density_kg_m3 = 700;
-  auto scene = fluid_test::tank({2, 2, 2}, {0.5, 0.25, 0.5}, 0);
-  scene.v_ref_m_s = 3;
-  scene.obstacles = {brick};
+  const auto scene = dry({brick});
   const auto fluid = sim::make_simulation(scene, options_of());
   double rested_s = 0;
   for (int frame = 0; frame < 120; ++frame) {
@@ -187,16 +156,12 @@ TEST(FreeObstacles, MomentumIsThatOfEffectsToo) {
 }
 
 /// Turning of a ball in water that turns at 1 /s, after half a second and at its fastest.
-void water_that_turns_spins_a_ball(const sim::Effect& effect, bool mesh = false) {
+void water_that_turns_spins_a_ball(const sim::Effect& effect, bool triangles = false) {
   for (const double density : {100.0, 1000.0}) {
-    Obstacle ball = free_sphere(density);
-    if (mesh) {
-      ball.shape = ObstacleShape::Mesh;
-      ball.mesh = std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
-    }
-    auto scene = pool_with(ball, 1);
+    const sim::Vec3d middle{0.5, 0.5, 0.5};
+    const Obstacle ball = triangles ? mesh(middle, mesh_test::ball_text(0.25, 24)) : sphere(middle, 0.25);
+    auto scene = pool_with(free_one(ball, density), 1);
     scene.gravity_m_s2 = 0;
-    scene.obstacles[0].start.centre_m[1] = 0.5;
     scene.viscosity_m2_s = 0;
     scene.effects = {effect};
     const auto fluid = sim::make_simulation(scene, options_of());
@@ -219,7 +184,8 @@ void water_that_turns_spins_a_ball(const sim::Effect& effect, bool mesh = false)
 }
 TEST(FreeObstacles, HoneyThatTurnsSpinsABall) {
   NEEDS_EFFECTS;
-  for (const bool mesh : {false, true}) water_that_turns_spins_a_ball({sim::EffectKind::Viscosity, 1}, mesh);
+  for (const bool triangles : {false, true})
+    water_that_turns_spins_a_ball({sim::EffectKind::Viscosity, 1}, triangles);
 }
 TEST(FreeObstacles, FrictionOfWaterThatTurnsSpinsABall) {
   NEEDS_EFFECTS;
@@ -228,11 +194,7 @@ TEST(FreeObstacles, FrictionOfWaterThatTurnsSpinsABall) {
 
 TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   const test::TemporaryFolder folder;
-  Obstacle brick = free_sphere(400);
-  brick.shape = ObstacleShape::Box;
-  brick.radius_m = 0;
-  brick.size_m = {0.4, 0.3, 0.5};
-  auto scene = pool_with(brick);
+  auto scene = pool_with(free_one(box({0.5, 0.55, 0.5}, {0.4, 0.3, 0.5}), 400));
   if (sim::has_effects()) scene.effects = {{sim::EffectKind::Viscosity, 0.1}, {sim::EffectKind::Friction, 1}};
   auto options = options_of(sim::MethodKind::OursTsp);
   options.temporal.fixed_tau = -10;
@@ -304,11 +266,10 @@ TEST(FreeObstacles, BeginWithTheRun) {
 
 TEST(FreeObstacles, AreCarriedWhereLittleRoomIsLeftBesideThem) {
   // Three cells across the tank, and less than one of them between the sphere and each wall.
-  Obstacle sphere = free_sphere(400);
-  sphere.radius_m = 0.35;
-  const auto fluid = sim::make_simulation(pool_with(sphere, 1.1), options_of());
+  const Obstacle ball = free_one(sphere({0.5, 0.55, 0.5}, 0.35), 400);
+  const auto fluid = sim::make_simulation(pool_with(ball, 1.1), options_of());
   for (int frame = 0; frame < 30; ++frame) fluid->step_frame();
-  EXPECT_GT(fluid->read_obstacles().at(0).pose.centre_m[1], sphere.start.centre_m[1] + 0.05);
+  EXPECT_GT(fluid->read_obstacles().at(0).pose.centre_m[1], ball.start.centre_m[1] + 0.05);
 }
 
 TEST(FreeObstacles, AreCheckedInScenesThatNoFileDescribes) {

@@ -9,27 +9,20 @@
 #include <numbers>
 
 #include "libsim/scene/mesh_reader.hpp"
-#include "libsim/scene/obstacle.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
-#include "tests/libsim/fluid_helpers.hpp"
-#include "tests/libsim/mesh_shapes.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 
 namespace {
 
+using namespace obstacle_test;
 using mesh_test::box_text;
 using sim::MethodKind;
-using sim::Obstacle;
-using sim::ObstacleMotion;
-using sim::ObstacleShape;
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string dam_with(const std::string& keys) {
-  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
-  const std::string old = "format = 1";
-  return text.replace(text.find(old), old.size(), "format = 2") +
-         "\n[[obstacle]]\nshape = \"mesh\"\ncentre_m = [2.0, 1.0, 2.0]\n" + keys;
+std::string mesh_with(const std::string& keys) {
+  return dam_with("shape = \"mesh\"\ncentre_m = [2.0, 1.0, 2.0]\n" + keys);
 }
 const std::string brick = box_text({1, 1, 1}, {1.6, 1.5, 1.4});
 std::string inline_brick() { return "obj = '''\n" + brick + "'''\n"; }
@@ -38,7 +31,7 @@ TEST(MeshObstacles, AreReadFromAFileOrFromTheText) {
   const test::TemporaryFolder folder;
   base::write_file_atomically(folder.path() / "brick.obj", brick);
   const auto scene = sim::parse_scene(
-      dam_with("file = \"brick.obj\"\nscale = 2.0\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 90.0\n"),
+      mesh_with("file = \"brick.obj\"\nscale = 2.0\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 90.0\n"),
       "scene.toml", folder.path());
   const Obstacle& o = scene.obstacles.at(0);
   EXPECT_EQ(o.shape, ObstacleShape::Mesh);
@@ -49,7 +42,7 @@ TEST(MeshObstacles, AreReadFromAFileOrFromTheText) {
   EXPECT_FALSE(sim::holds(o, o.start, {2.5, 1.1, 2.1}));
   EXPECT_FALSE(sim::holds(o, o.start, {9, 1.1, 2.1}));
   EXPECT_THAT(sim::obstacles_in_words(scene.obstacles), HasSubstr("mesh " + o.mesh->sha256().substr(0, 12)));
-  const auto text = sim::parse_scene(dam_with(inline_brick() + "scale = 2.0\n"), "scene.toml");
+  const auto text = sim::parse_scene(mesh_with(inline_brick() + "scale = 2.0\n"), "scene.toml");
   EXPECT_EQ(text.obstacles.at(0).mesh->sha256(), o.mesh->sha256());
 }
 
@@ -58,7 +51,7 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
   base::write_file_atomically(folder.path() / "open.obj", brick.substr(0, brick.rfind("f ")));
   const auto error = [&](const std::string& keys) {
     try {
-      sim::parse_scene(dam_with(keys), "scene.toml", folder.path());
+      sim::parse_scene(mesh_with(keys), "scene.toml", folder.path());
     } catch (const base::Error& problem) {
       return std::string(problem.what());
     }
@@ -78,7 +71,7 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(error(inline_brick() + "spacing_m = 1.0\n"), HasSubstr("half of the mesh's shortest side"));
   EXPECT_THAT(error(inline_brick() + "spacing_m = 1e-3\n"), HasSubstr("use at most 2097152"));
   EXPECT_THAT(error(inline_brick() + "radius_m = 1.0\n"), HasSubstr("radius_m"));
-  EXPECT_THAT(fluid_test::scene_error(dam_with("file = \"open.obj\"\n")),
+  EXPECT_THAT(fluid_test::scene_error(mesh_with("file = \"open.obj\"\n")),
               HasSubstr("comes without a folder"));
 }
 
@@ -86,7 +79,7 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
 TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   const test::TemporaryFolder folder;
   const auto scene_file = folder.path() / "scene.toml", mesh_file = folder.path() / "brick.obj";
-  base::write_file_atomically(scene_file, dam_with("  file = 'brick.obj'  # beside\n"));
+  base::write_file_atomically(scene_file, mesh_with("  file = 'brick.obj'  # beside\n"));
   base::write_file_atomically(mesh_file, "# of no meaning\n" + brick);
   const auto scene = sim::read_scene(scene_file);
   const std::string alone = sim::scene_text(scene_file);
@@ -99,11 +92,11 @@ TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   EXPECT_NE(sim::read_scene(scene_file).sha256, scene.sha256);
   EXPECT_THAT(alone, HasSubstr("obj = '''\nv 1 1 1\n"));
   // Without a file the text is the file's.
-  base::write_file_atomically(scene_file, dam_with(inline_brick()));
-  EXPECT_EQ(sim::scene_text(scene_file), dam_with(inline_brick()));
+  base::write_file_atomically(scene_file, mesh_with(inline_brick()));
+  EXPECT_EQ(sim::scene_text(scene_file), mesh_with(inline_brick()));
   const std::string one_line =
       "obstacle = [{shape = \"mesh\", centre_m = [2.0, 1.0, 2.0], file = \"brick.obj\"}]\n";
-  std::string dam = dam_with("");
+  std::string dam = mesh_with("");
   base::write_file_atomically(scene_file, one_line + dam.substr(0, dam.find("[[obstacle]]")));
   try {
     sim::read_scene(scene_file);
@@ -128,28 +121,28 @@ TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
   const auto scene_file = folder.path() / "scene.toml";
   base::write_file_atomically(folder.path() / "brick.obj", brick);
   const auto text = [&](const std::string& keys) {
-    base::write_file_atomically(scene_file, dam_with(keys));
+    base::write_file_atomically(scene_file, mesh_with(keys));
     return sim::scene_text(scene_file);
   };
   const std::string obj = "obj = '''\n" + sim::obj_of(mesh_test::triangles(brick)) + "'''\n";
   const std::string names = "file = \"brick.obj\"", blanks(300'000, ' ');
-  EXPECT_EQ(text(names + " #" + blanks + "file\n"), dam_with(obj));
-  EXPECT_EQ(text(blanks + "\n\t" + names + blanks + "\r\n"), dam_with(blanks + "\n" + obj));
-  EXPECT_EQ(text("  file='brick.obj'"), dam_with(obj));
+  EXPECT_EQ(text(names + " #" + blanks + "file\n"), mesh_with(obj));
+  EXPECT_EQ(text(blanks + "\n\t" + names + blanks + "\r\n"), mesh_with(blanks + "\n" + obj));
+  EXPECT_EQ(text("  file='brick.obj'"), mesh_with(obj));
   // Within a text, after what looks like the beginning or the end of one.
   const std::string other = "[[obstacle]]\nshape = \"mesh\"\ncentre_m = [1.0, 1.0, 1.0]\n";
   const std::string three = "'''", doubled = "\"\"\"";
   for (const auto& [quotes, others] : {std::pair{three, doubled}, std::pair{doubled, three}}) {
     const std::string within = "# ''' \"\"\"\nobj = " + quotes + "\n# \\\" '' # " + others + "\n" + names +
                                "\n" + brick + quotes + " # ''' \"\"\"\n" + other;
-    EXPECT_EQ(text(within + inline_brick()), dam_with(within + inline_brick()));
-    EXPECT_EQ(text(within + names + "\n"), dam_with(within + obj)) << quotes;
+    EXPECT_EQ(text(within + inline_brick()), mesh_with(within + inline_brick()));
+    EXPECT_EQ(text(within + names + "\n"), mesh_with(within + obj)) << quotes;
   }
   const std::string four = "obj = '''\n" + brick + "# '''' # ''''\n" + other;
-  EXPECT_EQ(text(four + names + "\n"), dam_with(four + obj)) << "a quote before those that close";
+  EXPECT_EQ(text(four + names + "\n"), mesh_with(four + obj)) << "a quote before those that close";
   for (const std::string keys : {"\"f\\u0069le\" = \"brick.obj\"\n", "\"file\" = \"brick.obj\"\n",
                                  "file = \"br\\u0069ck.obj\"\n", "file = '''brick.obj'''\n"}) {
-    base::write_file_atomically(scene_file, dam_with(keys));
+    base::write_file_atomically(scene_file, mesh_with(keys));
     EXPECT_THAT(text_error(scene_file), AllOf(HasSubstr("scene.toml"), HasSubstr("in another notation"),
                                               HasSubstr("on a line of its own, without escapes")))
         << keys;
@@ -160,7 +153,7 @@ TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
 TEST(MeshObstacles, TooManyTrianglesForTheTextAreAnErrorOfTheirFile) {
   const test::TemporaryFolder folder;
   const auto scene_file = folder.path() / "scene.toml";
-  base::write_file_atomically(scene_file, dam_with("file = \"ball.obj\"\n"));
+  base::write_file_atomically(scene_file, mesh_with("file = \"ball.obj\"\n"));
   base::write_file_atomically(folder.path() / "ball.obj", mesh_test::ball_text(0.25, 90));
   EXPECT_THAT(text_error(scene_file), AllOf(HasSubstr("ball.obj"), HasSubstr("bytes with its triangles"),
                                             HasSubstr("use fewer triangles: a scene has at most 1048576")));
@@ -179,8 +172,8 @@ TEST(MeshObstacles, AttitudesAreThoseOfTheFileThenOfTheScene) {
   const std::string turns =
       "motion = \"turns\"\nabout_m = [2.0, 1.0, 1.5]\naxis = [0.0, 0.6, 0.8]\nrate_rad_s = 0.5\n";
   const auto scene =
-      sim::parse_scene(dam_with("obj = '''\n" + sim::obj_of(turned_text) +
-                                "'''\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 50.0\n" + turns),
+      sim::parse_scene(mesh_with("obj = '''\n" + sim::obj_of(turned_text) +
+                                 "'''\nrotation_axis = [0.0, 1.0, 0.0]\nrotation_deg = 50.0\n" + turns),
                        "scene.toml");
   const Obstacle& mesh = scene.obstacles.at(0);
   Obstacle box = mesh;
@@ -206,13 +199,9 @@ TEST(MeshObstacles, AttitudesAreThoseOfTheFileThenOfTheScene) {
 sim::Scene pool(bool as_mesh, ObstacleMotion motion = ObstacleMotion::Fixed) {
   auto scene = fluid_test::tank({1, 1.5, 1}, {1, 0.75, 1}, 20);
   scene.v_ref_m_s = 2;
-  Obstacle cube;
-  cube.shape = as_mesh ? ObstacleShape::Mesh : ObstacleShape::Box;
-  cube.size_m = {0.4, 0.4, 0.4};
-  if (as_mesh)
-    cube.mesh = std::make_shared<const sim::Mesh>(
-        mesh_test::triangles(box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})), 0);
-  cube.start.centre_m = {0.5, 0.45, 0.5};
+  const sim::Vec3d at{0.5, 0.45, 0.5};
+  Obstacle cube =
+      as_mesh ? mesh(at, box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})) : box(at, {0.4, 0.4, 0.4});
   cube.motion = motion;
   cube.way_m = {0.1, 0, 0};
   cube.period_s = 1;
@@ -220,18 +209,12 @@ sim::Scene pool(bool as_mesh, ObstacleMotion motion = ObstacleMotion::Fixed) {
   scene.obstacles = {cube};
   return scene;
 }
-sim::SimulationOptions options_of(MethodKind method = MethodKind::HiRes) {
-  sim::SimulationOptions out;
-  out.method = method;
-  out.n_star = 128;
-  return out;
-}
 
 TEST(MeshObstacles, WaterInsideIsLeftOutAndStaysOut) {
   for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) {
     auto scene = pool(true, ObstacleMotion::Swings);
     Obstacle& ball = scene.obstacles[0];
-    ball.mesh = std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
+    ball.mesh = mesh_of(mesh_test::ball_text(0.25, 24));
     const auto fluid = sim::make_simulation(scene, options_of(method));
     EXPECT_NEAR(static_cast<double>(fluid->report().mass_units) / 1024, 1 - sim::volume_m3(ball) / 0.75,
                 0.02);
@@ -293,9 +276,7 @@ bool same_bits(const std::vector<sim::ParticleState>& a, const std::vector<sim::
 TEST(MeshObstacles, NothingTurnsABallOfTriangles) {
   for (const bool ball : {true, false}) {
     auto scene = pool(true, ObstacleMotion::Free);
-    if (ball)
-      scene.obstacles[0].mesh =
-          std::make_shared<const sim::Mesh>(mesh_test::triangles(mesh_test::ball_text(0.25, 24)), 0);
+    if (ball) scene.obstacles[0].mesh = mesh_of(mesh_test::ball_text(0.25, 24));
     const auto fluid = sim::make_simulation(scene, options_of());
     for (int frame = 0; frame < 30; ++frame) fluid->step_frame();
     const auto spin = fluid->read_obstacles().at(0).spin_rad_s;
@@ -325,15 +306,13 @@ TEST(MeshObstacles, ASavedRunGoesOnBitForBit) {
   options.resume_from = folder.path() / "state";
   EXPECT_TRUE(same_bits(run(scene, options, 10), whole->read_state()));
   auto other = scene;
-  other.obstacles[0].mesh = std::make_shared<const sim::Mesh>(
-      mesh_test::triangles(box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.21})), 0);
+  other.obstacles[0].mesh = mesh_of(box_text({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.21}));
   EXPECT_THROW(sim::make_simulation(other, options), base::Error) << "a state of another mesh";
 }
 
 TEST(MeshObstacles, ThinOnesAreRefused) {
   auto scene = pool(true);
-  scene.obstacles[0].mesh = std::make_shared<const sim::Mesh>(
-      mesh_test::triangles(box_text({-0.2, -0.2, -0.02}, {0.2, 0.2, 0.02})), 0);
+  scene.obstacles[0].mesh = mesh_of(box_text({-0.2, -0.2, -0.02}, {0.2, 0.2, 0.02}));
   EXPECT_THROW(sim::make_simulation(scene, options_of()), base::Error);
 }
 

@@ -7,87 +7,33 @@
 
 #include <cstring>
 
-#include "libsim/scene/mesh.hpp"
 #include "libsim/scene/overlap.hpp"
 #include "tests/common/temporary_folder.hpp"
-#include "tests/libsim/fluid_helpers.hpp"
-#include "tests/libsim/mesh_shapes.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 
 namespace {
 
-using sim::Obstacle;
-using sim::ObstacleMotion;
-using sim::ObstacleShape;
+using namespace obstacle_test;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-Obstacle free_one(Obstacle out, double density) {
-  out.motion = ObstacleMotion::Free;
-  out.density_kg_m3 = density;
-  return out;
-}
-Obstacle sphere(sim::Vec3d at, double radius) {
-  Obstacle out;
-  out.radius_m = radius;
-  out.start.centre_m = at;
-  return out;
-}
-Obstacle box(sim::Vec3d at, sim::Vec3d size) {
-  Obstacle out;
-  out.shape = ObstacleShape::Box;
-  out.size_m = size;
-  out.start.centre_m = at;
-  return out;
-}
-Obstacle mesh(sim::Vec3d at, const std::string& text) {
-  Obstacle out;
-  out.shape = ObstacleShape::Mesh;
-  out.mesh = std::make_shared<const sim::Mesh>(mesh_test::triangles(text), 0);
-  out.start.centre_m = at;
-  return out;
-}
-sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRes) {
-  sim::SimulationOptions out;
-  out.method = method;
-  out.n_star = 128;
-  return out;
-}
-/// A tank whose water lies low in a corner, away from what is tested.
-sim::Scene dry(const std::vector<Obstacle>& obstacles) {
-  auto scene = fluid_test::tank({2, 2, 2}, {0.5, 0.25, 0.5}, 0);
-  scene.v_ref_m_s = 3;
-  scene.obstacles = obstacles;
-  return scene;
-}
 sim::Scene pool(const std::vector<Obstacle>& obstacles) {
   auto scene = fluid_test::tank({1.5, 1.5, 1}, {1.5, 0.6, 1}, 10);
   scene.v_ref_m_s = 3;
   scene.obstacles = obstacles;
   return scene;
 }
-double mass_of(const Obstacle& o) { return o.density_kg_m3 * sim::volume_m3(o); }
-
-const std::string fixed_sphere = "shape = \"sphere\"\ncentre_m = [2.0, 1.0, 2.0]\nradius_m = 0.5\n";
 const std::string free_cube =
     "[[obstacle]]\nshape = \"box\"\ncentre_m = [2.0, 2.0, 2.0]\nsize_m = [0.8, 0.8, 0.8]\n"
     "motion = \"free\"\ndensity_kg_m3 = 500.0\n";
-std::string dam_with(const std::string& obstacles) {
-  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
-  const std::string old = "format = 1";
-  return text.replace(text.find(old), old.size(), "format = 2") + "\n[[obstacle]]\n" + obstacles;
-}
-std::string changed(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
-
 TEST(ObstacleContact, FrictionIsReadFromASceneFile) {
-  const auto scene = sim::parse_scene(dam_with(fixed_sphere + "friction = 0.4\n" + free_cube), "scene.toml");
+  const auto scene = sim::parse_scene(dam_with(sphere_table + "friction = 0.4\n" + free_cube), "scene.toml");
   EXPECT_EQ(scene.obstacles.at(0).friction, 0.4);
   EXPECT_EQ(scene.obstacles.at(1).friction, 0) << "where none is given";
   EXPECT_THAT(sim::obstacles_in_words(scene.obstacles), HasSubstr(", friction 0.4\n"));
   const auto error = [](const std::string& value) {
-    return fluid_test::scene_error(dam_with(fixed_sphere + "friction = " + value + "\n"));
+    return fluid_test::scene_error(dam_with(sphere_table + "friction = " + value + "\n"));
   };
   EXPECT_THAT(error("-0.1"), AllOf(HasSubstr("scene.toml:"), HasSubstr("friction"), HasSubstr("[0, 10]")));
   EXPECT_THAT(error("11.0"), HasSubstr("friction"));
@@ -97,11 +43,11 @@ TEST(ObstacleContact, FrictionIsReadFromASceneFile) {
 
 TEST(ObstacleContact, WhoBeginsInsideAnotherIsRefused) {
   const auto error = [](const std::string& text) { return fluid_test::scene_error(dam_with(text)); };
-  EXPECT_EQ(error(fixed_sphere + free_cube), "no error");
-  const auto text = fixed_sphere + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.7, 2.0");
+  EXPECT_EQ(error(sphere_table + free_cube), "no error");
+  const auto text = sphere_table + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.7, 2.0");
   EXPECT_THAT(error(text), AllOf(HasSubstr("scene.toml:"), HasSubstr("centre_m"), HasSubstr("0.2 m deep"),
                                  HasSubstr("obstacle 1 of the file"), HasSubstr("begins outside of others")));
-  EXPECT_EQ(error(fixed_sphere + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.9, 2.0")), "no error")
+  EXPECT_EQ(error(sphere_table + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.9, 2.0")), "no error")
       << "who touches is not inside";
   EXPECT_EQ(error(changed(changed(text, "motion = \"free\"\n", ""), "density_kg_m3 = 500.0\n", "")),
             "no error")

@@ -1,7 +1,5 @@
 /// Obstacles that a scene lists: their tables, the water that they leave out and push.
 
-#include "libsim/scene/obstacle.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,42 +7,24 @@
 
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
-#include "tests/libsim/fluid_helpers.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 
 namespace {
 
-using sim::Obstacle;
-using sim::ObstacleMotion;
-using sim::ObstacleShape;
+using namespace obstacle_test;
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string dam_with(const std::string& obstacle, const std::string& format = "2") {
-  std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
-  const std::string old = "format = 1";
-  return text.replace(text.find(old), old.size(), "format = " + format) + "\n[[obstacle]]\n" + obstacle;
-}
-const std::string sphere = "shape = \"sphere\"\ncentre_m = [2.0, 1.0, 2.0]\nradius_m = 0.5\n";
 
 /// A tank with a box in its middle.
 sim::Scene pool(ObstacleMotion motion = ObstacleMotion::Fixed) {
   auto scene = fluid_test::tank({1, 1.5, 1}, {1, 0.75, 1}, 10);
   scene.v_ref_m_s = 2;
-  Obstacle box;
-  box.shape = ObstacleShape::Box;
-  box.size_m = {0.3, 0.5, 0.3};
-  box.start.centre_m = {0.5, 0.3, 0.5};
-  box.motion = motion;
-  box.way_m = {0.1, 0, 0};
-  box.period_s = 1;
-  scene.obstacles = {box};
+  Obstacle post = box({0.5, 0.3, 0.5}, {0.3, 0.5, 0.3});
+  post.motion = motion;
+  post.way_m = {0.1, 0, 0};
+  post.period_s = 1;
+  scene.obstacles = {post};
   return scene;
-}
-sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRes) {
-  sim::SimulationOptions out;
-  out.method = method;
-  out.n_star = 128;
-  return out;
 }
 
 TEST(Obstacles, AreReadFromASceneFile) {
@@ -53,7 +33,7 @@ TEST(Obstacles, AreReadFromASceneFile) {
       "0.0]\n"
       "rotation_deg = 90.0\nmotion = \"turns\"\nabout_m = [2.5, 0.0, 2.0]\naxis = [0.0, 1.0, 0.0]\n"
       "rate_rad_s = 1.0\n";
-  const auto scene = sim::parse_scene(dam_with(sphere + "[[obstacle]]\n" + turning), "scene.toml");
+  const auto scene = sim::parse_scene(dam_with(sphere_table + "[[obstacle]]\n" + turning), "scene.toml");
   ASSERT_EQ(scene.obstacles.size(), 2u);
   EXPECT_EQ(scene.obstacles[0].radius_m, 0.5);
   EXPECT_EQ(scene.obstacles[1].motion, ObstacleMotion::Turns);
@@ -66,21 +46,19 @@ TEST(Obstacles, AreReadFromASceneFile) {
 
 TEST(Obstacles, ErrorsNameThePlaceAndTheMend) {
   const auto error = [](const std::string& text) { return fluid_test::scene_error(dam_with(text)); };
-  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
-    return text.replace(text.find(from), from.size(), to);
-  };
-  EXPECT_THAT(fluid_test::scene_error(dam_with(sphere, "1")),
+  EXPECT_THAT(fluid_test::scene_error(dam_with(sphere_table, "1")),
               AllOf(HasSubstr("scene.toml:3:"), HasSubstr("came with format 2")));
-  EXPECT_THAT(error(changed(sphere, "0.5", "0.0")), AllOf(HasSubstr("scene.toml:"), HasSubstr("radius_m")));
-  EXPECT_THAT(error(changed(sphere, "0.5", "-1.0")), HasSubstr("radius_m"));
-  EXPECT_THAT(error(sphere + "motion = \"swings\"\nway_m = [0.5, 0.0, 0.0]\nperiod_s = 0.01\n"),
+  EXPECT_THAT(error(changed(sphere_table, "0.5", "0.0")),
+              AllOf(HasSubstr("scene.toml:"), HasSubstr("radius_m")));
+  EXPECT_THAT(error(changed(sphere_table, "0.5", "-1.0")), HasSubstr("radius_m"));
+  EXPECT_THAT(error(sphere_table + "motion = \"swings\"\nway_m = [0.5, 0.0, 0.0]\nperiod_s = 0.01\n"),
               AllOf(HasSubstr("motion"), HasSubstr("is faster than time.v_ref_m_s")));
-  EXPECT_THAT(error(changed(sphere, "1.0, 2.0", "0.4, 2.0")),
+  EXPECT_THAT(error(changed(sphere_table, "1.0, 2.0", "0.4, 2.0")),
               AllOf(HasSubstr("centre_m"), HasSubstr("outside the tank")));
-  EXPECT_THAT(error(changed(sphere, "sphere", "torus")), HasSubstr("capsule"));
-  EXPECT_THAT(error(sphere + "motion = \"swings\"\nway_m = [0.0, 0.8, 0.0]\nperiod_s = 1.0\n"),
+  EXPECT_THAT(error(changed(sphere_table, "sphere", "torus")), HasSubstr("capsule"));
+  EXPECT_THAT(error(sphere_table + "motion = \"swings\"\nway_m = [0.0, 0.8, 0.0]\nperiod_s = 1.0\n"),
               HasSubstr("out of the tank"));
-  EXPECT_THAT(error(sphere + "rotation_deg = 20.0\nrotation_axis = [0.0, 0.0, 0.0]\n"),
+  EXPECT_THAT(error(sphere_table + "rotation_deg = 20.0\nrotation_axis = [0.0, 0.0, 0.0]\n"),
               HasSubstr("has no direction"));
 }
 
