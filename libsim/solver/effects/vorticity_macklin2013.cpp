@@ -119,7 +119,8 @@ std::string if_seen(const Demand& demand) {
   return demand.saliency && counts ? "saliency sees it" : "";
 }
 
-/// Saliency looks once a frame at most.
+/// Saliency looks once a frame at most. Whether it will in the next one is not known here: a gaze that jumps
+/// gives levels a turn at once.
 void show_swirl(FluidState& state, ShowView p) {
   const auto& k = state.parameters;
   if (state.substep + 1 < k.substeps) return;
