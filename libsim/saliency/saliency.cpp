@@ -19,12 +19,13 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
 }
 
 /// In water at rest only what exceeds `floor` counts; where it moves faster the floor fades out, so that no
-/// level hangs on one speed. What is not known yet starts with the frame's value, so that a NaN does not
-/// stay.
+/// level hangs on one speed. No floor takes from swirl, which has one of its own. What is not known yet
+/// starts with the frame's value, so that a NaN does not stay.
 struct FollowUnrest {
   const float* now;
   float* unrest;
   const Vec4* velocity;
+  SwirlSeen swirl;
   Calm fading;  ///< over a half up to the speed below which water rests
   float share, floor;
   SIM_FN void operator()(int i) const {
@@ -32,19 +33,9 @@ struct FollowUnrest {
     const Vec4 v = velocity[i];
     const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
     // A NaN passes, so that it is seen.
-    const float wish = now[i] < rest ? 0 : now[i] - rest;
+    float wish = now[i] < rest ? 0 : now[i] - rest;
+    if (swirl.rate) wish += swirl.adds(i);
     unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
-  }
-};
-
-/// Swirl is followed beside them: no floor takes from it, as it has one of its own.
-struct FollowSwirl {
-  SwirlSeen seen;
-  float* unrest;
-  float share;
-  SIM_FN void operator()(int i) const {
-    const float beyond = seen.rate[i] - seen.from;
-    unrest[i] += share * seen.weight * fminf(fmaxf(beyond, 0.0f) / fmaxf(seen.from, 1e-6f), 1.0f);
   }
 };
 
@@ -60,16 +51,15 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   const GradientFields fields = gradient_fields(p, fluid, state.temporal.data());
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
   if (fluid.unrest) {
-    const float share = in_one_step(p.temporal_follow, state.frames_since);
     for_each("saliency unrest", fluid.n,
              FollowUnrest{.now = state.temporal.data(),
                           .unrest = fluid.unrest,
                           .velocity = fluid.velocity,
+                          .swirl = fluid.swirl,
                           .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
                                                static_cast<double>(fluid.finest_support) / 2),
-                          .share = share,
+                          .share = in_one_step(p.temporal_follow, state.frames_since),
                           .floor = static_cast<float>(p.calm_floor)});
-    if (fluid.swirl.rate) for_each("saliency swirl", fluid.n, FollowSwirl{fluid.swirl, fluid.unrest, share});
   }
 }
 

@@ -37,6 +37,10 @@ struct SwirlSeen {
   const float* rate = nullptr;  ///< 1/s; nullptr: not seen
   float from = 0;
   float weight = 0;  ///< what a share of 1 adds to f_T gamma_t
+
+  SIM_FN float adds(int i) const {
+    return weight * fminf(fmaxf(rate[i] - from, 0.0f) / fmaxf(from, 1e-6f), 1.0f);
+  }
 };
 
 /// The fluid as saliency reads it, n particles in one order, and where the results go.

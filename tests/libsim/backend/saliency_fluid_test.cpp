@@ -174,11 +174,11 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
 
 /// From `from` on, wholly at twice that, and followed as the feature is.
 SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
-  const auto unrest_with = [](SwirlSeen swirl, const std::vector<float>& rate) {
+  const auto unrest_with = [](SwirlSeen swirl, const std::vector<float>& rate, float before = 0.5f) {
     Seen seen = prepare(broken_dam(), before_dam);
     const auto n = static_cast<std::size_t>(seen.fluid.state.particles.size());
     Array<float> unrest, turns;
-    unrest.from_host(std::vector<float>(n, 0.5f));
+    unrest.from_host(std::vector<float>(n, before));
     std::vector<float> all;
     for (std::size_t i = 0; i < n; ++i) all.push_back(rate[i % rate.size()]);
     turns.from_host(all);
@@ -198,6 +198,12 @@ SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
   const float share[] = {0, 0, 0.5f, 1, 1};
   for (std::size_t i = 0; i < unseen.size(); ++i)
     EXPECT_NEAR(seen[i] - unseen[i], 0.36f * 5 * share[i % 5], 1e-4f) << i;
+  // Both parts of the feature begin at the frame's own value.
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  const auto begun = unrest_with({.from = 2, .weight = 5}, {0, 2, 3, 4, 1000}, unknown);
+  const auto begun_unseen = unrest_with({}, {-1}, unknown);
+  for (std::size_t i = 0; i < begun.size(); ++i)
+    EXPECT_NEAR(begun[i] - begun_unseen[i], 5 * share[i % 5], 1e-4f) << i;
   // Where everything counts, what does not turn still does not.
   const auto all = unrest_with({.from = 0, .weight = 1}, {0, 0.1f});
   EXPECT_EQ(all[0], unseen[0]);
