@@ -9,6 +9,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -107,9 +108,9 @@ study::PictureFeatures CellFeatures::read_or_measure(const study::Cell& cell,
   const StimulusChoice choice = choice_of_(cell);
   const auto fluid = make_live_fluid(choice);
   std::string key = fluid->description() + "; from step " + std::to_string(start_frame) + " by " +
-                    std::to_string(choice.content_step_s) + " s";
+                    base::shortest(choice.content_step_s) + " s";
   if (const auto& rate = choice.fixed_rate)
-    key += "; tau " + std::to_string(stats::ptpe_tolerance(choice.model, rate->mean, rate->sd));
+    key += "; tau " + base::shortest(stats::ptpe_tolerance(choice.model, rate->mean, rate->sd));
   key += "; version " + base::version();
   const auto path = folder_ / ("features-" + base::sha256_hex(key).substr(0, 32) + ".json");
   if (const auto found = read_features(path, key)) return *found;

@@ -15,6 +15,7 @@
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/program.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -51,7 +52,8 @@ std::string look_of(int cell, const MeasuringPlace& place) {
   const FramedScene& scene = framed(cell, place);
   std::ostringstream out;
   out << scene.view.viewport.width << 'x' << scene.view.viewport.height << ", camera "
-      << scene.framing.camera_deg << ", eye " << scene.framing.visual_deg.value_or(0);
+      << base::shortest(scene.framing.camera_deg) << ", eye "
+      << base::shortest(scene.framing.visual_deg.value_or(0));
   return out.str();
 }
 
@@ -61,14 +63,15 @@ std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, 
   const study::Cell& cell = first_cell(protocol, one);
   std::ostringstream key;
   key << description << "; " << look_of(one.cells.front(), place) << "; from step "
-      << protocol.content.start_frame << " by " << protocol.content.content_step_s << " s";
+      << protocol.content.start_frame << " by " << base::shortest(protocol.content.content_step_s) << " s";
   for (const int index : one.cells) {
     const auto& setting = protocol.design.cells.at(static_cast<std::size_t>(index)).setting;
-    key << ", " << content_steps(protocol, setting, place.refresh_hz) << " in " << setting.duration_s << " s";
+    key << ", " << content_steps(protocol, setting, place.refresh_hz) << " in "
+        << base::shortest(setting.duration_s) << " s";
   }
   const StimulusChoice choice = stimuli.choice_of(cell);
   if (const auto& rate = choice.fixed_rate; rate && one.temporal)
-    key << "; tau " << stats::ptpe_tolerance(choice.model, rate->mean, rate->sd);
+    key << "; tau " << base::shortest(stats::ptpe_tolerance(choice.model, rate->mean, rate->sd));
   key << "; " << study::describe_machine() << "; " << sim::gl_description() << "; program "
       << base::program_digest();
   return key.str();

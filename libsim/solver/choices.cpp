@@ -8,6 +8,7 @@
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -77,8 +78,8 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   if (!scene.effects.empty()) out << "  effects: ";
   for (const Effect& effect : scene.effects) {
     const auto& traits = traits_of(effect.kind);
-    out << traits.word << " " << traits.key << " = " << effect.coefficient << options_in_words(effect)
-        << ", ";
+    out << traits.word << " " << traits.key << " = " << base::shortest(effect.coefficient)
+        << options_in_words(effect) << ", ";
   }
   const EffectStep longest = longest_step(scene.effects, d);
   if (longest.of != no_effect) {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <sstream>
+#include <string>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -119,9 +120,8 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
   const Effect* effect = listed(demand, stage.effect);
   if (!effect || effect->coefficient == 0) return "";
   if (stage.called_for && stage.called_for(demand).empty()) return "";
-  std::ostringstream text;
-  text << "the scene lists " << traits_of(effect->kind).key << " = " << effect->coefficient;
-  return text.str();
+  return std::string("the scene lists ") + traits_of(effect->kind).key + " = " +
+         base::shortest(effect->coefficient);
 }
 
 std::string why_not(const Stage& stage, const Demand& demand) {

@@ -6,6 +6,7 @@
 #include "libsim/scene/effects.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/toml.hpp"
+#include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
 
@@ -36,6 +37,18 @@ TEST(Effects, AreWrittenAsTheyAreRead) {
                              testing::HasSubstr(" lifetime_s = 1.23456789 ")));
   EXPECT_EQ(sim::effect_named("air_drag"), EffectKind::AirDrag);
   EXPECT_FALSE(sim::effect_named("froth"));
+}
+
+/// Two runs that differ do not look alike.
+TEST(Effects, AreExplainedInAllTheirDigits) {
+  NEEDS_EFFECTS;
+  auto scene = fluid_test::tank({1, 1, 1}, {0.5, 0.5, 0.5});
+  scene.effects = {{EffectKind::AirDrag, 1.23456789}};
+  sim::SimulationOptions options;
+  options.n_star = 64;
+  EXPECT_THAT(sim::make_simulation(scene, options)->explain(),
+              testing::AllOf(testing::HasSubstr("effects: air_drag rate_per_s = 1.23456789 "),
+                             testing::HasSubstr("the scene lists rate_per_s = 1.23456789 ")));
 }
 
 TEST(Effects, BesideOthersMayNeedThemAndNotRepeatThem) {
