@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libstudy/session/session.hpp"
+#include "tests/libstudy/permission_fixture.hpp"
 
 namespace study::test {
 
@@ -67,5 +68,27 @@ class SlotEvery10ms final : public SlotSource {
   bool heads_ = false;
   std::int64_t next_ns_ = 0;
 };
+
+/// Everything that a headset brings in, of presentation and session `id`.
+inline void add_headset_rows(Store& store, std::int64_t id, double telling = 0.5) {
+  store.add_headset(id, headset_facts());
+  store.add_ipd(id, 7, 63);
+  const GazeSample sample = ray_sample(5, telling);
+  store.add_gaze(id, 0, GazeOrigin::Tracker, {&sample, 1});
+  const ShownSlot slot{slot_at(6, 63, telling), 0};
+  store.add_slots(id, 0, {&slot, 1});
+  const ValidatedPoint point{8, 10, -10, 30, 29, telling, 0.25, 0.125};
+  store.add_validation(id, {&point, 1}, true);
+}
+
+inline std::filesystem::path headset_study(const TemporaryFolder& folder, const std::string& name,
+                                           const std::vector<Says>& people) {
+  Store store(folder / name, sqlite::Open::Create);
+  add_people(store, asking_protocol(), people);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (people[i].gaze == 1) add_headset_rows(store, static_cast<std::int64_t>(i) + 1);
+  }
+  return folder / name;
+}
 
 }  // namespace study::test

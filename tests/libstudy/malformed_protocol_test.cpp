@@ -348,24 +348,6 @@ TEST(Protocol, BrokenSyntaxNamesThePlace) {
   EXPECT_THAT(error, testing::MatchesRegex("p\\.toml:[0-9]+:[0-9]+: [^\n]+\n  mend: .+"));
 }
 
-/// A design of many scenes and sizes.
-std::string large_design(int scenes, int groups) {
-  std::string names;
-  for (int i = 0; i < scenes; ++i) names += (i ? ", \"" : "\"") + std::to_string(i) + ".toml\"";
-  std::string text = base::read_file(base::resource("protocols/task1.toml"), 1 << 20);
-  text.erase(text.find("moments = ["), text.find("\n]\n") + 3 - text.find("moments = ["));
-  text = replaced(text, "timing = \"table2\"", "timing = \"native\"");
-  text = replaced(text, "groups = 2 ", "groups = " + std::to_string(groups) + " ");
-  const auto from = text.find("scene = ["), to = text.find('\n', from);
-  return text.replace(from, to - from, "scene = [" + names + "]");
-}
-
-TEST(Protocol, AnAssignmentThatCannotBeListedIsRefused) {
-  EXPECT_EQ(error_of(large_design(4, 4)), "(no error)");
-  EXPECT_THAT(error_of(large_design(20, 20)), HasSubstr("orders of scenes and n_*"));
-  EXPECT_THAT(error_of(large_design(101, 1)), HasSubstr("more than 1000 cells"));
-}
-
 constexpr const char* gaze_box =
     "id = \"gaze_kept\"\nkind = \"choice\"\ntext = \"Where I look may be recorded.\"\nanchors = {0 = \"no\", "
     "1 = \"yes\"}";

@@ -273,4 +273,29 @@ TEST(Protocol, QuestionsComeWithTheirBlocksInOrder) {
   EXPECT_EQ(questions[6].second->id, "confusion");
 }
 
+/// Task 1 with so many scenes, at the rates that the solver reaches.
+std::string large_design(int scenes, int groups) {
+  std::string text = shipped("task1");
+  const auto put = [&](const std::string& from, const std::string& end, const std::string& to) {
+    const auto at = text.find(from);
+    text.replace(at, text.find(end, at) + end.size() - at, to);
+  };
+  std::string names;
+  for (int i = 0; i < scenes; ++i) names += (i ? ", \"" : "\"") + std::to_string(i) + ".toml\"";
+  put("scene = [", "\n", "scene = [" + names + "]\n");
+  put("moments = [", "\n]\n", "");
+  put("timing = ", "\"table2\"", "timing = \"native\"");
+  put("groups = ", "2 ", "groups = " + std::to_string(groups) + " ");
+  return text;
+}
+
+TEST(Protocol, AnAssignmentThatCannotBeListedIsRefused) {
+  const auto parse = [](int scenes, int groups) {
+    return [=] { study::parse_protocol(large_design(scenes, groups), "p.toml"); };
+  };
+  EXPECT_NO_THROW(parse(4, 4)());
+  EXPECT_THAT(parse(20, 20), testing::ThrowsMessage<base::Error>(HasSubstr("orders of scenes and n_*")));
+  EXPECT_THAT(parse(101, 1), testing::ThrowsMessage<base::Error>(HasSubstr("more than 1000 cells")));
+}
+
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "apps/common/headset/headset_session.hpp"
 #include "apps/common/headset/picture_turns.hpp"
+#include "apps/common/headset/session_facts.hpp"
 #include "apps/common/headset/session_maker.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
@@ -37,14 +38,6 @@ struct HeadsetRecord {
   HeadsetInput input;
   int world = 0;                     ///< of its poses: another one where the origin moved
   std::optional<HeldViews> shown{};  ///< the picture that is on; none: black
-};
-
-/// What a session is; another one may stand in for one that is lost.
-struct SessionFacts {
-  std::string description;  ///< headset, picture and format
-  HeadsetNames names;
-  bool times_convert = false, eye_gaze = false;
-  PictureSize picture;  ///< both eyes beside each other
 };
 
 /// How the session stood when its last slot was over.
