@@ -84,10 +84,7 @@ std::unique_ptr<sim::Simulation> run_of(const Pool& pool, const State& start, do
                        pool.width() * (0.5 + region.centre_m[2])};
     region.radius_m *= pool.width();
   }
-  if (pool.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(pool.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(pool.beta, options);
   return sim::make_simulation(scene, options);
 }
 

@@ -51,15 +51,12 @@ inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
   const auto from_middle = [&](const Vec3d& x) {
     return Vec3d{x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]};
   };
-  options.start = lattice(
+  State start = lattice(
       drop.spacing(), scene.tank_size_m, [&](const Vec3d& x) { return inside(from_middle(x)); },
       [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : *options.start) p.level = drop.level;
   options.backend = drop.backend;
   options.method = drop.method;
-  options.n_star = static_cast<std::int64_t>(options.start->size() << drop.level) / 8 + 1;
-  scene.fill_max_m = {2 * Drop::finest * static_cast<double>(options.n_star), 2 * Drop::finest,
-                      2 * Drop::finest};
+  begin_with(std::move(start), drop.level, Drop::finest, scene, options);
   if (drop.targets) {
     options.forced_targets = *drop.targets;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -68,10 +65,7 @@ inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
     }
     options.forced_targets->radius_m *= drop.radius();
   }
-  if (drop.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(drop.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(drop.beta, options);
   return sim::make_simulation(scene, options);
 }
 /// Who lies in a ball of the drop's radius.

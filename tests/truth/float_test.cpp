@@ -31,10 +31,7 @@ std::unique_ptr<sim::Simulation> pool_with(const Afloat& afloat, double density,
   options.method = afloat.method;
   options.n_star = afloat.n_star;
   if (afloat.mixed) options.forced_targets = sim::TargetRegion{{0, 0.5, 0.5}, 0.5, 0, 3};
-  if (afloat.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(afloat.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(afloat.beta, options);
   return sim::make_simulation(scene, options);
 }
 

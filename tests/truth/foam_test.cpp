@@ -97,18 +97,12 @@ double rate_back(const Turning& turning) {
         return Vec3d{omega * tilt * (x[2] - x[1]), omega * tilt * (x[0] - x[2]),
                      omega * tilt * (x[1] - x[0])};
       });
-  for (auto& p : start) p.level = turning.level;
   sim::SimulationOptions options;
   options.backend = turning.backend;
   options.method = turning.method;
-  options.n_star = static_cast<std::int64_t>(start.size() << turning.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  begin_with(std::move(start), turning.level, d, scene, options);
   options.forced_targets = turning.targets;
-  if (turning.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(turning.beta) / (2 * 0.02);
-  }
-  options.start = start;
+  rest_at(turning.beta, options);
   const auto fluid = sim::make_simulation(scene, options);
   // Fine and coarse have parted after a while.
   for (int k = 0; k < 20; ++k) fluid->step_frame();

@@ -38,24 +38,19 @@ std::unique_ptr<sim::Simulation> start_of(const Plate& plate) {
   options.backend = plate.backend;
   options.method = plate.method;
   options.substeps = 2;
-  options.start = lattice(
+  State start = lattice(
       d * std::cbrt(1 << plate.level), scene.tank_size_m,
       [&](const Vec3d& x) {
         return x[1] < height && std::abs(x[0] - start_x) < side / 2 && std::abs(x[2] - 1.6) < side / 2;
       },
       [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : *options.start) p.level = plate.level;
-  options.n_star = static_cast<std::int64_t>(options.start->size() << plate.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  begin_with(std::move(start), plate.level, d, scene, options);
   if (plate.targets) {
     options.forced_targets = *plate.targets;
     options.forced_targets->centre_m[0] += start_x;
     options.forced_targets->centre_m[2] += 1.6;
   }
-  if (plate.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(plate.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(plate.beta, options);
   return sim::make_simulation(scene, options);
 }
 

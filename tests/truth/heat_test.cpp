@@ -61,10 +61,7 @@ std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& sc
   const Vec3d& size = scene.fill_max_m;
   options.n_star = std::llround(size[0] * size[1] * size[2] / (8 * d * d * d));
   options.forced_targets = pool.targets;
-  if (pool.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(pool.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(pool.beta, options);
   return sim::make_simulation(scene, options);
 }
 

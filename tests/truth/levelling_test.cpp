@@ -30,20 +30,14 @@ std::unique_ptr<sim::Simulation> fill(const Tank& tank, const Vec3d& size, doubl
   scene.viscosity_m2_s = 0;
   scene.effects = {{EffectKind::Viscosity, nu}};
   scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = 0;
-  for (auto& p : start) p.level = tank.level;
   sim::SimulationOptions options;
   options.backend = tank.backend;
   options.method = tank.method;
   options.substeps = 2;
-  options.n_star = static_cast<std::int64_t>(start.size() << tank.level) / 8 + 1;
-  scene.fill_max_m = {2 * d_fine * static_cast<double>(options.n_star), 2 * d_fine, 2 * d_fine};
+  begin_with(std::move(start), tank.level, d_fine, scene, options);
   if (tank.mixed)
     options.forced_targets = sim::TargetRegion{{size[0] / 2, size[1] / 2, size[2]}, size[0] / 2, 0, 3};
-  if (tank.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(tank.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
-  options.start = std::move(start);
+  rest_at(tank.beta, options);
   return sim::make_simulation(scene, options);
 }
 

@@ -30,10 +30,7 @@ Vec3d force_on(const Sunk& sunk) {
   options.n_star = sunk.n_star;
   options.wall_impulse = true;
   if (sunk.mixed) options.forced_targets = sim::TargetRegion{{0, 0.5, 0.5}, 0.5, 0, 3};
-  if (sunk.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(sunk.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(sunk.beta, options);
   const auto fluid = sim::make_simulation(scene, options);
   Vec3d sum{};
   constexpr int frames = 60;

@@ -143,10 +143,7 @@ void lone_drops_fall_at_their_terminal_speed(Backend backend, int level, double 
     const auto x = static_cast<float>(0.8 + 1.2 * (k % 3)), z = static_cast<float>(0.8 + 1.2 * (k / 3));
     start.push_back({k, level < 0 ? k % 4 : level, x, 38, z, 0, 0, 0});
   }
-  if (beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);
-  }
+  rest_at(beta, options);
   options.start = start;
   const auto fluid = sim::make_simulation(scene, options);
   for (int k = 0; k < 90; ++k) fluid->step_frame();

@@ -84,6 +84,21 @@ inline State moving(State state, const std::function<Vec3d(const Vec3d&)>& speed
   return state;
 }
 
+/// Lets a run of a scene whose level 0 has spacing d begin with these particles, all of that level.
+inline void begin_with(State start, int level, double d, sim::Scene& scene, sim::SimulationOptions& options) {
+  for (auto& p : start) p.level = level;
+  options.n_star = static_cast<std::int64_t>(start.size() << level) / 8 + 1;
+  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};  // 8 n_* cells of d
+  options.start = std::move(start);
+}
+
+/// Lets all methods have temporal acceleration at this beta; at 1 none has.
+inline void rest_at(double beta, sim::SimulationOptions& options) {
+  if (beta == 1) return;
+  options.temporal.always = true;
+  options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);  // beta = exp(2 b tau)
+}
+
 /// A run from particles of level 0 at spacing d, seen from the front (+z) at a distance of three times the
 /// tank's width, so that the fovea is a third of it wide.
 inline std::unique_ptr<sim::Simulation> start_from(const Run& run, sim::Scene scene, double d,
@@ -115,7 +130,6 @@ inline sim::SimulationOptions inviscid() {
   sim::SimulationOptions out;
   out.viscosity_m2_s = 0;
   out.substeps = 4;
-
   return out;
 }
 

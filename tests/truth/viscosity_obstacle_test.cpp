@@ -57,22 +57,17 @@ std::unique_ptr<sim::Simulation> start_of(const Turning& it) {
   options.method = it.method;
   options.substeps = 2;
   options.wall_impulse = true;
-  options.start = lattice(
+  State start = lattice(
       it.spacing(), scene.tank_size_m,
       [&](const Vec3d& x) { return x[1] < a && sim::signed_distance(sphere, sphere.start, x) > 0; },
       [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : *options.start) p.level = it.level;
-  options.n_star = static_cast<std::int64_t>(options.start->size() << it.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  begin_with(std::move(start), it.level, d, scene, options);
   if (it.targets) {
     options.forced_targets = *it.targets;
     for (double& at : options.forced_targets->centre_m) at = middle + at * it.radius();
     options.forced_targets->radius_m *= it.radius();
   }
-  if (it.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(it.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(it.beta, options);
   return sim::make_simulation(scene, options);
 }
 

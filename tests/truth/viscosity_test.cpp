@@ -48,12 +48,10 @@ std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
   options.backend = wave.backend;
   options.method = wave.method;
   options.substeps = 2;
-  options.start = lattice(
+  State start = lattice(
       wave.spacing(), scene.tank_size_m, [&](const Vec3d& x) { return std::abs(x[1] - middle) < 1.5 * a; },
       [](const Vec3d&) { return Vec3d{}; });
-  for (auto& p : *options.start) p.level = wave.level;
-  options.n_star = static_cast<std::int64_t>(options.start->size() << wave.level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};
+  begin_with(std::move(start), wave.level, d, scene, options);
   if (wave.targets) {
     options.forced_targets = *wave.targets;
     auto& region = *options.forced_targets;
@@ -61,10 +59,7 @@ std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
                        a * (0.5 + region.centre_m[2])};
     region.radius_m *= a;
   }
-  if (wave.beta < 1) {
-    options.temporal.always = true;
-    options.temporal.fixed_tau = std::log(wave.beta) / (2 * 0.02);  // beta = exp(2 b tau)
-  }
+  rest_at(wave.beta, options);
   return sim::make_simulation(scene, options);
 }
 
