@@ -29,8 +29,8 @@ class Candidates {
     const LevelCells& grid = cells.level[l];
     const CellTable::Window look = cells.window(grid, self, margin);
     const Window window{build,
-                        grid.along(look.at.x - look.reach, grid.nx),
-                        grid.along(look.at.x + look.reach, grid.nx),
+                        grid.along_x(look.at.x - look.reach),
+                        grid.along_x(look.at.x + look.reach),
                         look.first_y,
                         look.last_y,
                         look.first_z,

@@ -15,21 +15,24 @@ struct IndexRange {
 
 /// The grid of one level. Lines of cells along x lie one after another, then along z, then along y.
 struct LevelCells {
-  float support;  ///< h of its particles, m
-  float edge, inverse;
+  float support;    ///< h of its particles, m
+  float edge;       ///< along y and z, m
+  float inverse;    ///< 1 / edge
+  float inverse_x;  ///< the same along x, where cells may be shorter
   int nx, ny, nz;
   int first;  ///< of its cells in the table
 
   SIM_FN int size() const { return nx * ny * nz; }
   /// The cell of a place, from the low corner, among the grid's own.
-  SIM_FN int of(Vec3 at) const { return (along(at.y, ny) * nz + along(at.z, nz)) * nx + along(at.x, nx); }
-  /// The cell along one axis of a place `x` from the low corner: 1 .. count - 2 inside the domain.
+  SIM_FN int of(Vec3 at) const { return (along(at.y, ny) * nz + along(at.z, nz)) * nx + along_x(at.x); }
+  /// The cell along y or z of a place `x` from the low corner: 1 .. count - 2 inside the domain.
   SIM_FN int along(float x, int count) const { return floor_within(x * inverse, -1, count - 2) + 1; }
+  SIM_FN int along_x(float x) const { return floor_within(x * inverse_x, -1, nx - 2) + 1; }
   /// x, or the nearest place to it that is not beyond the outermost cells' nominal sides.
   SIM_FN float nominal(float x, int count) const {
     return at_most(at_least(x, -edge), static_cast<float>(count - 1) * edge);
   }
-  /// At most how far x, a nominal place, lies outside the slab of a cell along one axis.
+  /// At most how far x, a nominal place, lies outside the slab of a cell along y or z.
   SIM_FN float gap(float x, int cell) const {
     const float low = static_cast<float>(cell - 1) * edge - x;
     return at_least(at_least(low, -(low + edge)), 0.0f);
@@ -82,8 +85,7 @@ struct CellTable {
     if (!(left > 0)) return {0, 0};
     const float half = rough_root(left);
     const int cell = grid.first + (y * grid.nz + z) * grid.nx;
-    return {begin[cell + grid.along(look.at.x - half, grid.nx)],
-            begin[cell + grid.along(look.at.x + half, grid.nx) + 1]};
+    return {begin[cell + grid.along_x(look.at.x - half)], begin[cell + grid.along_x(look.at.x + half) + 1]};
   }
 
   /// visit(begin, end) of runs of particles, in ascending order, that hold all within margin x (h + h_other)

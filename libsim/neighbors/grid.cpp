@@ -116,14 +116,21 @@ struct OrderWithinCells {
   }
 };
 
-/// Cells of `edge` over the domain, with the outermost ones.
-LevelCells cells_of(Vec3 size, double edge, float support) {
-  const auto count = [edge](float length) {
-    const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / edge);
+/// Cells of `edge`, and along x of `edge_x`, over the domain, with the outermost ones.
+LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
+  const auto count = [](float length, double of_one) {
+    const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / of_one);
     return static_cast<int>(std::min(inside, 1e6)) + 2;
   };
   const auto narrow = static_cast<float>(edge);
-  return {support, narrow, 1 / narrow, count(size.x), count(size.y), count(size.z), 0};
+  return {.support = support,
+          .edge = narrow,
+          .inverse = 1 / narrow,
+          .inverse_x = 1 / static_cast<float>(edge_x),
+          .nx = count(size.x, edge_x),
+          .ny = count(size.y, edge),
+          .nz = count(size.z, edge),
+          .first = 0};
 }
 
 /// Water splashes above the rim; what is higher shares the uppermost cells.
@@ -141,13 +148,16 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
       throw base::Error("grid", "level " + std::to_string(l) + " has no support radius",
                         "give the state its supports first");
   }
-  const double reach = static_cast<double>(margin) / static_cast<double>(cells_per_reach);
+  const CellsPerReach cells = shape_.levels > 1 ? of_levels : of_one_level;
+  const double edge_x = static_cast<double>(margin) / cells.along_x;
+  const double edge = static_cast<double>(margin) / cells.across;
   for (double wider = 1;; wider *= 1.1) {
     double sum = 0;
     int first = 0;
     for (int l = 0; l < shape_.levels; ++l) {
       LevelCells& grid = shape_.level[l];
-      grid = cells_of(size, wider * reach * static_cast<double>(grid.support), grid.support);
+      const auto support = static_cast<double>(grid.support);
+      grid = cells_of(size, wider * edge * support, wider * edge_x * support, grid.support);
       sum += static_cast<double>(grid.nx) * grid.ny * grid.nz;
       if (sum > static_cast<double>(most)) break;
       grid.first = first;
@@ -156,9 +166,9 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
     if (sum > static_cast<double>(most)) continue;
     const float widest = shape_.level[shape_.levels - 1].support;
     // Beyond what rounding hides; see CellTable::window.
-    const double edge = wider * 1.001 * static_cast<double>(margin * widest) +
-                        1e-5 * static_cast<double>(size.x + size.y + size.z);
-    shape_.blocks = cells_of(size, edge, widest);
+    const double block = wider * 1.001 * static_cast<double>(margin * widest) +
+                         1e-5 * static_cast<double>(size.x + size.y + size.z);
+    shape_.blocks = cells_of(size, block, block, widest);
     return;
   }
 }

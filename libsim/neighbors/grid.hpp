@@ -25,14 +25,21 @@ class Grid {
   int size() const;
 
   /// Cells along the reach of a pair, margin x h: the finer they are, the fewer particles beyond it are
-  /// looked at, and the more lines of cells. The GPU reads short lines side by side, the CPU long ones in
-  /// lanes.
+  /// looked at, and the more lines of cells. `across`: along y and z.
+  struct CellsPerReach {
+    double along_x, across;
+  };
 #ifdef SIM_CUDA
-  static constexpr float cells_per_reach = 2;
+  /// Short lines are read side by side. With several levels most lines of a window are empty or nearly so,
+  /// and fewer of them pay; short cells keep a line's particles few.
+  static constexpr CellsPerReach of_one_level{2, 2};
+  static constexpr CellsPerReach of_levels{4, 1};
   /// Empty lines cost the GPU less than the two passes that tell where a level is.
   static constexpr bool finds_met = false;
 #else
-  static constexpr float cells_per_reach = 1;
+  /// The CPU reads long lines in lanes.
+  static constexpr CellsPerReach of_one_level{1, 1};
+  static constexpr CellsPerReach of_levels{1, 1};
   static constexpr bool finds_met = true;
 #endif
   /// The table has at most so many cells for each particle there is room for, and a least number; where the
