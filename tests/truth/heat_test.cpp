@@ -168,7 +168,7 @@ void walls_warm(const Pool& pool) {
 /// of its height from the mean. What the last substep gave, and the pressure has not met, is in both looks.
 /// Merges push too: over 28 runs, ten frames and still water in place of the second run gave 0.84 to 1.07 at
 /// mixed levels. So twenty frames are taken, and half the difference of one run that is warm on the left and
-/// one on the right: 0.89 to 0.93 over ten starts.
+/// one on the right: 0.88 to 0.94 over thirteen starts.
 void warm_water_rises(const Pool& pool) {
   NEEDS_EFFECTS;
   const Vec3d size{32 * d, 16 * d, 12 * d};
