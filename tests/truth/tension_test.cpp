@@ -27,8 +27,10 @@ double stretch(const State& state) {
 
 /// sigma from the frequency and the decay of the damped swing that fits best, over what the scene lists: a
 /// drop swings at sqrt(omega_0^2 - gamma^2).
-double tension_back(const Drop& drop) {
-  const auto fluid = start_of(drop, in_ball(drop));
+double tension_back(const Drop& drop, std::uint32_t seed = 1) {
+  sim::SimulationOptions options;
+  options.seed = seed;
+  const auto fluid = start_of(drop, in_ball(drop), options);
   const int frames = drop.frames();
   for (int k = 0; k < frames / 5; ++k) fluid->step_frame();
   const double omega = 2 * pi / drop.period();
@@ -96,9 +98,13 @@ void periods_follow_radius_and_tension(Backend backend) {
   EXPECT_NEAR(-0.5 - std::log(strong / small) / 2 / std::log(9.0), -0.5, 0.1);
 }
 
+/// By chance of who rests: one drop in seventy would miss the 15 % (mean 0.95, standard deviation 0.04 over
+/// fourteen starts). The mean of four has 5 standard deviations to it.
 void a_drop_that_rests_in_turns(Backend backend) {
   NEEDS_EFFECTS;
-  EXPECT_NEAR(tension_back({.beta = 0.67, .backend = backend}), 1, within);
+  double sum = 0;
+  for (const std::uint32_t seed : {1, 2, 3, 4}) sum += tension_back({.beta = 0.67, .backend = backend}, seed);
+  EXPECT_NEAR(sum / 4, 1, within);
 }
 
 void a_cube_becomes_a_sphere(Backend backend) {
