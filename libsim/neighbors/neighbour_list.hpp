@@ -126,7 +126,12 @@ class NeighbourList {
   static constexpr int usual_capacity = 56;
   /// A coarse particle among the finest has 113 within the support and some 150 within the margin. The
   /// longest list of the three scenes had 108 (Ours, n_* = 32k).
+#ifdef SIM_CUDA
   static constexpr int mixed_capacity = 128;
+#else
+  // Each pass walks all rows: what nobody fills of one keeps the next from being fetched in time.
+  static constexpr int mixed_capacity = 72;
+#endif
   /// The store may hold one entry for so many lists before all lists get more room: few long ones are read
   /// from it at no cost that shows, and room of their own is room in every list.
   static constexpr std::size_t most_stored = 4;
