@@ -182,9 +182,10 @@ struct ListNeighbours {
     int i;
     Vec4 self;
     int* next;
-    SIM_FN void operator()(int begin, int end) {
-      for (int j = begin; j < end; ++j) {
-        if (j != i && task.near(self, task.predicted[j])) *next++ = j;
+    const int* end;  ///< of the room that was taken
+    SIM_FN void operator()(int from, int to) {
+      for (int j = from; j < to; ++j) {
+        if (j != i && next < end && task.near(self, task.predicted[j])) *next++ = j;
       }
     }
   };
@@ -199,9 +200,17 @@ struct ListNeighbours {
       count[slot] = list.room();
       return;
     }
-    Put put{*this, i, self, store + first};
-    cells.around(self, margin, [&put](int begin, int end) { put(begin, end); });
-    entry[list.place(slot, 0)] = static_cast<int>(first);
+    int* const begin = store + first;
+    Put put{*this, i, self, begin, begin + found};
+    cells.around(self, margin, [&put](int from, int to) { put(from, to); });
+    // A pair at the very margin may have been rounded otherwise when it was counted.
+    const int put_there = static_cast<int>(put.next - begin);
+    count[slot] = put_there;
+    if (put_there > list.room()) {
+      entry[list.place(slot, 0)] = static_cast<int>(first);
+    } else {
+      for (int k = 0; k < put_there; ++k) entry[list.place(slot, k)] = begin[k];
+    }
   }
 
   SIM_FN bool near(Vec4 self, Vec4 other) const {

@@ -72,8 +72,8 @@ double fine_share(const sim::Simulation& fluid, double x_m) {
   return all > 0 ? fine / all : 0;
 }
 
-/// Where the eye jumps to, water becomes fine as soon as with a turn in each frame, or a frame later: who
-/// splits first differs by chance, and single frames by up to 0.09 of the water that is looked at.
+/// Where the eye jumps to, water becomes fine as soon as with a turn in each frame. Who splits first differs
+/// by chance, and a frame's share by up to 0.09 (a CPU and a GPU); a frame's wait costs up to 0.4.
 void a_saccade_does_not_wait(Backend backend) {
   for (const MethodKind method : {MethodKind::Ours, MethodKind::FovFluid}) {
     std::vector<double> shares[2];
@@ -97,8 +97,7 @@ void a_saccade_does_not_wait(Backend backend) {
     }
     EXPECT_LT(shares[0].front(), 0.2);
     EXPECT_GT(shares[0].back(), 0.6);
-    for (std::size_t k = 0; k + 1 < shares[0].size(); ++k)
-      EXPECT_GT(shares[1][k + 1], shares[0][k] - 0.08) << k;
+    for (std::size_t k = 0; k < shares[0].size(); ++k) EXPECT_GT(shares[1][k], shares[0][k] - 0.15) << k;
   }
 }
 TEST(LevelTurnsOfSimulations, ASaccadeDoesNotWait) { a_saccade_does_not_wait(Backend::Cpu); }

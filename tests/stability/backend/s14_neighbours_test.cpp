@@ -271,9 +271,9 @@ struct FirstBuild {
 };
 
 SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
-  // The first build of a list has room for 80 neighbours; nothing grows in between.
+  // The first build of a list has room for some 55 neighbours; nothing grows in between.
   std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
-  const std::vector<Vec4> few = random_points(60, 0.05f, 0.3f, 4);
+  const std::vector<Vec4> few = random_points(40, 0.05f, 0.3f, 4);
   for (const Vec4& p : few) points.push_back({p.x + 7, p.y, p.z, p.w});
   const FirstBuild first(points);
   EXPECT_EQ(first.guards.to_host()[0].neighbours_dropped, 0u);
@@ -282,7 +282,7 @@ SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const std::set<int> distinct(lists[i].begin(), lists[i].end());
     EXPECT_EQ(distinct.size(), lists[i].size());
-    EXPECT_EQ(lists[i].size(), id[i] < 400 ? 399u : 59u);
+    EXPECT_EQ(lists[i].size(), id[i] < 400 ? 399u : 39u);
     EXPECT_FALSE(distinct.contains(static_cast<int>(i)));
   }
 }
