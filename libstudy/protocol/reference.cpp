@@ -20,8 +20,8 @@ const std::vector<TableText>& table_texts() {
       {"", "The file itself", "Stands before the first table."},
       {"design", "[design]",
        R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
-every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a participant
-meets `groups` of them, one after another.)"},
+every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a
+participant meets `groups` of them, one after another.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",

@@ -8,6 +8,7 @@
 #include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace {
@@ -134,7 +135,7 @@ TEST_F(BenchFrameE2e, RefusesStepsAndNumbersThatBreakTheWater) {
 TEST_F(BenchFrameE2e, TellsTheBooksOfTheEffectsThatASceneLists) {
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_EQ(figures()["effects"], nlohmann::json::object());
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto of = [&](const std::string& scene) {
     const auto ended = apps::test::run_shell(VIP_BIN_DIR "/vip-bench frame data/scenes/" + scene +
                                              " --n-star 64 --backend cpu --frames 40 --warm-up 0 --no-render"

@@ -12,11 +12,9 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/study_test_support.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps {
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
-
 namespace {
 
 using ::testing::AllOf;

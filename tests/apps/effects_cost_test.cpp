@@ -6,6 +6,7 @@
 #include "libsim/scene/effects.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/table_test_support.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps {
 namespace {
@@ -67,7 +68,7 @@ TEST(EffectsCost, WhatIsAddedIsOverTheFirstRow) {
 class EffectsCostE2e : public test::TableTest {};
 
 TEST_F(EffectsCostE2e, ACoefficientOfZeroAddsNothing) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto ended = table("effects data/scenes/splash.toml --n-star 64 --frames 3 --warm-up 1 --csv " +
                            path("e.csv") + " --markdown " + path("e.md") + " --svg " + path("e.svg"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;

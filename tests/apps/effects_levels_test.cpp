@@ -7,6 +7,7 @@
 
 #include "stats/base/error.hpp"
 #include "tests/apps/table_test_support.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps {
 namespace {
@@ -81,7 +82,7 @@ TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
 class EffectsLevelsE2e : public test::TableTest {};
 
 TEST_F(EffectsLevelsE2e, AllLevelsAreTheReferenceAndNoneIsLeftToTake) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto ended = table(
       "effects data/scenes/splash.toml --levels --method Ours --n-star 64 --frames 5 --warm-up 1 "
       "--size 64x48 --csv " +
@@ -99,7 +100,7 @@ TEST_F(EffectsLevelsE2e, AllLevelsAreTheReferenceAndNoneIsLeftToTake) {
 }
 
 TEST_F(EffectsLevelsE2e, RefusesWhatHasNoLevels) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto one = table("effects data/scenes/splash.toml --levels --n-star 64");
   EXPECT_EQ(one.exit_code, 1) << one.out;
   EXPECT_THAT(one.out, HasSubstr("HiRes has one"));

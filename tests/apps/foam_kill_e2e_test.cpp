@@ -10,14 +10,12 @@
 
 #include "apps/study/cell_stimuli.hpp"
 #include "tests/apps/study_test_support.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 /// protocols/foam.toml, coarse and short. Foam alone leaves the water as it is, so a level brings drag too:
 /// then the frames' records tell the levels apart.

@@ -9,6 +9,7 @@
 #include "libsim/bake/bake_file.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "tests/apps/shown_study.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps::test {
 namespace {
@@ -35,9 +36,7 @@ json entry(const json& list, const std::map<std::string, std::string>& words) {
 
 class FoamStudyE2e : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
-  }
+  void SetUp() override { NEEDS_EFFECTS; }
   /// The report's numbers about `participants` of an observer to whom foam is worth so many scores.
   json report_of(const std::string& effects, const std::string& participants) {
     const std::string database = folder_ / ("study_" + effects + ".db"),
@@ -157,9 +156,7 @@ TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
 /// Of the study's scene, coarse and short: 0.5 s about the first foam.
 class FoamShownE2e : public ShownStudy {
  protected:
-  void SetUp() override {
-    if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
-  }
+  void SetUp() override { NEEDS_EFFECTS; }
   FoamShownE2e() : ShownStudy("foam", "64x36") {
     std::string text = base::read_file(foam_protocol(), 1 << 20);
     text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");

@@ -10,6 +10,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps {
@@ -60,9 +61,6 @@ double difference(const Picture& a, const Picture& b) {
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(double(a[i]) - double(b[i]));
   return sum / static_cast<double>(a.size());
 }
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 TEST(HeatBakeGl, IsPaintedAsItWasLive) {
   NEEDS_EFFECTS;

@@ -8,6 +8,7 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "tests/apps/shown_study.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps::test {
 namespace {
@@ -22,9 +23,7 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 /// protocols/foam.toml about HotJet, coarse and short: LoRes and HiRes are compared, and painted.
 class HeatStudyE2e : public ShownStudy {
  protected:
-  void SetUp() override {
-    if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
-  }
+  void SetUp() override { NEEDS_EFFECTS; }
   HeatStudyE2e() : ShownStudy("heat", "64x36") {
     std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
     const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");

@@ -5,6 +5,7 @@
 
 #include "libsim/scene/effects.hpp"
 #include "tests/apps/table_test_support.hpp"
+#include "tests/common/needs_effects.hpp"
 
 namespace apps {
 namespace {
@@ -117,7 +118,7 @@ TEST_F(StabilityE2e, MapsOneCaseQuickly) {
 }
 
 TEST_F(StabilityE2e, MapsACaseInWaterWithEffects) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto ended =
       table("stability --case S9 --method LoRes --quick --effects data/scenes/splash.toml --csv " +
             path("map.csv"));

@@ -10,6 +10,7 @@
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/small_dam.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace {
@@ -60,7 +61,7 @@ TEST_F(ViewE2e, ExplainsItsSchedule) {
 }
 
 TEST_F(ViewE2e, LeavesOutTheEffectsThatAreTurnedOff) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const std::string run =
       "--headless data/scenes/splash.toml --backend cpu --n-star 64 --frames 1 --explain ";
   const auto all = view(run);
@@ -152,7 +153,7 @@ TEST_F(ViewE2e, PaintsEachValueOverTheWater) {
 }
 
 TEST_F(ViewE2e, PaintsTheTemperatureOfAHotJet) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto ended = view(
       "--headless data/scenes/hot_jet.toml --backend cpu --n-star 64 --frames 3 --every 2 --size 64x48 "
       "--overlay none,temperature --png " +

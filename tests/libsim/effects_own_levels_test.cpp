@@ -7,6 +7,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/toml.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -15,9 +16,6 @@ using sim::EffectKind;
 using sim::MethodKind;
 using testing::HasSubstr;
 using testing::Not;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 std::vector<EffectKind> all_kinds() {
   std::vector<EffectKind> out;

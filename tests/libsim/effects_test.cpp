@@ -12,6 +12,7 @@
 
 #include "libsim/solver/state_file.hpp"
 #include "stats/base/error.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -32,9 +33,6 @@ std::string effect(const std::string& kind, const std::string& key, const std::s
   return "[[effect]]\nkind = \"" + kind + "\"\n" + key + " = " + value + "\n";
 }
 const std::string tension = effect("cohesion", "tension_n_m", "50.0");
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 TEST(Effects, FormatsOneAndTwoAreRead) {
   EXPECT_TRUE(sim::parse_scene(dam_of_format("1"), "scene.toml").effects.empty());

@@ -6,14 +6,12 @@
 #include "libsim/scene/effects.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/toml.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
 
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 TEST(Effects, AreWrittenAsTheyAreRead) {
   NEEDS_EFFECTS;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
 namespace {
@@ -16,9 +17,6 @@ using sim::EffectKind;
 using sim::EffectOption;
 using sim::MethodKind;
 using testing::HasSubstr;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;

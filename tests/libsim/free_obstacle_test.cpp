@@ -7,6 +7,7 @@
 
 #include "libsim/scene/effects.hpp"
 #include "stats/base/error.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/obstacle_scenes.hpp"
 
@@ -15,9 +16,6 @@ namespace {
 using namespace obstacle_test;
 using testing::AllOf;
 using testing::HasSubstr;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 Obstacle free_sphere(double density) { return free_one(sphere({0.5, 0.55, 0.5}, 0.25), density); }
 sim::Scene pool_with(const Obstacle& obstacle, double depth = 0.75) {

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "libsim/solver/state_file.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/levels_helpers.hpp"
 
@@ -20,9 +21,6 @@ using sim::EffectOption;
 using sim::MethodKind;
 using testing::AllOf;
 using testing::HasSubstr;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 std::string faucet_with(const std::string& nozzle, const std::string& tables) {
   std::string text = base::read_file(base::resource("data/scenes/faucet.toml"), 1 << 20);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
@@ -19,9 +20,6 @@ using sim::EffectOption;
 using sim::MethodKind;
 using testing::HasSubstr;
 using testing::Not;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;

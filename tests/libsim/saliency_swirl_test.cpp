@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
@@ -17,9 +18,6 @@ using sim::EffectKind;
 using sim::MethodKind;
 using testing::HasSubstr;
 using State = std::vector<sim::ParticleState>;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 constexpr double core = 0.6, middle = 1.2;  // m: of the vortex, and its axis from two walls
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libsim/cases/hard_case.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/stability/demo_scenes.hpp"
 
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using sim::cases::Setting;
 
 void runs(const char* id, const Setting& plain) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   const auto scenes = stability_test::scenes_with_effects();
   ASSERT_GE(scenes.size(), 3u);
   for (const sim::Scene& scene : scenes) {

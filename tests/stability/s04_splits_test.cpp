@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "libsim/methods/preset.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/levels_helpers.hpp"
 #include "tests/stability/demo_scenes.hpp"
 
@@ -184,7 +185,7 @@ TEST(S04SplitsGpu, AreCalm) { splits_are_calm(Backend::Cuda); }
 /// In water with the effects of each demo scene, from one start. Effects move water too, so that only what is
 /// dense or not sound counts.
 void splits_with_effects_are_sound(Backend backend) {
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF";
+  NEEDS_EFFECTS;
   Settled fine(backend);
   for (const sim::Scene& scene : stability_test::scenes_with_effects()) {
     fine.scene.effects = scene.effects;

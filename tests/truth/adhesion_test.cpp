@@ -1,15 +1,13 @@
 /// Adhesion measured back from the contact angle of drops without gravity: W = sigma (1 + cos theta), Young
 /// and Dupre.
 
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/drop_scene.hpp"
 
 namespace {
 
 using namespace truth_test;
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 /// Half a ball on the floor, in a tank six radii wide.
 Drop on_the_floor(Drop drop) {

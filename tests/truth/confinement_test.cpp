@@ -1,6 +1,7 @@
 /// The effect vorticity measured back from what it adds to a Lamb-Oseen vortex: c omega(r) round its axis.
 
 #include "libsim/scene/effects.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/lamb_oseen.hpp"
 
 namespace {
@@ -8,9 +9,6 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 using sim::EffectOption;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 /// Of the motion that is measured: the later it is, the larger the share of what was gained that the method's
 /// own viscosity has taken.

@@ -2,6 +2,7 @@
 /// methods.
 
 #include "libsim/scene/effects.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
@@ -9,9 +10,6 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 using sim::EffectOption;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;

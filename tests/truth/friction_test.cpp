@@ -1,15 +1,13 @@
 /// The effect friction measured back: how far plates of thick fluid slide on the floor.
 
 #include "libsim/scene/effects.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
 
 using namespace truth_test;
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 constexpr double d = 0.05;       // of level 0
 constexpr double height = 0.2;   // of the plate: four spacings of level 0, two of level 3

@@ -2,6 +2,7 @@
 /// buoyancy by the acceleration of water that is warm in one half; and the total heat, which stays.
 
 #include "libsim/scene/heat.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
@@ -9,9 +10,6 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 using sim::EffectOption;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 constexpr double d = 0.05;  // of level 0
 constexpr double within = 0.15;

@@ -2,15 +2,13 @@
 /// lattice that its particles lie on would stop them.
 
 #include "libsim/scene/effects.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
 
 using namespace truth_test;
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 constexpr double d_fine = 0.05;  // of level 0
 

@@ -1,15 +1,13 @@
 /// Effects measured back from the motion: tension by the period of drops without gravity (Rayleigh 1879), air
 /// drag by the speed at which drops fall at last.
 
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/drop_scene.hpp"
 
 namespace {
 
 using namespace truth_test;
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 std::array<double, 3> half_axes(const State& state) {
   std::array<double, 3> out{};

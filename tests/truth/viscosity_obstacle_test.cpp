@@ -2,15 +2,13 @@
 /// Hydrodynamics, 334), without gravity.
 
 #include "libsim/scene/effects.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
 
 namespace {
 
 using namespace truth_test;
 using sim::EffectKind;
-
-#define NEEDS_EFFECTS \
-  if (!sim::has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 constexpr double d = 0.05;  // of level 0
 constexpr double rho = 1000;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libsim/solver/stages/stages.hpp"
+#include "tests/common/needs_effects.hpp"
 #include "tests/libsim/backend/backend_test.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -19,8 +20,6 @@ inline std::vector<Stage> passes_of(EffectKind kind) {
   return out;
 }
 inline std::size_t index_of(EffectKind kind) { return static_cast<std::size_t>(kind); }
-#define NEEDS_EFFECTS \
-  if (!has_effects()) GTEST_SKIP() << "built with -DVIP_EFFECTS=OFF"
 
 /// Particles at rest with the true neighbours within hbar and beyond, and their densities.
 inline FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
