@@ -4,14 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-struct CopyFlags {
-  const std::uint8_t* active;
-  int* flags;
-  SIM_FN void operator()(int i) const { flags[i] = active[i] != 0; }
-};
-
 struct PlaceInSlots {
-  const int* flags;
+  const std::uint8_t* active;
   const int* ranks;
   int* slots;
   int* slot_of;
@@ -22,10 +16,10 @@ struct PlaceInSlots {
   int n;
 
   SIM_FN void operator()(int i) const {
-    const int slot = flags[i] ? ranks[i] - 1 : n - 1 - (i - ranks[i]);
+    const int slot = active[i] ? ranks[i] - 1 : n - 1 - (i - ranks[i]);
     slot_of[i] = slot;
-    slots[slot] = flags[i] ? i : ~i;
-    if (flags[i]) return;
+    slots[slot] = active[i] ? i : ~i;
+    if (active[i]) return;
     lambda[i] = 0;
     density[i] = 1;
     predicted_next[i] = predicted[i];
@@ -37,15 +31,12 @@ struct PlaceInSlots {
 void Activation::list_active(ActiveListView p) {
   const int n = p.size();
   const auto size = static_cast<std::size_t>(n);
-  flags.resize(size);
-  ranks.resize(size);
   slots.resize(size);
   slot_of.resize(size);
   if (n == 0) return;
-  for_each("active flags", n, CopyFlags{p.active(), flags.data()});
-  scanner.inclusive_sum(flags, ranks);
+  scanner.inclusive_count(p.active(), n, ranks);
   for_each("active slots", n,
-           PlaceInSlots{.flags = flags.data(),
+           PlaceInSlots{.active = p.active(),
                         .ranks = ranks.data(),
                         .slots = slots.data(),
                         .slot_of = slot_of.data(),
@@ -57,10 +48,9 @@ void Activation::list_active(ActiveListView p) {
 }
 
 std::size_t Activation::bytes() const {
-  return grid.bytes() + near.bytes() + others_before.bytes() + others_after.bytes() + importance.bytes() +
-         probability.bytes() + slope_x.bytes() + slope_y.bytes() + slope_z.bytes() + across_levels.bytes() +
-         total.bytes() + energy_slope.bytes() + before.bytes() + after.bytes() + change.bytes() +
-         flags.bytes() + ranks.bytes() + slots.bytes() + slot_of.bytes();
+  return grid.bytes() + near.bytes() + importance.bytes() + probability.bytes() + slope_x.bytes() +
+         slope_y.bytes() + slope_z.bytes() + across_levels.bytes() + total.bytes() + energy_slope.bytes() +
+         before.bytes() + after.bytes() + change.bytes() + ranks.bytes() + slots.bytes() + slot_of.bytes();
 }
 
 }  // namespace sim::SIM_BACKEND

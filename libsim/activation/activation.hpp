@@ -61,6 +61,13 @@ constexpr std::uint8_t solved_apart = 2;
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
+/// Sums of Activation::before and after, by the cell that the particles started in.
+constexpr int sum_of_solved = 0;
+constexpr int sum_of_resting = 1;  ///< only where something moves them too
+/// Those of `after` alone, by position.
+constexpr int sum_of_grid = 2;
+constexpr int sum_of_near = 3;
+
 /// State of temporal acceleration. V, E, the range and the frame counter last; the rest is rebuilt each
 /// frame.
 struct Activation {
@@ -80,12 +87,10 @@ struct Activation {
 
   // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz a cell, dV/dl, sum over levels, dE.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
-  // Momentum of the active particles, and of the others, by the cell they started in, before and after the
-  // solve; what the others miss.
-  Array<MomentumSum> before, after, others_before, others_after;
-  Array<Vec4> change;
+  CellMomentum before, after;  ///< the solve
+  Array<Vec4> change;          ///< what the others miss
 
-  Array<int> flags, ranks, slots, slot_of;
+  Array<int> ranks, slots, slot_of;
   Scanner scanner;
 
   /// Lists the active particles for the passes of a substep and puts what the passes read of the others in

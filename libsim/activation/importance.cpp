@@ -4,6 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
+constexpr float range_share = 0.1f;  ///< a frame, of the way to the new percentiles
+
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
 /// What Eq. 13 and 14 need of V in one cell and level: differences from cell to cell and from level to level.
@@ -104,6 +106,7 @@ struct Importance {
   const float* saliency;
   std::uint8_t* rest;
   float* importance;
+  ValueCounter counter;
   GridFrame grid;
   const Vec4* velocity;
   const float* energy;
@@ -117,19 +120,23 @@ struct Importance {
   bool relative_level_change;
 
   SIM_FN void operator()(int i) const {
+    const float f = of(i);
+    importance[i] = f;
+    counter.add(i, f);
+  }
+
+  /// Eq. 12; 0 where the grid knows no velocity, which is noted.
+  SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();
     const Vec4 v = sample(velocity, offset, corners);
     const bool known = v.w != value_unknown;
     rest[i] = static_cast<std::uint8_t>(known ? rest[i] & ~rest_nowhere : rest[i] | rest_nowhere);
-    if (!known) {
-      importance[i] = 0;
-      return;
-    }
+    if (!known) return 0;
     const float mass = static_cast<float>(1 << level[i]);
     const float s = saliency ? saliency[i] : 0;
-    const float f = mass * expf(s) * (within(offset, corners, v) + across(offset, corners, v));  // Eq. 12
-    importance[i] = std::isfinite(f) ? f : 0;
+    const float f = mass * expf(s) * (within(offset, corners, v) + across(offset, corners, v));
+    return std::isfinite(f) ? f : 0;
   }
 
   /// f_in, Eq. 13
@@ -164,18 +171,20 @@ void measure_importance(Activation& activation, ImportanceView p, const float* s
   a.total.resize(cells);
   a.energy_slope.resize(cells);
   a.importance.resize(static_cast<std::size_t>(p.size()));
-  for_each("velocity slopes", grid_levels * grid.cells(),
-           VelocitySlopes{a.grid.velocity().data(), grid.block, a.slope_x.data(), a.slope_y.data(),
-                          a.slope_z.data(), a.across_levels.data()});
-  for_each("cell sums", grid.cells(),
-           CellSums{a.grid.velocity().data(), a.grid.energy().data(), grid.block, a.total.data(),
-                    a.energy_slope.data()});
+  for_each_pass("grid slopes",
+                Pass<VelocitySlopes>{grid_levels * grid.cells(),
+                                     {a.grid.velocity().data(), grid.block, a.slope_x.data(),
+                                      a.slope_y.data(), a.slope_z.data(), a.across_levels.data()}},
+                Pass<CellSums>{grid.cells(),
+                               {a.grid.velocity().data(), a.grid.energy().data(), grid.block, a.total.data(),
+                                a.energy_slope.data()}});
   for_each("importance", p.size(),
            Importance{.position = p.position(),
                       .level = p.level(),
                       .saliency = saliency,
                       .rest = p.rest(),
                       .importance = a.importance.data(),
+                      .counter = a.rules.robust_range ? a.range.counter() : ValueCounter{},
                       .grid = grid,
                       .velocity = a.grid.velocity().data(),
                       .energy = a.grid.energy().data(),
@@ -187,6 +196,11 @@ void measure_importance(Activation& activation, ImportanceView p, const float* s
                       .energy_slope = a.energy_slope.data(),
                       .speed_floor = speed_floor,
                       .relative_level_change = a.rules.relative_level_change});
+  if (a.rules.robust_range) {
+    a.range.follow_percentiles(p.size(), range_share);
+  } else {
+    a.range.take_extremes(a.importance, p.size());
+  }
 }
 
 }  // namespace sim::SIM_BACKEND

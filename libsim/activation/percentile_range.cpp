@@ -6,24 +6,6 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr int octaves = 32;
-constexpr int bins_an_octave = 8;
-constexpr int bin_count = octaves * bins_an_octave;
-
-struct Count {
-  const float* values;
-  Histogram histogram;
-
-  SIM_FN void operator()(int i) const { histogram.add(i, bin_of(values[i]), 1); }
-
-  SIM_FN static int bin_of(float value) {
-    const float least = ldexpf(1, -octaves / 2);
-    const float above = log2f(fmaxf(value, least)) + octaves / 2;
-    const int bin = static_cast<int>(above * bins_an_octave);
-    return bin < 0 ? 0 : bin < bin_count ? bin : bin_count - 1;
-  }
-};
-
 /// Sets a percentile where the count passes it.
 struct Place {
   BinCounts counts;
@@ -37,7 +19,7 @@ struct Place {
     const float wanted = q * static_cast<float>(n);
     counts.find(at, 0, static_cast<int>(ceilf(wanted)) - 1, [&](int bin, int before, int here) {
       const float part = (wanted - static_cast<float>(before)) / static_cast<float>(here);
-      percentile = exp2f((static_cast<float>(bin) + part) / bins_an_octave - octaves / 2);
+      percentile = ValueCounter::value_at(static_cast<float>(bin) + part);
     });
   }
 };
@@ -121,11 +103,10 @@ void PercentileRange::ready() {
   if (range_.size() == 0) range_.from_host({{1, 0}});
 }
 
-void PercentileRange::follow_percentiles(const Array<float>& values, int n, float share) {
+void PercentileRange::follow_percentiles(int n, float share) {
   ready();
   if (n == 0) return;
-  for_each("histogram", n, Count{values.data(), histogram_.view(bin_count)});
-  histogram_.take("percentiles", bin_count, FollowPercentiles{now_.data(), range_.data(), n, share});
+  histogram_.take("percentiles", ValueCounter::bins, FollowPercentiles{now_.data(), range_.data(), n, share});
 }
 
 void PercentileRange::take_extremes(const Array<float>& values, int n) {

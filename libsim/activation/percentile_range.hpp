@@ -20,12 +20,37 @@ struct ValueRange {
   }
 };
 
+/// Counts values where a kernel makes them; by itself it counts nothing.
+struct ValueCounter {
+  Histogram histogram{nullptr, 0};
+
+  /// The i-th value.
+  SIM_FN void add(int i, float value) const {
+    if (histogram.counts) histogram.add(i, bin_of(value), 1);
+  }
+
+  static constexpr int octaves = 32;
+  static constexpr int bins_an_octave = 8;
+  static constexpr int bins = octaves * bins_an_octave;
+  SIM_FN static int bin_of(float value) {
+    const float least = ldexpf(1, -octaves / 2);
+    const float above = log2f(fmaxf(value, least)) + octaves / 2;
+    const int bin = static_cast<int>(above * bins_an_octave);
+    return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
+  }
+  /// The value at `at` bins, whole or not, from the first one on.
+  SIM_FN static float value_at(float at) { return exp2f(at / bins_an_octave - octaves / 2); }
+};
+
 /// Stays on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
 class PercentileRange {
  public:
-  /// Moves both ends by `share` of the way to the 1st and 99th percentile of values[0..n-1]; all the way the
-  /// first time. Percentiles are exact to an eighth of an octave (9 %). n = 0 changes nothing.
-  void follow_percentiles(const Array<float>& values, int n, float share);
+  /// For the pass before follow_percentiles(), which takes what it counts.
+  ValueCounter counter() { return {histogram_.view(ValueCounter::bins)}; }
+  /// Moves both ends by `share` of the way to the 1st and 99th percentile of the n values that counter() has
+  /// counted; all the way the first time. Percentiles are exact to an eighth of an octave (9 %). n = 0
+  /// changes nothing.
+  void follow_percentiles(int n, float share);
   /// Sets the ends to the least and the largest value.
   void take_extremes(const Array<float>& values, int n);
 

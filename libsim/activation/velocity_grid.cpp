@@ -8,7 +8,7 @@ namespace {
 
 /// Particles that a team adds up before it goes to memory: neighbours in memory share a cell.
 constexpr int run_length = 16;
-int runs_of(int n) { return (n + run_length - 1) / run_length; }
+SIM_FN int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
 /// Beyond this speed, m/s, a particle counts with this speed: sums of 2^63 stay out of reach.
 constexpr float fastest = 1000;
@@ -64,28 +64,33 @@ struct PlaceSum {
   }
 };
 
+/// Each index is one run of particles for one sum.
 struct AddMomentum {
+  struct To {
+    MomentumOf of;
+    MomentumSum* sums;
+  };
   const Vec4* position;
   const Vec4* velocity;
   const std::uint8_t* level;
   const std::uint8_t* active;
-  const int* cell_of;
-  GridFrame grid;
-  MomentumSum* sums;
   int n;
-  std::uint8_t which;
+  To to[CellMomentum::most]{};
 
   template <class Team>
-  SIM_FN void operator()(int run, Team team) const {
+  SIM_FN void operator()(int index, Team team) const {
+    const To& mine = to[index / runs_of(n)];
+    const MomentumOf& of = mine.of;
+    const int run = index % runs_of(n);
     const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
-    PlaceSum<MomentumSum> at{sums};
+    PlaceSum<MomentumSum> at{mine.sums};
     for (int i = run * run_length + team.rank(); i < end; i += Team::size) {
-      if (active && active[i] != which) continue;
+      if (of.whose != Whose::All && active[i] != static_cast<std::uint8_t>(of.whose)) continue;
       const Vec3 v = xyz(velocity[i]);
       const Vec3 x = xyz(position[i]);
       if (!all_finite(v) || !all_finite(x)) continue;
-      const int cell = cell_of ? cell_of[i] : grid.cell_of(x);
-      at.move_to(level[i] * grid.cells() + cell);
+      const int cell = of.cell_of ? of.cell_of[i] : of.grid.cell_of(x);
+      at.move_to(level[i] * of.grid.cells() + cell);
       const std::uint64_t mass = std::uint64_t{1} << level[i];
       at.sum.mass += mass;
       at.sum.x += mass * fixed(v.x);
@@ -120,55 +125,41 @@ struct AddEnergy {
   }
 };
 
-/// Turns sums into means and fills what is empty.
-struct FinishVelocity {
-  const MomentumSum* sums;
-  Vec4* velocity;
-  int cells;
-
-  SIM_FN void operator()(int i) const {
-    if (sums[i].mass > 0) {
-      velocity[i] = with_w(mean_velocity(sums[i]), value_measured);
-      return;
-    }
-    if (velocity[i].w == value_measured) {
-      velocity[i].w = value_borrowed;
-      return;
-    }
-    MomentumSum all{};
-    for (int level = 0; level < grid_levels; ++level) {
-      const MomentumSum& other = sums[level * cells + i % cells];
-      all = {all.mass + other.mass, all.x + other.x, all.y + other.y, all.z + other.z};
-    }
-    velocity[i] = all.mass > 0 ? with_w(mean_velocity(all), value_borrowed) : Vec4{0, 0, 0, value_unknown};
-  }
-};
-
+/// Leaves the sums at zero.
 struct FinishEnergy {
-  const std::uint64_t* sums;
+  std::uint64_t* sums;
   float* energy;
   SIM_FN void operator()(int i) const {
     energy[i] = static_cast<float>(static_cast<double>(sums[i]) / 65536.0);
+    sums[i] = 0;
   }
 };
 
 }  // namespace
 
-void add_momentum(MovingView particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
-                  Array<MomentumSum>& sums, std::uint8_t which) {
-  sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
-  sums.zero();
-  const int n = particles.size();
-  for_each_team("add momentum", runs_of(n),
-                AddMomentum{.position = particles.position(),
-                            .velocity = particles.velocity(),
-                            .level = particles.level(),
-                            .active = active,
-                            .cell_of = cell_of,
-                            .grid = grid,
-                            .sums = sums.data(),
-                            .n = n,
-                            .which = which});
+void CellMomentum::measure(MovingView particles, const std::uint8_t* active, const MomentumOf* sums, int n) {
+  AddMomentum add{.position = particles.position(),
+                  .velocity = particles.velocity(),
+                  .level = particles.level(),
+                  .active = active,
+                  .n = particles.size()};
+  const auto size_of = [&](int k) {
+    return sums[k].whose == Whose::Nobody ? 0 : grid_levels * sums[k].grid.cells();
+  };
+  int size = 0;
+  for (int k = 0; k < n; ++k) size += size_of(k);
+  sums_.resize(static_cast<std::size_t>(size));
+  sums_.zero();
+  int wanted = 0;
+  MomentumSum* next = sums_.data();
+  for (int k = 0; k < most; ++k) {
+    const bool there = k < n && sums[k].whose != Whose::Nobody;
+    of_[k] = there ? next : nullptr;
+    if (!there) continue;
+    add.to[wanted++] = {sums[k], next};
+    next += size_of(k);
+  }
+  for_each_team("add momentum", wanted * runs_of(add.n), add);
 }
 
 void VelocityGrid::fit(const Domain& domain, float edge) {
@@ -192,16 +183,15 @@ void VelocityGrid::fit(const Domain& domain, float edge) {
   velocity_.zero();
   energy_.resize(cells);
   energy_.zero();
-  energy_sums_.resize(cells);
+  make_energy_sums();
 }
 
-void VelocityGrid::update_velocity(MovingView particles, const std::uint8_t* active) {
-  add_momentum(particles, active, nullptr, frame(), sums_);
-  for_each("mean velocity", grid_levels * cells(), FinishVelocity{sums_.data(), velocity_.data(), cells()});
+void VelocityGrid::make_energy_sums() {
+  energy_sums_.resize(energy_.size());
+  energy_sums_.zero();
 }
 
 void VelocityGrid::update_energy(MovingView particles) {
-  energy_sums_.zero();
   const int n = particles.size();
   for_each_team("add energy", runs_of(n),
                 AddEnergy{particles.position(), particles.velocity(), particles.level(), frame(),
@@ -209,8 +199,6 @@ void VelocityGrid::update_energy(MovingView particles) {
   for_each("energy", cells(), FinishEnergy{energy_sums_.data(), energy_.data()});
 }
 
-std::size_t VelocityGrid::bytes() const {
-  return sums_.bytes() + energy_sums_.bytes() + velocity_.bytes() + energy_.bytes();
-}
+std::size_t VelocityGrid::bytes() const { return energy_sums_.bytes() + velocity_.bytes() + energy_.bytes(); }
 
 }  // namespace sim::SIM_BACKEND

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "libsim/exec/passes.hpp"
 #include "libsim/particles/cells.hpp"
 #include "libsim/particles/particles.hpp"
 
@@ -16,6 +17,15 @@ constexpr int grid_levels = 4;
 struct MomentumSum {
   std::uint64_t mass, x, y, z;
 };
+
+/// momentum / mass of a sum that is not empty.
+SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
+  const auto part = [&](std::uint64_t momentum) {
+    return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(momentum)) /
+                              (static_cast<double>(sum.mass) * 1048576.0));
+  };
+  return {part(sum.x), part(sum.y), part(sum.z)};
+}
 
 /// How a cell and level came to its value; stored in w.
 constexpr float value_unknown = 0;
@@ -83,6 +93,64 @@ SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
 /// The particles that the grids are sums over.
 using MovingView = Reads<Column::Position, Column::Velocity, Column::Level>;
 
+/// Whose momentum a sum holds. Resting and Solved are values of Active; All asks nobody for theirs.
+enum class Whose : std::uint8_t { Resting = 0, Solved = 1, All = 254, Nobody = 255 };
+
+/// One sum: whose, over which cells.
+struct MomentumOf {
+  Whose whose = Whose::Nobody;
+  GridFrame grid{};
+  const int* cell_of = nullptr;  ///< cell of each particle; nullptr: by position
+};
+
+/// Mass and momentum by cell and level, several sums at a time.
+class CellMomentum {
+ public:
+  static constexpr int most = 4;
+
+  /// Makes these sums, and forgets those before, in one launch. active: may be nullptr where no sum asks.
+  template <int n>
+  void measure(MovingView particles, const std::uint8_t* active, const MomentumOf (&sums)[n]) {
+    static_assert(n <= most);
+    measure(particles, active, sums, n);
+  }
+  /// The k-th sum: [level x cells + cell]; nullptr when it is Nobody's.
+  const MomentumSum* of(int k) const { return of_[k]; }
+  /// Makes room for sums over `cells` in all.
+  void reserve(int cells) { sums_.reserve(static_cast<std::size_t>(grid_levels * cells)); }
+  std::size_t bytes() const { return sums_.bytes(); }
+
+ private:
+  void measure(MovingView particles, const std::uint8_t* active, const MomentumOf* sums, int n);
+
+  Array<MomentumSum> sums_;
+  MomentumSum* of_[most] = {};
+};
+
+/// Turns sums into means and fills what is empty.
+struct FinishVelocity {
+  const MomentumSum* sums;
+  Vec4* velocity;
+  int cells;
+
+  SIM_FN void operator()(int i) const {
+    if (sums[i].mass > 0) {
+      velocity[i] = with_w(mean_velocity(sums[i]), value_measured);
+      return;
+    }
+    if (velocity[i].w == value_measured) {
+      velocity[i].w = value_borrowed;
+      return;
+    }
+    MomentumSum all{};
+    for (int level = 0; level < grid_levels; ++level) {
+      const MomentumSum& other = sums[level * cells + i % cells];
+      all = {all.mass + other.mass, all.x + other.x, all.y + other.y, all.z + other.z};
+    }
+    velocity[i] = all.mass > 0 ? with_w(mean_velocity(all), value_borrowed) : Vec4{0, 0, 0, value_unknown};
+  }
+};
+
 class VelocityGrid {
  public:
   /// Lays cells of `edge` over the domain: ceil(extent / edge), at least one each way. Forgets all values
@@ -91,9 +159,12 @@ class VelocityGrid {
   GridFrame frame() const { return {frame_, block_}; }
   int cells() const { return block_.size(); }
 
-  /// V: mass-weighted mean velocity of a cell and level, m/s, from the particles with active != 0. What is
-  /// empty keeps the measured value of the frame before, once, or takes the mean of the other levels.
-  void update_velocity(MovingView particles, const std::uint8_t* active);
+  /// The pass that makes V of a sum over frame(): mass-weighted mean velocity of a cell and level, m/s. What
+  /// is empty keeps the measured value of the frame before, once, or takes the mean of the other levels.
+  /// Without a sum (nullptr) V stays.
+  Pass<FinishVelocity> finish_velocity(const MomentumSum* sums) {
+    return {sums ? grid_levels * cells() : 0, {sums, velocity_.data(), cells()}};
+  }
   /// E: kinetic energy of a cell, all particles, in m_* m2/s2 (J per kg of m_*).
   void update_energy(MovingView particles);
 
@@ -104,30 +175,17 @@ class VelocityGrid {
   template <class Archive>
   void keep(Archive& archive) {
     archive(frame_, block_, velocity_, energy_);
-    if constexpr (Archive::reads) energy_sums_.resize(energy_.size());
+    if constexpr (Archive::reads) make_energy_sums();
   }
 
  private:
+  void make_energy_sums();
+
   CellFrame frame_;
   CellBlock block_;
-  Array<MomentumSum> sums_;
-  Array<std::uint64_t> energy_sums_;
+  Array<std::uint64_t> energy_sums_;  ///< zero whenever nobody adds
   Array<Vec4> velocity_;
   Array<float> energy_;
 };
-
-/// Adds mass and momentum of the particles with active == which (all when null) to sums[level x cells +
-/// cell], the cell given by cell_of (by position when null).
-void add_momentum(MovingView particles, const std::uint8_t* active, const int* cell_of, GridFrame grid,
-                  Array<MomentumSum>& sums, std::uint8_t which = 1);
-
-/// momentum / mass of a sum that is not empty.
-SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
-  const auto part = [&](std::uint64_t momentum) {
-    return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(momentum)) /
-                              (static_cast<double>(sum.mass) * 1048576.0));
-  };
-  return {part(sum.x), part(sum.y), part(sum.z)};
-}
 
 }  // namespace sim::SIM_BACKEND

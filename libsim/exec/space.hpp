@@ -106,10 +106,12 @@ class Sorter {
   Array<unsigned char> scratch_;
 };
 
-/// sums[i] = values[0] + ... + values[i]; both may be the same array.
 class Scanner {
  public:
+  /// sums[i] = values[0] + ... + values[i]; both may be the same array.
   void inclusive_sum(const Array<int>& values, Array<int>& sums);
+  /// counts[i] = how many of flags[0] ... flags[i] are not 0; of n.
+  void inclusive_count(const std::uint8_t* flags, int n, Array<int>& counts);
 
  private:
   Array<unsigned char> scratch_;

@@ -138,6 +138,13 @@ void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
   for (std::size_t i = 0; i < values.size(); ++i) sums.data()[i] = sum += values.data()[i];
 }
 
+void Scanner::inclusive_count(const std::uint8_t* flags, int n, Array<int>& counts) {
+  const LaunchTimer timer("scan");
+  counts.resize(static_cast<std::size_t>(n));
+  int count = 0;
+  for (int i = 0; i < n; ++i) counts.data()[i] = count += flags[i] != 0;
+}
+
 double fixed_order_sum(const Array<float>& values, int n) {
   double total = 0;
   constexpr int chunk = 4096;

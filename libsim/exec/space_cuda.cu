@@ -1,5 +1,6 @@
 // CUB's headers cost seconds to compile: sort, scan and sums stand in this one file.
 #include <cub/cub.cuh>
+#include <thrust/iterator/transform_iterator.h>
 
 #include <deque>
 #include <map>
@@ -143,16 +144,33 @@ void Sorter::sort(Array<std::uint64_t>& keys, Array<int>& order) {
   if (order_buffer.Current() != order.data()) order.swap(order_);
 }
 
-void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
-  const int n = static_cast<int>(values.size());
-  sums.resize(values.size());
+namespace {
+
+struct IsSet {
+  SIM_FN int operator()(std::uint8_t flag) const { return flag != 0; }
+};
+
+/// Values: an iterator over ints.
+template <class Values>
+void sum_inclusively(Values values, int n, Array<int>& sums, Array<unsigned char>& scratch) {
+  sums.resize(static_cast<std::size_t>(n));
   if (n == 0) return;
   const LaunchTimer timer("scan");
   std::size_t bytes = 0;
-  check(cub::DeviceScan::InclusiveSum(nullptr, bytes, values.data(), sums.data(), n), "scan");
-  if (bytes > scratch_.size()) scratch_.resize(bytes);
-  bytes = scratch_.size();
-  check(cub::DeviceScan::InclusiveSum(scratch_.data(), bytes, values.data(), sums.data(), n), "scan");
+  check(cub::DeviceScan::InclusiveSum(nullptr, bytes, values, sums.data(), n), "scan");
+  if (bytes > scratch.size()) scratch.resize(bytes);
+  bytes = scratch.size();
+  check(cub::DeviceScan::InclusiveSum(scratch.data(), bytes, values, sums.data(), n), "scan");
+}
+
+}  // namespace
+
+void Scanner::inclusive_sum(const Array<int>& values, Array<int>& sums) {
+  sum_inclusively(values.data(), static_cast<int>(values.size()), sums, scratch_);
+}
+
+void Scanner::inclusive_count(const std::uint8_t* flags, int n, Array<int>& counts) {
+  sum_inclusively(thrust::make_transform_iterator(flags, IsSet{}), n, counts, scratch_);
 }
 
 namespace {

@@ -37,7 +37,7 @@ void MeetingCells::lay(const Domain& domain, float edge, float finest_support) {
   last = {rest(size.x, grid.block.nx), rest(size.y, grid.block.ny), rest(size.z, grid.block.nz)};
   const float spacings = 2 * edge / finest_support;
   full = spacings * spacings * spacings;
-  sums.resize(static_cast<std::size_t>(grid_levels * grid.cells()));
+  sums.reserve(grid.cells());
   meeting.resize(static_cast<std::size_t>(grid.cells()));
 }
 

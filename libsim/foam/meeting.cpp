@@ -124,9 +124,9 @@ struct Meet {
 
 template <class Bounds>
 void find_meeting(MeetingCells& cells, MovingView water, const Bounds& bounds) {
-  add_momentum(water, nullptr, nullptr, cells.grid, cells.sums);
+  cells.sums.measure(water, nullptr, {{Whose::All, cells.grid}});
   for_each("foam cells", cells.grid.cells(),
-           Meet<Bounds>{cells.sums.data(), cells.grid, cells.last, cells.full, bounds, cells.meeting.data()});
+           Meet<Bounds>{cells.sums.of(0), cells.grid, cells.last, cells.full, bounds, cells.meeting.data()});
 }
 
 template void find_meeting(MeetingCells&, MovingView, const Walls&);

@@ -15,7 +15,7 @@ struct MeetingCells {
   GridFrame grid{};
   Vec3 last{1, 1, 1};  ///< sides of the cells at the high walls, which cut them, in edges
   float full = 1;      ///< mass of the water that fills a cell, m_*
-  Array<MomentumSum> sums;
+  CellMomentum sums;
   /// x: speed at which water meets over its distance, 1/s; w: value_measured, or value_unknown without water.
   Array<Vec4> meeting;
 

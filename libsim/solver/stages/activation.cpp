@@ -6,7 +6,6 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 constexpr float cell_spacings = 10;  ///< edge of the velocity grid's cells in d_*
-constexpr float range_share = 0.1f;  ///< a frame, of the way to the new percentiles
 
 struct ActivateAll {
   std::uint8_t* active;
@@ -85,11 +84,6 @@ void measure(FluidState& state, Columns p) {
   const float spacing = 0.5f * state.finest_support;
   const float speed_floor = fmaxf(a.rules.speed_floor * sqrtf(state.parameters.gravity * spacing), 1e-6f);
   measure_importance(a, p, p.saliency(), speed_floor);
-  if (a.rules.robust_range) {
-    a.range.follow_percentiles(a.importance, p.size(), range_share);
-  } else {
-    a.range.take_extremes(a.importance, p.size());
-  }
 }
 
 template <class Boundary>
@@ -136,8 +130,10 @@ void run(FluidState& state, Columns p) {
   a.probability.resize(static_cast<std::size_t>(n));
   state.obstacles.there() ? choose(state, p, state.solids()) : choose(state, p, state.walls);
   if (!a.rules.inherit_change) return;
-  add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.before);
-  if (a.rules.pressed) add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.others_before, 0);
+  const GridFrame near = a.near.frame();
+  a.before.measure(p, p.active(),
+                   {{Whose::Solved, near, p.start_cell()},
+                    {a.rules.pressed ? Whose::Resting : Whose::Nobody, near, p.start_cell()}});
 }
 
 }  // namespace

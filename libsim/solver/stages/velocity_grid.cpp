@@ -95,30 +95,41 @@ using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::L
                                    Column::Active, Column::Rest, Column::StartCell),
                            columns(Column::Velocity, Column::Position, Column::Rest)>;
 
-/// Mean changes of the solved particles by the cells that they started in.
-void find_changes(FluidState& state, Columns p) {
+/// V, what the resting inherit, and who is sparse: one launch over the particles, one over the cells' sums.
+void find_means(FluidState& state, Columns p) {
   auto& a = state.activation;
-  const int cells = grid_levels * a.near.cells();
-  add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.after);
-  a.change.resize(static_cast<std::size_t>(cells));
-  if (a.rules.pressed) add_momentum(p, p.active(), p.start_cell(), a.near.frame(), a.others_after, 0);
-  for_each("mean change", cells,
-           MeanChange{.before = a.before.data(),
-                      .after = a.after.data(),
-                      .others_before = a.rules.pressed ? a.others_before.data() : nullptr,
-                      .others_after = a.others_after.data(),
-                      .change = a.change.data(),
-                      .cells = a.near.cells()});
+  const bool changes = !state.all_active && a.rules.inherit_change;
+  const bool pressed = changes && a.rules.pressed;
+  const bool means = changes && a.rules.damping > 0;
+  const GridFrame near = a.near.frame();
+  a.after.measure(p, p.active(),
+                  {{changes ? Whose::Solved : Whose::Nobody, near, p.start_cell()},
+                   {pressed ? Whose::Resting : Whose::Nobody, near, p.start_cell()},
+                   {state.all_active ? Whose::All : Whose::Solved, a.grid.frame()},
+                   {means ? Whose::Solved : Whose::Nobody, near}});
+  const int changing = changes ? grid_levels * near.cells() : 0;
+  a.change.resize(static_cast<std::size_t>(changing));
+  const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
+  for_each_pass(
+      "means and marks",  //
+      a.grid.finish_velocity(a.after.of(sum_of_grid)), a.near.finish_velocity(a.after.of(sum_of_near)),
+      Pass<MeanChange>{changing,
+                       {.before = a.before.of(sum_of_solved),
+                        .after = a.after.of(sum_of_solved),
+                        .others_before = a.before.of(sum_of_resting),
+                        .others_after = a.after.of(sum_of_resting),
+                        .change = a.change.data(),
+                        .cells = near.cells()}},
+      Pass<MarkSparse>{p.size(),
+                       {p.active(), p.density(), p.rest(), tension ? surface_density : sparse_density}});
 }
 
 template <class Boundary>
 void inherit(FluidState& state, Columns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  if (a.rules.inherit_change) find_changes(state, p);
   // As printed, the mean velocities are those of V.
   const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
-  if (a.rules.inherit_change && a.rules.damping > 0) a.near.update_velocity(p, p.active());
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;
   const float frame_dt = k.dt * substeps;
@@ -140,14 +151,10 @@ void inherit(FluidState& state, Columns p, Boundary boundary) {
 
 /// Algorithm 3, lines 4-5 and 13-17, in two passes: line 15 reads the grid that line 13 is still writing.
 void run(FluidState& state, Columns p) {
-  auto& a = state.activation;
-  a.grid.update_velocity(p, state.all_active ? nullptr : p.active());
+  find_means(state, p);
   if (!state.all_active)
     state.obstacles.there() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
-  a.grid.update_energy(p);
-  const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
-  for_each("mark sparse", p.size(),
-           MarkSparse{p.active(), p.density(), p.rest(), tension ? surface_density : sparse_density});
+  state.activation.grid.update_energy(p);
   state.all_active = true;
 }
 

@@ -1,4 +1,5 @@
 #include "libsim/exec/one_block.hpp"
+#include "libsim/exec/passes.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -50,6 +51,55 @@ SIM_TEST(Scanner, SumsInclusively) {
   Scanner().inclusive_sum(device, sums);
   std::partial_sum(values.begin(), values.end(), values.begin());
   EXPECT_EQ(sums.to_host(), values);
+}
+
+SIM_TEST(Scanner, CountsWhatIsNotZeroInclusively) {
+  Scanner scanner;
+  for (const std::size_t n : {0u, 1u, 5000u, 70000u}) {
+    std::vector<std::uint8_t> flags(n);
+    std::vector<int> expected(n);
+    int count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      flags[i] = static_cast<std::uint8_t>(i % 3 == 1 ? 0 : i % 256);
+      expected[i] = count += flags[i] != 0;
+    }
+    Array<std::uint8_t> device;
+    Array<int> counts;
+    device.from_host(flags);
+    scanner.inclusive_count(device.data(), static_cast<int>(n), counts);
+    EXPECT_EQ(counts.to_host(), expected) << n;
+  }
+}
+
+struct AddTo {
+  int* to;
+  int step;
+  SIM_FN void operator()(int i) const { to[i] += step * (i + 1); }
+};
+
+SIM_TEST(Passes, EachIndexOfEachOnceInOneLaunch) {
+  std::vector<Array<int>> out(4);
+  for (auto& part : out) {
+    part.resize(1000);
+    part.zero();
+  }
+  const auto part = [&](std::size_t k, int n) {
+    return Pass<AddTo>{n, {out[k].data(), static_cast<int>(k) + 1}};
+  };
+  profile_launches(true);
+  for_each_pass("parts", part(0, 700), part(1, 0), part(2, 1), part(3, 1000));
+  for_each_pass("none", part(0, 0), part(1, 0));
+  const auto times = launch_times();
+  profile_launches(false);
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_EQ(times[0].launches, 1);
+  const int sizes[] = {700, 0, 1, 1000};
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::vector<int> expected(1000, 0);
+    for (int i = 0; i < sizes[k]; ++i)
+      expected[static_cast<std::size_t>(i)] = (static_cast<int>(k) + 1) * (i + 1);
+    EXPECT_EQ(out[k].to_host(), expected) << k;
+  }
 }
 
 /// Adds 0 ... i % 50 by lanes and lists the odd ones of them in order.
