@@ -63,8 +63,9 @@ using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, colum
 
 /// Sums of Activation::before and after, by the cell that the particles started in.
 constexpr int sum_of_solved = 0;
-constexpr int sum_of_resting = 1;  ///< only where something moves them too
-/// Those of `after` alone, by position.
+constexpr int sum_of_resting = 1;  ///< only with ActivationRules::pressed
+/// Those of `after` alone, of the solved by position: on the cells of `grid` (in full frames of all) and of
+/// `near`.
 constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
@@ -87,7 +88,7 @@ struct Activation {
 
   // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz a cell, dV/dl, sum over levels, dE.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
-  CellMomentum before, after;  ///< the solve
+  CellMomentum before, after;  ///< the solve; see sum_of_solved
   Array<Vec4> change;          ///< what the others miss
 
   Array<int> ranks, slots, slot_of;
