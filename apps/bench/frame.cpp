@@ -117,7 +117,9 @@ nlohmann::json run_frames(const FrameOptions& options) {
   Accounts accounts;
   LaunchSums launches;
   Progress progress("frames", static_cast<std::size_t>(options.frames));
-  const int stride = options.measure_every > 0 ? options.measure_every : tenth_of(options.frames);
+  const int stride = options.measure_every > 0 ? options.measure_every
+                                               : tenth_of(options.frames, sim::parse_method(options.method),
+                                                          options.fluid.readings);
   Substeps substeps;
   for (int frame = 0; frame < options.frames; ++frame) {
     const double start = milliseconds_now();

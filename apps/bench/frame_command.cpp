@@ -210,7 +210,7 @@ void add_frame_command(CLI::App& app) {
       ->add_option("--save-state", options->save_state, "Write the state after the last frame to this file")
       ->check(output_file());
   add_count(*command, "--measure-every", options->measure_every, 0, 100000,
-            "Measure the density every so many frames, untimed; 0 = ten times");
+            "Measure the density every so many frames, untimed; 0 = some ten times");
   command->add_flag(
       "--passes", options->passes,
       "Also time every launch of the solver (slows it down) and hold it against the memory's bandwidth");

@@ -45,7 +45,7 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
   Substeps substeps;
   Accuracy accuracy;
   GrowthRow out{.n_star = size.word};
-  const int stride = tenth_of(options.frames);
+  const int stride = tenth_of(options.frames, choice.method, choice.readings);
   for (int frame = 0; frame < options.frames; ++frame) {
     const double start = milliseconds_now();
     fluid->step_frame();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <string>
 
 #include "libsim/simulation.hpp"
@@ -31,8 +32,14 @@ struct Accuracy {
   }
 };
 
-/// Every so many frames, ten states of a run are measured.
-inline int tenth_of(int frames) { return std::max(1, frames / 10); }
+/// Every so many frames, some ten states of a run are measured. Water is denser in the frame after a turn of
+/// the levels than before the next one, so each frame between two turns has to be met as often.
+inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
+  const int turn = sim::traits_of(method).adaptive() ? readings.levels_period_frames : 1;
+  int out = std::max(1, frames / 10);
+  while (std::gcd(out, turn) > 1) ++out;
+  return out;
+}
 
 /// Substeps over all frames.
 struct Substeps {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/bench/timed_run.hpp"
 #include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
@@ -99,6 +100,21 @@ TEST_F(BenchFrameE2e, StatesThatAreMeasuredAreNoLaunches) {
   const double every = launches("1");
   EXPECT_GT(every, 0);
   EXPECT_EQ(every, launches("2"));
+}
+
+// Ten states of a hundred frames, each tenth one, would lie two frames apart in turns of four.
+TEST(TimedRun, MeasuredStatesMeetEachFrameBetweenTurnsAsOften) {
+  sim::Readings readings = sim::readings_of(sim::Preset::Tuned);
+  for (const int turn : {1, 2, 4, 6}) {
+    readings.levels_period_frames = turn;
+    for (const int frames : {1, 40, 60, 100, 120, 500}) {
+      const int every = apps::tenth_of(frames, sim::MethodKind::Ours, readings);
+      std::vector<int> met(static_cast<std::size_t>(turn));
+      for (int k = 1; k <= 12; ++k) ++met[static_cast<std::size_t>(k * every % turn)];
+      for (const int times : met) EXPECT_EQ(times, 12 / turn) << frames << " frames, turns of " << turn;
+      EXPECT_EQ(apps::tenth_of(frames, sim::MethodKind::HiRes, readings), std::max(1, frames / 10));
+    }
+  }
 }
 
 TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {
