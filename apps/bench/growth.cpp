@@ -106,7 +106,7 @@ constexpr const char* columns_help =
     "counts the particles' columns and what saliency, temporal acceleration, nozzles and outlets keep;\n"
     "neighbour lists, cells and the grids of the pressure are not in it. device_bytes_per_particle is what\n"
     "the device's memory holds after the run above what it held before it (- on the CPU).\n"
-    "density_error_mean is the mean of max(rho/rho_0 - 1, 0) over ten states.";
+    "density_error_mean is the mean of max(rho/rho_0 - 1, 0) over some ten states.";
 
 }  // namespace
 

@@ -32,10 +32,10 @@ struct Accuracy {
   }
 };
 
-/// Every so many frames, some ten states of a run are measured. Water is denser in the frame after a turn of
-/// the levels than before the next one, so each frame between two turns has to be met as often.
+/// Every so many frames, some ten states of a run are measured. Water is denser in the frame of a turn of the
+/// levels than before the next one, so states meet each of the frames between two turns nearly as often.
 inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
-  const int turn = sim::traits_of(method).adaptive() ? readings.levels_period_frames : 1;
+  const int turn = sim::traits_of(method).adaptive() ? std::max(1, readings.levels_period_frames) : 1;
   int out = std::max(1, frames / 10);
   while (std::gcd(out, turn) > 1) ++out;
   return out;

@@ -144,11 +144,13 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
                   .active = active,
                   .n = particles.size()};
   const auto size_of = [&](int k) {
-    return sums[k].whose == Whose::Nobody ? 0 : grid_levels * sums[k].grid.cells();
+    const auto cells = static_cast<std::size_t>(sums[k].grid.cells());
+    return sums[k].whose == Whose::Nobody ? 0 : grid_levels * cells;
   };
-  int size = 0;
+  for (auto& sum : of_) sum = nullptr;
+  std::size_t size = 0;
   for (int k = 0; k < n; ++k) size += size_of(k);
-  sums_.resize(static_cast<std::size_t>(size));
+  sums_.resize(size);
   sums_.zero();
   int wanted = 0;
   MomentumSum* next = sums_.data();

@@ -114,10 +114,14 @@ class CellMomentum {
     static_assert(n <= most);
     measure(particles, active, sums, n);
   }
-  /// The k-th sum: [level x cells + cell]; nullptr when it is Nobody's.
+  /// The k-th sum: [level x cells + cell]; nullptr when it is Nobody's. It lasts until the next measure() or
+  /// reserve().
   const MomentumSum* of(int k) const { return of_[k]; }
   /// Makes room for sums over `cells` in all.
-  void reserve(int cells) { sums_.reserve(static_cast<std::size_t>(grid_levels * cells)); }
+  void reserve(int cells) {
+    for (auto& sum : of_) sum = nullptr;
+    sums_.reserve(grid_levels * static_cast<std::size_t>(cells));
+  }
   std::size_t bytes() const { return sums_.bytes(); }
 
  private:
