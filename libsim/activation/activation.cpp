@@ -33,8 +33,6 @@ void Activation::list_active(ActiveListView p) {
   const auto size = static_cast<std::size_t>(n);
   slots.resize(size);
   slot_of.resize(size);
-  ranks.resize(size);
-  if (n == 0) return;
   scanner.inclusive_count(p.active(), n, ranks);
   for_each("active slots", n,
            PlaceInSlots{.active = p.active(),

@@ -154,10 +154,9 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
   sums_.zero();
   int wanted = 0;
   MomentumSum* next = sums_.data();
-  for (int k = 0; k < most; ++k) {
-    const bool there = k < n && sums[k].whose != Whose::Nobody;
-    of_[k] = there ? next : nullptr;
-    if (!there) continue;
+  for (int k = 0; k < n; ++k) {
+    if (sums[k].whose == Whose::Nobody) continue;
+    of_[k] = next;
     add.to[wanted++] = {sums[k], next};
     next += size_of(k);
   }
