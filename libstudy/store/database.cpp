@@ -20,7 +20,8 @@ using sqlite::Open;
 namespace {
 
 constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_permissions.sql",
-                                "004_counting.sql", "005_headsets.sql", "006_effects.sql"};
+                                "004_counting.sql", "005_headsets.sql", "006_effects.sql",
+                                "007_promises.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 
 // The head of a SQLite file (sqlite.org/fileformat.html, section 1.3).

@@ -1,0 +1,1 @@
+-- Step 7. What people decided, and what was exported, in full: each section stands by itself.
