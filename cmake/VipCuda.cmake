@@ -1,6 +1,16 @@
-# Decides once whether the CUDA back end is built: VIP_HAS_CUDA is ON or OFF afterwards.
+# Decides once whether the CUDA back end is built: VIP_HAS_CUDA is ON or OFF afterwards. AUTO builds it on a machine with an
+# NVIDIA GPU, for that GPU: nvcc takes as long as all the rest, and without a GPU nothing of it could run. ON builds it anywhere.
 set(VIP_HAS_CUDA OFF)
-if(NOT VIP_CUDA STREQUAL "OFF")
+set(_wanted ${VIP_CUDA})
+if(VIP_CUDA STREQUAL "AUTO")
+  execute_process(COMMAND nvidia-smi --list-gpus RESULT_VARIABLE _no_gpu OUTPUT_VARIABLE _gpus ERROR_QUIET)
+  if(_no_gpu OR NOT _gpus MATCHES "GPU")
+    set(_wanted OFF)
+  elseif(NOT CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES native)
+  endif()
+endif()
+if(NOT _wanted STREQUAL "OFF")
   include(CheckLanguage)
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)

@@ -7,7 +7,7 @@ option(VIP_NATIVE "Use every instruction of this machine's processor" OFF)
 option(VIP_QUICK "Compile studies and programs at -O1 and most tests at -O0, which are hardly hot: half the time" ON)
 option(VIP_PRECOMPILE "Read the headers that most files include once" ON)
 option(VIP_LIBFUZZER "Link the fuzz entry points with libFuzzer (clang only)" OFF)
-set(VIP_CUDA "AUTO" CACHE STRING "CUDA back end: AUTO, ON or OFF")
+set(VIP_CUDA "AUTO" CACHE STRING "CUDA back end: AUTO (where this machine has an NVIDIA GPU), ON or OFF")
 set_property(CACHE VIP_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(VIP_SANITIZE "" CACHE STRING "Sanitizers for g++, for example address,undefined")
 

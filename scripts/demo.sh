@@ -24,7 +24,7 @@ run() {  # run COMMAND...: prints it, then runs it
 }
 
 phase "Set up"
-run ./scripts/setup.sh
+run ./scripts/setup.sh build
 phase "Build"
 run cmake --preset release
 run cmake --build --preset release --target vip-study vip-stats vip-view

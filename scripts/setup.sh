@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# Installs every Debian package that ViP-Lab needs to build, run and test. Safe to run again.
+# Installs the Debian packages that ViP-Lab needs. Safe to run again.
+# usage: scripts/setup.sh [PART ...]     without a part: all of them
+#   build    what builds and runs the programs
+#   tests    what the tests need besides
+#   sweeps   Snakemake, for scripts/sweep.smk and its tests
 set -euo pipefail
 
-packages=(
-  # build
+build=(
   g++ cmake ninja-build pkg-config
   # libraries fixed by the project
-  libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev libgtest-dev libgmock-dev
+  libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev
   libopenxr-dev libopenxr-loader1
   # texts, TOML, JSON, PNG, compression, checksums, SHA-256
   libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
@@ -14,14 +17,22 @@ packages=(
   libegl1 libgl1 libgl1-mesa-dri
   # type of the participant's window
   fonts-dejavu-core
-  # scripts/sweep.smk: many cells on many cores or a cluster
-  snakemake
-  # tests
-  sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy
 )
+tests=(libgtest-dev libgmock-dev sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
+# For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.
+command -v npm >/dev/null || tests+=(nodejs npm)
+sweeps=(snakemake)
 
-# The BIDS validator's (scripts/validate_bids.sh); whoever has npm from elsewhere keeps it.
-command -v npm >/dev/null || packages+=(nodejs npm)
+packages=()
+[ $# -gt 0 ] || set -- build tests sweeps
+for part in "$@"; do
+  case "$part" in
+    build) packages+=("${build[@]}") ;;
+    tests) packages+=("${tests[@]}") ;;
+    sweeps) packages+=("${sweeps[@]}") ;;
+    *) echo "setup: no part is called '$part'; the parts are build, tests and sweeps." >&2; exit 2 ;;
+  esac
+done
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "setup: this script knows Debian 12 and its relatives (no apt-get here)." >&2

@@ -6,7 +6,7 @@
 # looked at, which takes up to two minutes on two cores; the rest is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-command -v clang-tidy >/dev/null || { echo "tidy: clang-tidy is missing; run scripts/setup.sh" >&2; exit 1; }
+command -v clang-tidy >/dev/null || { echo "tidy: clang-tidy is missing; run scripts/setup.sh tests" >&2; exit 1; }
 
 changed() {  # changed [BASE]: C++ files that differ from there
   local base=${1:-}

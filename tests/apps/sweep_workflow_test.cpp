@@ -23,7 +23,7 @@ struct Worker {
 class SweepWorkflowE2e : public test::TableTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0) << "scripts/setup.sh installs Snakemake";
+    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0) << "scripts/setup.sh sweeps installs Snakemake";
   }
 
   /// In a session of its own, from this test's folder, on two cores.
