@@ -15,8 +15,8 @@ build=(
   libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
   # software OpenGL for machines without a GPU
   libegl1 libgl1 libgl1-mesa-dri
-  # type of the participant's window
-  fonts-dejavu-core
+  # type of the participant's window; other fonts of the system are found by fontconfig
+  fonts-dejavu-core libfontconfig-dev
 )
 tests=(libgtest-dev libgmock-dev sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
 # For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.

@@ -11,6 +11,7 @@
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/live_rates.hpp"
+#include "apps/study/pages/page_fonts.hpp"
 #include "apps/study/preview.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/scene/scene.hpp"
@@ -127,6 +128,7 @@ void check_protocol(const CheckOptions& options) {
                       "use timing = \"table2\" or \"equal\", or larger n_*");
   }
   check_visible(report.scenes);
+  check_pages(report.protocol);
 }
 
 }  // namespace

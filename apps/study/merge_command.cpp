@@ -7,6 +7,7 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/desk/database_place.hpp"
 #include "libstudy/store/merge.hpp"
 
 namespace apps {
@@ -18,7 +19,28 @@ struct MergeCommand {
   std::string into;
 };
 
+/// The balance of all stations together, and on stderr where it is off and why it may be.
+void print_balance(const study::Merge& done, const std::string& into) {
+  std::vector<std::string> lines;
+  for (const study::Balance& one : done.balance) lines.push_back(study::describe(one));
+  print_list("Balance:", lines);
+  for (const study::Balance& one : done.balance) {
+    if (one.off())
+      std::fprintf(stderr,
+                   "%s: warning: %s %s is not balanced: some orders are used at least twice more "
+                   "often than others\n",
+                   into.c_str(), one.name.c_str(), one.version.c_str());
+  }
+  for (const std::string& trouble : done.station_troubles) {
+    std::fprintf(stderr,
+                 "%s\n  mend: give each station a number of its own for the sessions to come, such as "
+                 "vip-study run --station 1/2 and --station 2/2\n",
+                 ("warning: " + trouble).c_str());
+  }
+}
+
 void merge(const MergeCommand& command) {
+  warn_of_place(command.into);
   const study::Merge done = study::merge({command.sources.begin(), command.sources.end()}, command.into);
   std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
               static_cast<long long>(done.sessions), static_cast<long long>(done.test_sessions),
@@ -26,6 +48,7 @@ void merge(const MergeCommand& command) {
   print_list("Codes that stood for several people:", done.renamed);
   print_list("Withdrew, and is in no merge:", done.withdrawn);
   print_list("Protocols of one name and version with different texts, kept apart:", done.namesakes);
+  print_balance(done, command.into);
   for (const auto& [code, gone] : done.buried)
     std::printf("%lld answers of %s deleted here\n", static_cast<long long>(gone.answers), code.c_str());
   print_clean_up(done.beside);

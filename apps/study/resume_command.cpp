@@ -9,6 +9,7 @@
 #include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
+#include "apps/study/station_warnings.hpp"
 #include "libstudy/session/interruptions.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/error.hpp"
@@ -88,6 +89,7 @@ Played play(const PlayOptions& options, const std::vector<std::string>& settings
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
+  const auto warnings = warn_of_station(store, options.database);
   for (const study::OpenRun& run : store.open_runs()) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     for (const auto& session : run.sessions) study::settle_interruption(store, protocol, session);
@@ -101,6 +103,7 @@ Played play(const PlayOptions& options, const std::vector<std::string>& settings
     check_settings(settings, chosen, place);
     check_keys_are_free(chosen.answer, options.console);
     SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
+    setup.warnings = warnings;
     open_mirror(options, setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);
     check_unchanged(store, run, setup, place);

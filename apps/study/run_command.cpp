@@ -12,6 +12,7 @@
 #include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
+#include "apps/study/station_warnings.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
@@ -92,7 +93,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
                                const SessionSetup& setup, const std::optional<std::string>& ptpe) {
   study::SessionPlan session;
   session.visit = command.visit;
-  session.seed = static_cast<std::uint64_t>(command.seed);
+  session.station_number = study::parse_station_number(command.run.station);
+  session.seed = study::seed_of_station(static_cast<std::uint64_t>(command.seed), session.station_number);
   session.test_data = protocol.test_data || !setup.departure().empty() ||
                       (command.run.display == "openxr" && command.run.clock == "virtual");
   session.framing = framing_record(setup.scenes);
@@ -118,7 +120,7 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
                              std::vector<int> taken) {
   study::RunPlan run{protocol, format_run_options(command.run), {}};
   for (const std::string& code : codes) {
-    taken.push_back(study::next_slot(protocol, taken));
+    taken.push_back(study::next_slot(protocol, taken, session.station_number));
     session.participant = code;
     session.plan = study::make_plan(protocol, code, session.seed, taken.back());
     run.sessions.push_back(session);
@@ -126,11 +128,38 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
+/// A station deals its own share of the assignment alone: a session without the number of the sessions before
+/// it is refused, as another number is told.
+void check_station_number(study::Store& store, const study::Protocol& protocol,
+                          const study::SessionPlan& common, const std::string& database) {
+  std::optional<study::StationNumber> other;
+  bool unnumbered = false;
+  for (const auto& number : store.station_numbers(protocol.sha256)) {
+    if (number == common.station_number) return;
+    if (number) other = number;
+    unnumbered = unnumbered || !number;
+  }
+  if (other && !common.station_number)
+    throw base::Error(database,
+                      "its sessions of protocol '" + protocol.name + "' are those of station " +
+                          study::station_text(*other) + ", and this run has no station number",
+                      "add --station " + study::station_text(*other) + ", or use another database");
+  if (!other && !unnumbered) return;
+  std::fprintf(stderr,
+               "%s: warning: sessions of protocol '%s' stand here %s; this run is station %s: see the "
+               "balance that vip-study merge prints\n",
+               database.c_str(), protocol.name.c_str(),
+               other ? ("as station " + study::station_text(*other)).c_str() : "without a station number",
+               study::station_text(*common.station_number).c_str());
+}
+
 Played play(const RunCommand& command, const study::Protocol& protocol, const study::SessionPlan& common,
             const std::vector<std::string>& codes, SessionSetup& setup) {
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
                      tell_of_locks(command.play.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
+  setup.warnings = warn_of_station(store, command.play.database);
+  check_station_number(store, protocol, common, command.play.database.string());
   const std::int64_t run_id =
       store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
   Played played;
@@ -233,7 +262,9 @@ void add_run_command(CLI::App& app) {
          "headset's eye tracker (recorded where gaze_kept is answered with yes), or not known; tracked "
          "without a headset: an observer's, as if a tracker had told it")
       ->check(CLI::IsMember({"fixed", "mouse", "head", "tracked", "none"}));
-  sub.add_option("--station", command->run.station, "Name of the station; kept with the sessions")
+  sub.add_option("--station", command->run.station,
+                 "Name of the station, kept with the sessions. A number at its end, 2/5 or \"lab2 2/5\" for "
+                 "station 2 of 5, gives the station its own share of the assignment and its own orders")
       ->check(text_up_to(100));
   add_viewing(sub, command->run.screen_width_mm, command->run.viewing_distance_mm,
               "Width of the participant's picture on the screen: with the distance it gives visual angles");

@@ -15,6 +15,7 @@
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
 #include "apps/study/desk/terminal.hpp"
+#include "apps/study/station_warnings.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
@@ -155,24 +156,6 @@ class Steering {
   std::optional<ConsoleTerminal> terminal_;
 };
 
-/// Before the first step at a window: what the screen and the computer are like, told and kept. Returns what
-/// is not as it should be.
-std::vector<std::string> check_station(study::Store& store, const study::OpenSession& session,
-                                       const study::Protocol& protocol, const SessionSetup& setup,
-                                       const PlayOptions& options) {
-  if (!setup.screen) return {};
-  const auto bytes = expected_bytes(protocol, session.units);
-  const auto judged = judge_preflight(setup.screen, read_station(options.database), bytes);
-  const std::string lines = format_preflight(judged);
-  std::fprintf(stderr, "%s", lines.c_str());
-  store.log(session.id, "preflight", lines, setup.clock->now_ns());
-  std::vector<std::string> warnings;
-  for (const PreflightLine& line : judged) {
-    if (line.readiness == Readiness::Warn) warnings.push_back(line.what + ": " + line.finding);
-  }
-  return warnings;
-}
-
 /// On stderr, before the first step: how long what is left takes in real time.
 void tell_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
   const bool person = !setup.participant->simulated();
@@ -246,8 +229,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   parts.gaze = setup.gaze.get();
   parts.slots = setup.slots.get();
   parts.targets = setup.targets.get();
-  std::vector<std::string> warnings;
-  for (const auto& session : run.sessions) warnings = check_station(store, session, protocol, setup, options);
+  auto warnings = check_station(store, run, protocol, setup, options.database);
   if (setup.rates.too_slow) warnings.emplace_back("live cells: not all reach their setting on this station");
   Steering steering(store, run, protocol, setup, options, warnings);
   const auto play = [&](const study::OpenSession& session) {

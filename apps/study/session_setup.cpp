@@ -5,6 +5,7 @@
 #include "apps/common/headset/headset_targets.hpp"
 #include "apps/study/cell_features.hpp"
 #include "apps/study/headset/headset_person.hpp"
+#include "apps/study/pages/page_fonts.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "libstudy/display/null.hpp"
@@ -179,6 +180,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
                                 const std::optional<std::string>& ptpe, const std::string& ptpe_place,
                                 const std::string& setting_place) {
   check_together(options, protocol);
+  if (options.observer.empty()) check_pages(protocol);
   SessionSettings settings(options.settings, protocol, setting_place);
   SessionSetup setup;
   setup.virtual_clock = options.clock == "virtual";

@@ -33,7 +33,8 @@ struct SessionSetup {
   std::function<void()> poll;                    ///< the window's, or empty
   std::optional<ScreenFacts> screen;             ///< likewise
   std::vector<FramedScene> scenes;               ///< as the display frames them; none: nothing is drawn
-  MeasuredReport rates;  ///< of live cells on this station; none: nothing was measured
+  std::vector<std::string> warnings;  ///< of clock and database (warn_of_station), for console and log
+  MeasuredReport rates;               ///< of live cells on this station; none: nothing was measured
 
   /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
   /// test data.

@@ -8,6 +8,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/desk/database_place.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "stats/base/error.hpp"
 
@@ -37,6 +38,7 @@ void confirm(const WithdrawCommand& command) {
 }
 
 void withdraw(const WithdrawCommand& command) {
+  warn_of_place(command.database);
   confirm(command);
   withdraw_and_tell(command.database, command.participant);
 }

@@ -88,7 +88,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"", "format", "whole number", "", "", "2"},
       {"", "name", "text", "", "", "of the study; stored with the data"},
       {"", "version", "text", "", "", "of the study, such as \"1.0\"; another text needs another version"},
-      {"", "language", "text", "", "", "of all texts, such as \"en\""},
+      {"", "language", "text", "", "", "of all texts, such as \"en\"; of fonts that have a character, the one for this language is taken"},
       {"", "participants", "whole number", "[1, 100000]", "",
        "planned; `vip-study check` says what the number leaves unbalanced"},
       {"", "accept_approximate", "true or false", "", "false",

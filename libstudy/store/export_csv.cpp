@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -167,6 +168,16 @@ void write_protocols(Connection& database, const ExportDraft& draft) {
   }
 }
 
+/// SQLite writes a column that a later schema step adds behind the last one, before that one's comment. Here
+/// it stands on a line of its own at the end, with its meaning as the others have it.
+std::string with_added_last(const std::string& create_sql) {
+  static const std::regex added(R"(, (\w+ \w+) /\* ([^*]*) \*/)");
+  std::string out = std::regex_replace(create_sql, added, "");
+  for (std::sregex_iterator one(create_sql.begin(), create_sql.end(), added), end; one != end; ++one)
+    out += "\n" + (*one)[1].str() + ", -- " + (*one)[2].str();
+  return out;
+}
+
 }  // namespace
 
 ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
@@ -182,7 +193,7 @@ ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
 std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql) {
   static const std::set<std::string> types{"INTEGER", "REAL", "TEXT", "BLOB"};
   std::vector<ColumnMeaning> columns;
-  std::istringstream lines(create_sql);
+  std::istringstream lines(with_added_last(create_sql));
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string name, type;

@@ -79,6 +79,8 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
                 "SELECT name || ' ' || version FROM protocol WHERE test_data = 0 GROUP BY name, version "
                 "HAVING count(*) > 1 ORDER BY 1");
   while (row.step()) merge.namesakes.push_back(row.text(0));
+  merge.balance = read_balance(result);
+  merge.station_troubles = merging::station_troubles(content);
   return merge;
 }
 

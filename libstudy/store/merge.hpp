@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/store/balance.hpp"
 #include "libstudy/store/withdraw.hpp"
 
 namespace study {
@@ -24,6 +25,8 @@ struct Merge {
   CleanUp beside;  ///< backups, personal data and exports of `into`
   /// Datasets that go by one name and version with different texts; they stay apart.
   std::vector<std::string> namesakes;
+  std::vector<Balance> balance;               ///< of the result, by protocol
+  std::vector<std::string> station_troubles;  ///< why it may be off: sentences without a full stop
 };
 
 /// Joins `sources` and what `into` holds already, in `into`.

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "libstudy/design/station.hpp"
 #include "libstudy/store/sqlite.hpp"
 
 namespace study::merging {
@@ -19,6 +21,8 @@ struct SessionCopy {
   int visit = 1;
   bool test_data = false;
   std::int64_t events = 0, frames = 0, played = 0;  ///< how far it went
+  std::optional<StationNumber> station_number;
+  bool counts = false;  ///< for the balance: Store::taken_slots()
 };
 
 struct Tombstone {
@@ -41,6 +45,10 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 
 /// Code by person, distinct for all people of `content`: a function of them alone.
 std::map<std::string, std::string> name_people(const Content& content);
+
+/// Why the stations did not share the assignment: two sources dealt under one number or without any, or were
+/// told another number of stations. A sentence each, without a full stop.
+std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the union into an empty database of the newest schema.
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,

@@ -19,7 +19,8 @@ constexpr const char* sessions_sql =
     "(SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
     "WHERE t.session_id = s.session_id), "
     "(SELECT count(*) FROM presentation q JOIN trial t USING (trial_id) WHERE t.session_id = s.session_id "
-    "AND q.state = 'played') "
+    "AND q.state = 'played'), s.station_number, s.station_count, "
+    "s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped') "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
 /// Without changes of permissions, which go on in any copy: Union::add_permissions joins them.
@@ -106,6 +107,10 @@ void add_source(Content& content, std::unique_ptr<Connection> source) {
     copy.events = row.integer(10);
     copy.frames = row.integer(11);
     copy.played = row.integer(12);
+    if (!row.is_null(13))
+      copy.station_number =
+          StationNumber{static_cast<int>(row.integer(13)), static_cast<int>(row.integer(14))};
+    copy.counts = row.integer(15) != 0;
     content.copies.push_back(std::move(copy));
   }
   Statement stone(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone");

@@ -163,4 +163,26 @@ std::vector<OpenRun> Store::open_runs() {
   return runs;
 }
 
+std::vector<std::optional<StationNumber>> Store::station_numbers(const std::string& protocol_sha256) {
+  Statement row(*database_,
+                "SELECT DISTINCT s.station_number, s.station_count FROM session s JOIN protocol p USING "
+                "(protocol_id) WHERE p.sha256 = ? AND s.test_data = p.test_data AND s.state IN ('open', "
+                "'done', 'stopped') ORDER BY 1, 2");
+  row.bind_all(protocol_sha256);
+  std::vector<std::optional<StationNumber>> numbers;
+  while (row.step()) {
+    numbers.emplace_back();
+    if (!row.is_null(0))
+      numbers.back() = StationNumber{static_cast<int>(row.integer(0)), static_cast<int>(row.integer(1))};
+  }
+  return numbers;
+}
+
+std::string Store::newest_utc() {
+  Statement row(*database_,
+                "SELECT coalesce(max(utc), '') FROM (SELECT max(utc) AS utc FROM event UNION ALL "
+                "SELECT max(started_utc) FROM run UNION ALL SELECT max(answered_utc) FROM response)");
+  return row.step() ? row.text(0) : "";
+}
+
 }  // namespace study

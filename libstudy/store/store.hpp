@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "libstudy/design/plan.hpp"
+#include "libstudy/design/station.hpp"
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/headset.hpp"
 #include "libstudy/pacing/pacer.hpp"
@@ -51,9 +52,10 @@ struct SessionPlan {
   std::optional<std::string> observer;  ///< simulated observer; none = a person
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
-  std::optional<std::string> ptpe;   ///< the PTPE file in full
-  std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
-  std::string station;               ///< where it is recorded
+  std::optional<std::string> ptpe;              ///< the PTPE file in full
+  std::string gaze_source = "none";             ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
+  std::string station;                          ///< where it is recorded
+  std::optional<StationNumber> station_number;  ///< not read back: slot and seed are its work
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come
   std::vector<SceneFraming> framing;  ///< not read back; empty: nothing is drawn
@@ -160,12 +162,17 @@ class Store {
   /// The distance between the eyes from now on, mm, where it is more than 0.2 mm from the last one.
   void add_ipd(std::int64_t session, std::int64_t clock_ns, double ipd_mm);
 
+  /// The latest time that stands in the database, by whatever clock; empty: nothing stands there.
+  std::string newest_utc();
+
   /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
   std::vector<OpenRun> open_runs();
 
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
   /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
+  /// Station numbers of those sessions, each once; none: sessions without a number.
+  std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: what the fluid
   /// follows; none: as the session was planned.
@@ -240,7 +247,7 @@ class Store {
   void commit(sqlite::Transaction& transaction);
   std::int64_t find_or_add_protocol(const RunPlan& run);
   void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
-                   const SessionPlan& plan);
+                   const SessionPlan& plan, const std::string& not_before_utc);
   void check_newcomer(std::int64_t protocol_id, const SessionPlan& plan);
   void mark_cut_presentations();
   void mark_done(std::int64_t session, std::int64_t unit, const std::string& now,

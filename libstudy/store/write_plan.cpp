@@ -154,13 +154,15 @@ void check_participant_code(const std::string& code) {
 
 std::int64_t Store::add_run(const RunPlan& run) {
   Transaction transaction(*database_);
+  const std::string not_before_utc = newest_utc();
   const std::int64_t protocol_id = find_or_add_protocol(run);
   const std::int64_t run_id = Statement(*database_,
                                         "INSERT INTO run (uid, started_utc, program_version, options) "
                                         "VALUES (lower(hex(randomblob(16))),?,?,?)")
                                   .bind_all(base::utc_now(), base::version(), run.options)
                                   .run();
-  for (const SessionPlan& plan : run.sessions) add_session(run_id, protocol_id, run.protocol, plan);
+  for (const SessionPlan& plan : run.sessions)
+    add_session(run_id, protocol_id, run.protocol, plan, not_before_utc);
   commit(transaction);
   keep_file();
   return run_id;
@@ -224,22 +226,29 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
 }
 
 void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
-                        const SessionPlan& plan) {
+                        const SessionPlan& plan, const std::string& not_before_utc) {
   check_newcomer(protocol_id, plan);
+  std::optional<int> number, count;
+  if (plan.station_number) {
+    number = plan.station_number->number;
+    count = plan.station_number->count;
+  }
   Statement insert(
       *database_,
       "INSERT INTO session (uid, run_id, protocol_id, participant, code, visit, seed, slot, state, "
       "test_data, observer, clock, display, stimulus, machine, station, time_zone, gaze_source, "
-      "screen_width_mm, viewing_distance_mm, ptpe, refresh_hz, person) SELECT lower(hex(randomblob(16))), "
+      "screen_width_mm, viewing_distance_mm, ptpe, refresh_hz, station_number, station_count, "
+      "not_before_utc, person) SELECT lower(hex(randomblob(16))), "
       "?1, ?2, ?3, coalesce((SELECT code FROM session WHERE participant = ?3), ?3), ?4, ?5, ?6, 'open', "
-      "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, "
+      "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, nullif(?22, ''), "
       "coalesce((SELECT person FROM session WHERE participant = ?3), lower(hex(randomblob(16))))");
   const std::int64_t session =
       insert
           .bind_all(run_id, protocol_id, plan.participant, plan.visit, as_signed(plan.seed), plan.plan.slot,
                     plan.test_data ? 1 : 0, plan.observer, plan.virtual_clock ? "virtual" : "real",
                     plan.display, plan.stimulus, plan.machine, plan.station, plan.time_zone, plan.gaze_source,
-                    plan.screen_width_mm, plan.viewing_distance_mm, plan.ptpe, plan.refresh_hz)
+                    plan.screen_width_mm, plan.viewing_distance_mm, plan.ptpe, plan.refresh_hz, number, count,
+                    not_before_utc)
           .run();
   insert_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);

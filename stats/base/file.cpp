@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
@@ -102,14 +101,5 @@ std::string sha256_hex(std::string_view bytes) {
 }
 
 std::string version() { return VIP_VERSION; }
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
 
 }  // namespace base

@@ -8,6 +8,7 @@
 namespace apps::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(StoreCommandsE2e, StationsAreMergedExportedAndWithdrawnFrom) {
@@ -42,6 +43,58 @@ TEST(StoreCommandsE2e, StationsAreMergedExportedAndWithdrawnFrom) {
   }
   EXPECT_EQ(call({vip_study, "merge", folder / "north.db", "--into", all}).exit_code, 0);
   EXPECT_EQ(count_in(all, "SELECT count(*) FROM session"), 1);
+}
+
+/// Columns of one row of a database, joined by spaces.
+std::string row_of(const std::string& database, const std::string& sql) {
+  study::sqlite::Connection connection(database, study::sqlite::Open::Read);
+  study::sqlite::Statement row(connection, sql);
+  std::string out;
+  if (row.step())
+    for (int i = 0; i < row.columns(); ++i) out += (i ? " " : "") + row.text(i);
+  return out;
+}
+
+TEST(StoreCommandsE2e, NumberedStationsShareTheAssignmentAndMergePrintsTheBalance) {
+  const TemporaryFolder folder;
+  const auto record = [&](const std::string& database, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        vip_study,    "run",    "protocols/task1.toml", "--db", folder / database,
+        "--observer", "random", "--trial-seconds",      "0.1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  };
+  for (const char* number : {"1", "2"}) {
+    const Ended ended =
+        record(std::string(number) + ".db", {"--participants", "6", "--station", std::string(number) + "/2"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  }
+  const Ended merged =
+      run_program({vip_study, "merge", folder / "1.db", folder / "2.db", "--into", folder / "all.db"});
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(merged.err, "");
+  EXPECT_THAT(merged.out, HasSubstr("task1 1.0, 12 sessions: 12 sequences, each used once"));
+  const std::string first_order =
+      "SELECT group_concat(first_cell, ' ') FROM (SELECT first_cell FROM trial JOIN session USING "
+      "(session_id) "
+      "WHERE participant = 'P01' ORDER BY position)";
+  EXPECT_NE(row_of(folder / "1.db", first_order), row_of(folder / "2.db", first_order));
+
+  // The station's number is not forgotten in silence; the advice works.
+  const Ended forgotten = record("1.db", {"--participant", "P07"});
+  EXPECT_EQ(forgotten.exit_code, 1);
+  EXPECT_THAT(forgotten.err, HasSubstr("mend: add --station 1/2"));
+  EXPECT_EQ(record("1.db", {"--participant", "P07", "--station", "1/2"}).exit_code, 0);
+  EXPECT_EQ(record("3.db", {"--participant", "P01", "--station", "3/2"}).exit_code, 1);
+
+  ASSERT_EQ(record("north.db", {"--participants", "6", "--station", "north"}).exit_code, 0);
+  ASSERT_EQ(record("south.db", {"--participants", "6"}).exit_code, 0);
+  const Ended off = run_program(
+      {vip_study, "merge", folder / "north.db", folder / "south.db", "--into", folder / "off.db"});
+  EXPECT_EQ(off.exit_code, 0) << off.err;
+  EXPECT_THAT(off.out, HasSubstr("6 used twice, 6 never"));
+  EXPECT_THAT(off.err, AllOf(HasSubstr("is not balanced"), HasSubstr("without a station number"),
+                             HasSubstr("mend: give each station a number of its own")));
 }
 
 /// Files below a folder, but the database and its journal, in whose bytes a text stands.

@@ -9,9 +9,9 @@ namespace {
 
 /// The surface and its pages, which live as long as either is held.
 struct HeadsetPages {
-  HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const std::string& language,
+  HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const study::Protocol& protocol,
                const study::Clock& clock)
-      : surface(display, ways), pages(surface, language, clock) {}
+      : surface(display, ways, page_characters(protocol)), pages(surface, protocol.language, clock) {}
   HeadsetSurface surface;
   Pages pages;
 };
@@ -22,7 +22,7 @@ HeadsetChoice choice_for_person(const AnswerWays& ways) { return choice_for_page
 
 HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways,
                                   const study::Protocol& protocol, const study::Clock& clock) {
-  const auto both = std::make_shared<HeadsetPages>(display, ways, protocol.language, clock);
+  const auto both = std::make_shared<HeadsetPages>(display, ways, protocol, clock);
   const std::shared_ptr<Pages> pages(both, &both->pages);
   HeadsetPerson person;
   person.participant = std::make_unique<PageParticipant>(pages, protocol.blocks.back().id, [] {});

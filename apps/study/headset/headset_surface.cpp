@@ -33,11 +33,12 @@ HeadsetChoice choice_for_pages(const AnswerWays& ways) {
   return choice;
 }
 
-HeadsetSurface::HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways)
+HeadsetSurface::HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways,
+                               const PageCharacters& characters)
     : display_(display),
       ways_(ways),
       gui_(type_for_x_height(px_of_height(least_x_height_deg)),
-           {[this] { tell_gui(); }, [this] { return display_.page().framebuffer(); }, true}),
+           {[this] { tell_gui(); }, [this] { return display_.page().framebuffer(); }, true}, characters),
       used_ns_(steady_ns()) {}
 
 void HeadsetSurface::listen() {

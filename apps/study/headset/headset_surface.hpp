@@ -26,7 +26,7 @@ HeadsetChoice choice_for_pages(const AnswerWays& ways);
 class HeadsetSurface final : public PageSurface {
  public:
   /// display: made with choice_for_pages(); it outlives this.
-  HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways);
+  HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways, const PageCharacters& characters = {});
 
   /// From now on the terminal's keys answer, where the ways have them.
   void listen();

@@ -1,4 +1,5 @@
 #include "apps/study/headset/headset_person.hpp"
+#include "apps/study/pages/page_fonts.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -13,5 +14,7 @@ HeadsetPerson make_headset_person(HeadsetDisplay&, const AnswerWays& ways, const
   choice_for_person(ways);
   return {};
 }
+
+void check_pages(const study::Protocol&) {}
 
 }  // namespace apps

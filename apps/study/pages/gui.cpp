@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "apps/study/desk/page_characters.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -26,12 +29,11 @@ namespace {
 // 32 px on a screen of 1080: some 0.6 degrees at an arm's length.
 constexpr float body_share = 0.0296F, title_share = 0.045F, huge_share = 0.13F;
 
-/// Latin with its extensions, Greek, Cyrillic, punctuation, arrows and signs.
-const ImWchar glyphs[] = {0x20,   0x24F,  0x370,  0x52F,  0x1E00, 0x1EFF, 0x2010, 0x2044, 0x20AC,
-                          0x20AC, 0x2190, 0x2193, 0x2212, 0x2212, 0x2264, 0x2265, 0};
 const ImWchar digits[] = {0x20, 0x3A, 0};
 
-ImFont* add_font(ImFontAtlas& atlas, const std::string& file, float size, const ImWchar* ranges) {
+/// Of find_font() alone.
+ImFont* add_font(ImFontAtlas& atlas, float size, const ImWchar* ranges) {
+  const std::string file = find_font();
   ImFontConfig config;
   config.OversampleH = 1;
   config.OversampleV = 1;
@@ -49,19 +51,6 @@ float x_height_of(const ImFont& font) {
 
 }  // namespace
 
-std::string find_font() {
-  std::string found;
-  if (const char* wished = std::getenv("VIP_FONT")) found = wished;
-  const char* known[] = {"dejavu/DejaVuSans.ttf", "liberation/LiberationSans-Regular.ttf",
-                         "liberation2/LiberationSans-Regular.ttf", "noto/NotoSans-Regular.ttf",
-                         "freefont/FreeSans.ttf"};
-  for (const char* name : known) {
-    const std::string path = std::string("/usr/share/fonts/truetype/") + name;
-    if (found.empty() && std::filesystem::exists(path)) found = path;
-  }
-  return std::filesystem::exists(found) ? found : std::string();
-}
-
 TypeSizes type_for_screen(int height_px) {
   const auto height = static_cast<float>(height_px);
   return {std::clamp(std::round(body_share * height), 14.0F, 72.0F),
@@ -73,22 +62,22 @@ TypeSizes type_for_x_height(float x_height_px) {
   constexpr float tried = 100;
   ImFontAtlas atlas;
   const ImWchar letter[] = {'x', 'x', 0};
-  const ImFont* font = add_font(atlas, find_font(), tried, letter);
+  const ImFont* font = add_font(atlas, tried, letter);
   atlas.Build();
   // Glyphs end at whole pixels.
   const float body = std::ceil(tried * (x_height_px + 1) / x_height_of(*font));
   return {body, std::round(body * title_share / body_share), std::round(body * huge_share / body_share)};
 }
 
-Gui::Gui(const TypeSizes& type, Host host)
+Gui::Gui(const TypeSizes& type, Host host, const PageCharacters& characters)
     : host_(std::move(host)), context_(ImGui::CreateContext()), size_px_(type.body) {
   ImGui::SetCurrentContext(context_);
   ImGui::GetIO().IniFilename = nullptr;
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  const std::string file = find_font();
-  body_ = add_font(atlas, file, type.body, glyphs);
-  title_ = add_font(atlas, file, type.title, glyphs);
-  huge_ = add_font(atlas, file, type.huge, digits);
+  const PageType letters(characters);
+  body_ = letters.add(atlas, type.body);
+  title_ = letters.add(atlas, type.title);
+  huge_ = add_font(atlas, type.huge, digits);
   atlas.Build();
   ImGui::StyleColorsDark();
   ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -153,19 +142,64 @@ void draw_wrapped(const std::string& words, unsigned colour) {
   ImGui::PopStyleColor();
 }
 
-float draw_centred(const std::string& words, ImVec2 at, float width, unsigned colour) {
+namespace {
+
+/// Marks that stand at no line's begin.
+bool closes(char32_t c) {
+  return std::u32string_view(
+             U"\u3001\u3002\uFF0C\uFF0E\uFF1A\uFF1B\uFF1F\uFF01\uFF09\u300B\u300D\u300F\u3011"
+             U"\u2019\u201D\u30FC")
+             .find(c) != std::u32string_view::npos;
+}
+/// Marks that stand at no line's end.
+bool opens(char32_t c) {
+  return std::u32string_view(U"\uFF08\u300A\u300C\u300E\u3010\u2018\u201C").find(c) !=
+         std::u32string_view::npos;
+}
+
+/// A part of a text that stays on one line, and whether a space stands before it.
+struct Part {
+  std::string text;
+  bool spaced = false;
+};
+
+/// Parts at spaces, and between characters of scripts that are written without spaces.
+std::vector<Part> parts_of(const std::string& words) {
+  std::vector<Part> out;
   std::istringstream all(words);
+  for (std::string word; all >> word;) {
+    bool first = true;
+    char32_t before = 0;
+    for (std::size_t at = 0; at < word.size();) {
+      const std::size_t length =
+          std::max<std::size_t>(base::utf8_length(std::string_view(word).substr(at)), 1);
+      const std::string bytes = word.substr(at, length);
+      const char32_t c = characters_of(bytes).front();
+      const bool may_break = (breaks_anywhere(c) || breaks_anywhere(before)) && !closes(c) && !opens(before);
+      if (first || may_break) out.push_back({"", first});
+      out.back().text += bytes;
+      first = false;
+      before = c;
+      at += length;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+float draw_centred(const std::string& words, ImVec2 at, float width, unsigned colour) {
   std::string line;
   const auto put = [&] {
     const float w = ImGui::CalcTextSize(line.c_str()).x;
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x - w / 2), at.y}, colour, line.c_str());
     at.y += ImGui::GetTextLineHeight();
   };
-  for (std::string word; all >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+  for (const Part& part : parts_of(words)) {
+    const std::string longer = line.empty() ? part.text : line + (part.spaced ? " " : "") + part.text;
     if (!line.empty() && ImGui::CalcTextSize(longer.c_str()).x > width) {
       put();
-      line = word;
+      line = part.text;
     } else {
       line = longer;
     }

@@ -6,14 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "apps/study/pages/page_fonts.hpp"
+
 struct ImFont;
 struct ImGuiContext;
 struct ImVec2;
 
 namespace apps {
-
-/// A font of the system, or "" where none is found (Dear ImGui's own is then used). $VIP_FONT wins.
-std::string find_font();
 
 /// Grey levels and the accent, as ImGui's packed colours.
 namespace colour {
@@ -40,8 +39,8 @@ class Gui {
     bool by_hand = false;
   };
 
-  /// Needs a current OpenGL context, now and in each call.
-  Gui(const TypeSizes& type, Host host);
+  /// Needs a current OpenGL context, now and in each call. characters: those of the pages to come.
+  Gui(const TypeSizes& type, Host host, const PageCharacters& characters = {});
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;

@@ -28,7 +28,7 @@ ParticipantWindow::Backend::~Backend() { ImGui_ImplGlfw_Shutdown(); }
 ParticipantWindow::ParticipantWindow(const ParticipantWindowOptions& options)
     : window_(as_window(options)),
       size_(window_.size()),
-      gui_(type_for_screen(size_.height), {ImGui_ImplGlfw_NewFrame, [] { return 0U; }}),
+      gui_(type_for_screen(size_.height), {ImGui_ImplGlfw_NewFrame, [] { return 0U; }}, options.characters),
       backend_(window_.get()) {
   sim::require_gl45();
   show_black();

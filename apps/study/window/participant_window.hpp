@@ -17,6 +17,7 @@ namespace apps {
 struct ParticipantWindowOptions {
   int width_px = 0, height_px = 0;  ///< 0: the whole monitor
   int monitor = 0;
+  PageCharacters characters{};  ///< of its pages
 };
 
 /// All calls on the thread that made it. Esc asks whether to stop. It is not seen while it is minimised.

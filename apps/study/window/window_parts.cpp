@@ -49,6 +49,7 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   chosen.width_px = options.width_px;
   chosen.height_px = options.height_px;
   chosen.monitor = options.monitor;
+  chosen.characters = page_characters(protocol);
   const auto both = std::make_shared<WindowPages>(chosen, protocol.language);
   const std::shared_ptr<ParticipantWindow> window(both, &both->window);
   const std::shared_ptr<Pages> pages(both, &both->pages);

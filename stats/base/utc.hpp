@@ -1,0 +1,29 @@
+#pragma once
+/// Times in UTC as texts, such as "2026-01-31T12:00:00Z", and what tests set them by.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace base {
+
+/// ViP-Lab is younger: a clock that tells an earlier time is wrong.
+inline constexpr const char* before_vip_lab_utc = "2024-01-01T00:00:00Z";
+
+/// The day on which this program was built, at its first second.
+std::string built_utc();
+
+/// Seconds since 1970; none: not a time that utc_now() writes.
+std::optional<std::int64_t> seconds_of_utc(const std::string& utc);
+std::string utc_of_seconds(std::int64_t seconds);
+
+/// For tests alone: while it lives, utc_now() gives this time in all threads.
+class FixedUtc {
+ public:
+  explicit FixedUtc(const std::string& utc);
+  ~FixedUtc();
+  FixedUtc(const FixedUtc&) = delete;
+  FixedUtc& operator=(const FixedUtc&) = delete;
+};
+
+}  // namespace base

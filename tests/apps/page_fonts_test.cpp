@@ -1,0 +1,129 @@
+/// What a protocol's texts need is drawn, or refused before anybody sits down.
+#include "apps/study/pages/page_fonts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cstdlib>
+
+#include "apps/study/desk/page_characters.hpp"
+#include "apps/study/pages/gui.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "stats/base/error.hpp"
+#include "tests/apps/study_test_support.hpp"
+
+namespace apps::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// The pilot with another question.
+std::string asking(const std::string& words) {
+  return replaced(short_protocol("1"),
+                  "How satisfied are you with the step speed and the smoothness of the fluid?", words);
+}
+study::Protocol protocol_asking(const std::string& words) {
+  return study::parse_protocol(asking(words), "asking.toml");
+}
+
+TEST(PageFonts, EveryShippedProtocolIsDrawn) {
+  for (const auto& entry : fs::directory_iterator(base::resource("protocols"))) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(check_pages(study::read_protocol(entry.path()))) << entry.path();
+  }
+}
+
+TEST(PageFonts, AccentsGreekCyrillicAndSignsAreDrawn) {
+  EXPECT_NO_THROW(check_pages(protocol_asking("Été, Größe, αβγ, Вы видели?, Łódź, 3 ≤ 5 → ☃ Վ")));
+}
+
+TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
+  const std::pair<const char*, const char*> refused[] = {
+      {"هل أنت راض؟", "right to left"},      {"האם אתה מרוצה?", "right to left"},
+      {"क्या आप संतुष्ट हैं?", "neighbours"},      {"คุณพอใจไหม", "neighbours"},
+      {"Zu\u0308rich", "beside the letter"}, {"smo\u200Bothness", "cannot be seen"},
+      {"Good \U0001F600?", "beyond U+FFFF"}};
+  for (const auto& [words, reason] : refused) {
+    EXPECT_THAT([&] { check_pages(protocol_asking(words)); },
+                ThrowsMessage<base::Error>(AllOf(HasSubstr("asking.toml: block 'ratings', question "
+                                                           "'satisfaction', text: the character U+"),
+                                                 HasSubstr(reason), HasSubstr("mend: "))))
+        << words;
+  }
+}
+
+// Where a font has a character beyond the usual ones, pages have it too, and not a question mark.
+TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
+  const PageType type(page_characters(protocol_asking("☃ snow?")));
+  ImFontAtlas atlas;
+  const ImFont* const font = type.add(atlas, 20);
+  atlas.Build();
+  EXPECT_NE(font->FindGlyphNoFallback(u'☃'), nullptr);
+  EXPECT_EQ(type.undrawn(U"☃a"), U"");
+  EXPECT_EQ(PageType({}).undrawn(U"☃a"), U"☃");
+}
+
+// Chinese has no spaces: lines end between characters, and no mark begins one.
+TEST(PageFontsGl, WordsWithoutSpacesAreWrapped) {
+  const sim::GlContext gl = sim::GlContext::make_headless();
+  const sim::Offscreen picture(400, 300);
+  Gui gui(type_for_screen(600), {[] {
+                                   ImGui::GetIO().DisplaySize = {400, 300};
+                                 },
+                                 [&picture] { return picture.framebuffer(); }});
+  gui.begin(colour::background);
+  ImGui::PushFont(gui.body());
+  ImGui::Begin("page");
+  const float one = draw_centred("中", {200, 0}, 100, colour::text);
+  EXPECT_GE(draw_centred("中中中中中中中中中中中中中中中中中中中中", {200, 0}, 100, colour::text), 2 * one);
+  EXPECT_EQ(draw_centred("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", {200, 0}, 100, colour::text), one);
+  ImGui::End();
+  ImGui::PopFont();
+  gui.end();
+}
+
+class PageFontsE2e : public ::testing::Test {
+ protected:
+  PageFontsE2e() {
+    base::write_file_atomically(folder_ / "chinese.toml", asking("您对刚才看到的画面满意吗？"));
+    // A system with the usual fonts alone.
+    base::write_file_atomically(
+        folder_ / "fonts.conf",
+        "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig>"
+        "<dir>/usr/share/fonts/truetype/dejavu</dir><cachedir>" +
+            (folder_ / "cache").string() + "</cachedir></fontconfig>");
+  }
+  Ended without_fonts(std::vector<std::string> arguments) const {
+    return run_program(arguments, [this] {
+      ::setenv("FONTCONFIG_FILE", (folder_ / "fonts.conf").c_str(), 1);
+      ::unsetenv("VIP_FONT");
+    });
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(PageFontsE2e, CheckAndRunRefuseWhatNoFontDraws) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{vip_study, "check", folder_ / "chinese.toml"},
+        std::vector<std::string>{vip_study, "run", folder_ / "chinese.toml", "--db", folder_ / "s.db",
+                                 "--participant", "P01"}}) {
+    const Ended ended = without_fonts(arguments);
+    EXPECT_EQ(ended.exit_code, 1) << ended.out;
+    EXPECT_THAT(ended.err,
+                AllOf(HasSubstr("question 'satisfaction', text: no font of this computer draws the character "
+                                "U+60A8 (您), nor 12 others"),
+                      HasSubstr("apt-get install fonts-noto-cjk")));
+    EXPECT_FALSE(fs::exists(folder_ / "s.db"));
+  }
+  // An observer reads no pages.
+  const Ended observer = without_fonts(run_arguments(folder_ / "chinese.toml", folder_ / "s.db",
+                                                     {"--participant", "P01", "--clock", "virtual"}));
+  EXPECT_EQ(observer.exit_code, 0) << observer.err;
+}
+
+}  // namespace
+}  // namespace apps::test
