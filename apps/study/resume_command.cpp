@@ -108,6 +108,7 @@ Played play(const PlayOptions& options, const std::vector<std::string>& settings
     print_certificate(options.database, run, protocol);
   }
   played.withdraw = store.wished_withdrawals();
+  store.require_journal();
   study::check_nothing_left(options.database, store.left_to_clean());
   return played;
 }

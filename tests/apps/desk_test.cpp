@@ -160,9 +160,9 @@ TEST(Words, NothingIsLeftUnsaidInAnyLanguage) {
   using study::Offer;
   for (const char* language : {"en", "de"}) {
     const DeskWords& words = desk_words(language);
-    for (const std::string& one :
-         {words.go_on, words.confirm, words.finish, words.rest, words.pause, words.ready, words.first,
-          words.second, words.held_title, words.held, words.corner, words.begin})
+    for (const std::string& one : {words.go_on, words.confirm, words.finish, words.rest, words.pause,
+                                   words.ready, words.first, words.second, words.held_title, words.held,
+                                   words.trouble_title, words.trouble, words.corner, words.begin})
       EXPECT_FALSE(one.empty()) << language;
     for (const Notice notice : {Notice::Over, Notice::Refused, Notice::NotEligible, Notice::Kept,
                                 Notice::Deleted, Notice::Goodbye}) {
