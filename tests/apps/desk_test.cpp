@@ -81,6 +81,11 @@ TEST(Refresh, AToldRateThatIsWrongIsNotBelieved) {
   EXPECT_NEAR(found.nominal_hz, 144, 0.01);
 }
 
+TEST(Refresh, ScreensOfTelevisionRatesCountAsWholeOnes) {
+  for (const double told : {0.0, 59.0, 60.0})
+    EXPECT_EQ(judge_swaps(swaps(1e9 / 59.94, 120), told).nominal_hz, 60) << told;
+}
+
 TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
   EXPECT_FALSE(judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: at once
   EXPECT_FALSE(judge_swaps(swaps(8e6, 120, 3e6), 60).in_effect);  // as long as drawing takes

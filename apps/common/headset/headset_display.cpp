@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "libstudy/pacing/nominal_refresh.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -64,11 +65,11 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
   spoilt_.reset();  // a rate that was asked for has come
 }
 
-/// The rate once it has settled, where the rules have it: in the runtime's words where they are true.
+/// The rate once it has settled, where the rules have it, as schedules count it.
 std::optional<double> HeadsetDisplay::met_hz() const {
   const auto [told_hz, measured_hz] = facts().rate;
   if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
-  return told_hz && near_rate(*told_hz, *measured_hz) ? told_hz : measured_hz;
+  return study::nominal_refresh(*measured_hz, told_hz.value_or(0));
 }
 
 /// A session that was made anew counts once its rate is known: trials are compiled for it.
@@ -140,7 +141,7 @@ void HeadsetDisplay::heed() {
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
     if (event.kind == Kind::Refresh && !new_session_) {
-      refresh_hz_ = event.to_hz;
+      refresh_hz_ = study::nominal_refresh(event.to_hz);
       // Also between pictures: the trial that has begun goes by the intervals of the rate before.
       note_cut(spoilt_, study::CutCause::Rate);
     }
