@@ -69,8 +69,9 @@ MeasuredReport measure_here(const CheckOptions& options, const CheckReport& repo
   HeadlessDisplay display(options.size.width, options.size.height);
   CellStimuli stimuli(choice, protocol, {}, viewing);
   const auto all = [](int) { return true; };
-  const auto live = measure_live(protocol, stimuli, {display, report.scenes, options.refresh_hz, {}, all});
-  return judge_measured(protocol, live.stimuli, options.refresh_hz, [&](const study::FpsSetting& setting) {
+  const double refresh_hz = report.refresh->refresh_hz;
+  const auto live = measure_live(protocol, stimuli, {display, report.scenes, refresh_hz, {}, all});
+  return judge_measured(protocol, live.stimuli, refresh_hz, [&](const study::FpsSetting& setting) {
     return intervals_on(*report.refresh, report.settings, setting);
   });
 }

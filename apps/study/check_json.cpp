@@ -34,6 +34,7 @@ void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
   if (!report.refresh) return;
   const RefreshCheck& check = *report.refresh;
   json["refresh_hz"] = check.refresh_hz;
+  json["asked_refresh_hz"] = check.asked_hz;
   json["exact"] = check.exact;
   json["approximate"] = check.approximate;
   json["unreachable"] = check.unreachable;

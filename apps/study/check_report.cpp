@@ -52,6 +52,11 @@ void print_session(const CheckReport& report) {
 }
 
 void print_settings(const CheckReport& report, const RefreshCheck& check) {
+  if (check.asked_hz != check.refresh_hz)
+    std::printf(
+        "\n%g Hz counts as %g Hz, as in run: holds are whole periods of it, and each showing is %.2f %% %s\n",
+        check.asked_hz, check.refresh_hz, 100 * std::abs(check.refresh_hz / check.asked_hz - 1),
+        check.asked_hz < check.refresh_hz ? "slower" : "faster");
   std::printf("\non %g Hz, %s mean, timing = %s\n%-16s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
               mean_name(report.protocol), timing_name(report.protocol.design), "setting", "frames", "status",
               "mean", "sd", "longest ms", "what misses, and why");

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "apps/study/bakes/moved_bakes.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/headset/answer_ways.hpp"
@@ -18,6 +19,11 @@
 namespace apps {
 
 namespace {
+
+struct ResumeOptions {
+  PlayOptions play;
+  std::vector<std::string> settings, stimuli;  ///< files; folders too
+};
 
 /// A protocol that an earlier version wrote may be of a format that is no longer read.
 study::Protocol read_again(const study::OpenRun& run, const std::string& place) {
@@ -70,7 +76,7 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
       throw base::Error(place,
                         "participant " + session.plan.participant + " was shown '" + session.plan.stimulus +
                             "', which is now '" + setup.stimuli->description() + "'",
-                        "put the same bake or scene back in its place");
+                        "put the same bake or scene back in its place, or name the bake with --stimulus");
     }
     if (const std::string departure = setup.departure(); !departure.empty() && !session.plan.test_data) {
       throw base::Error(place,
@@ -84,7 +90,23 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
   }
 }
 
-Played play(const PlayOptions& options, const std::vector<std::string>& settings) {
+/// What each run was given, its bake where it stands now.
+std::vector<RunOptions> recorded_options(const std::vector<study::OpenRun>& runs,
+                                         const std::vector<std::string>& stimuli, const std::string& place) {
+  if (runs.empty()) return {};
+  std::vector<RunOptions> all;
+  std::vector<RecordedBake> bakes;
+  for (const study::OpenRun& run : runs) {
+    all.push_back(parse_run_options(run.options, place));
+    bakes.push_back({all.back().bake, run.sessions.front().plan.stimulus});
+  }
+  const std::vector<std::string> paths = find_bakes(bakes, stimuli, place);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].bake = paths[i];
+  return all;
+}
+
+Played play(const ResumeOptions& resume) {
+  const PlayOptions& options = resume.play;
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
@@ -97,10 +119,12 @@ Played play(const PlayOptions& options, const std::vector<std::string>& settings
   const auto runs = store.open_runs();
   Played played;
   if (runs.empty()) std::printf("%s: nothing is left to do\n", place.c_str());
-  for (const study::OpenRun& run : runs) {
+  const auto recorded = recorded_options(runs, resume.stimuli, place);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const study::OpenRun& run = runs[i];
+    const RunOptions& chosen = recorded[i];
     const study::Protocol protocol = rebuild_protocol(run, place);
-    const RunOptions chosen = parse_run_options(run.options, place);
-    check_settings(settings, chosen, place);
+    check_settings(resume.settings, chosen, place);
     check_keys_are_free(chosen.answer, options.console);
     SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
     setup.warnings = warnings;
@@ -111,29 +135,34 @@ Played play(const PlayOptions& options, const std::vector<std::string>& settings
     print_certificate(options.database, run, protocol);
   }
   played.withdraw = store.wished_withdrawals();
+  store.require_journal();
   study::check_nothing_left(options.database, store.left_to_clean());
   return played;
 }
 
-void resume(const PlayOptions& options, const std::vector<std::string>& settings) {
+void resume(const ResumeOptions& options) {
   const StopSignals signals;
-  end_command(options.database, play(options, settings));
+  end_command(options.play.database, play(options));
 }
 
 }  // namespace
 
 void add_resume_command(CLI::App& app) {
-  auto options = std::make_shared<PlayOptions>();
-  auto settings = std::make_shared<std::vector<std::string>>();
+  auto options = std::make_shared<ResumeOptions>();
   CLI::App& sub = *app.add_subcommand("resume", "Finish what was planned and not answered");
-  add_play_options(sub, *options);
+  add_play_options(sub, options->play);
   sub.add_option(
-         "--setting", *settings,
+         "--setting", options->settings,
          "Setting file that must be one which the sessions began with; without: the recorded ones hold "
          "all the same")
       ->allow_extra_args(false);
+  sub.add_option(
+         "--stimulus", options->stimuli,
+         "Where the bake or the folder of bakes is now that the sessions began with, when it was moved; "
+         "it is known by its hash")
+      ->allow_extra_args(false);
   sub.footer(exit_status_help);
-  sub.callback([options, settings] { resume(*options, *settings); });
+  sub.callback([options] { resume(*options); });
 }
 
 }  // namespace apps

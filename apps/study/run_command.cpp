@@ -169,6 +169,7 @@ Played play(const RunCommand& command, const study::Protocol& protocol, const st
     print_certificate(command.play.database, open, protocol);
   }
   played.withdraw = store.wished_withdrawals();
+  store.require_journal();
   study::check_nothing_left(command.play.database, store.left_to_clean());
   return played;
 }

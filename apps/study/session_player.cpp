@@ -106,7 +106,11 @@ class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
            const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
-      : protocol_(protocol), window_(setup.wish), events_(options.events), warnings_(std::move(warnings)) {
+      : store_(store),
+        protocol_(protocol),
+        window_(setup.wish),
+        events_(options.events),
+        warnings_(std::move(warnings)) {
     if (options.console) {
       console_.emplace(protocol, store, options.database, setup.idle, showing_times(protocol, setup.rates));
       terminal_.emplace(*console_);
@@ -114,7 +118,11 @@ class Steering {
       progress_.emplace("session steps", units_left(run));
       if (setup.listen) setup.listen();
     }
+    if (console_) store.tell_of_journal([this](const std::string& line) { console_->warn(line); });
   }
+  ~Steering() { store_.tell_of_journal({}); }
+  Steering(const Steering&) = delete;
+  Steering& operator=(const Steering&) = delete;
 
   study::SessionHooks hooks(const study::OpenSession& session) {
     if (console_) console_->begin(session);
@@ -133,6 +141,16 @@ class Steering {
       if (console_) console_->done(unit);
       if (events_) print_done(unit, protocol_);
     };
+    hooks.trouble = [this](const study::Trouble& trouble) {
+      if (console_) {
+        console_->trouble(trouble);
+      } else {
+        std::fprintf(stderr, "%sPAUSED: %s.\n%s. Then go on at the participant's page.\a\n",
+                     ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", trouble.what.c_str(),
+                     trouble.mend.c_str());
+      }
+      return console_.has_value();
+    };
     hooks.wish = [this] { return window_ ? window_([this] { return others(); }) : others(); };
     return hooks;
   }
@@ -146,6 +164,7 @@ class Steering {
     return console_ ? console_->wish() : study::Wish::GoOn;
   }
 
+  study::Store& store_;
   const study::Protocol& protocol_;
   const WindowWish& window_;
   bool events_;

@@ -110,15 +110,16 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
   auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   record_headset(options, *headset, setup, viewing);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
-  setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) {
-    if (!display->take_spoilt()) return others();
+  setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) -> study::Wish {
+    auto spoilt = display->take_spoilt();
+    if (!spoilt) return others();
     display->clear();
     do {
       if (others() == study::Wish::Stop) return study::Wish::Stop;
       display->turn();  // also at first: what was not seen may be told before the reason
     } while (!display->focused());
-    display->take_spoilt();  // meanwhile nothing was on
-    return study::Wish::NotShown;
+    if (const auto more = display->take_spoilt()) study::note_cut(spoilt, *more);  // nothing was on any more
+    return *spoilt;
   };
   if (person) {
     HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);

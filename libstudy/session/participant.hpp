@@ -41,7 +41,8 @@ enum class PauseKind {
   Break,   ///< a countdown, then until the participant wishes to go on
   First,   ///< a word: the first of two stimuli follows
   Second,  ///< likewise
-  Held     ///< the experimenter pauses: words, until `over`
+  Held,    ///< the experimenter pauses: words, until `over`
+  Trouble  ///< what is wrong keeps a trial from being shown: words, until `over` or, without it, a button
 };
 
 /// How long the word before a stimulus of a pair stands, and the black between it and the stimulus, s.
@@ -51,7 +52,7 @@ struct Pause {
   PauseKind kind = PauseKind::Black;
   double seconds = 0;
   std::string title{}, text{};  ///< shown with the countdown; empty: whatever the display says at such a time
-  std::function<bool()> over{};  ///< Held: asked again and again
+  std::function<bool()> over{};  ///< Held, Trouble: asked again and again
 };
 
 /// What is said when a session ends before its last unit, in the display's words.

@@ -7,7 +7,22 @@ namespace study {
 
 namespace {
 
+// Between two looks at what the eye tracker has told, s.
+constexpr double look_again_s = 0.02;
+
 bool allowed(const Running& run) { return run.parts.store.allows_gaze(run.session.id); }
+
+/// Keeps samples while it lives.
+class Listening {
+ public:
+  explicit Listening(GazeSource& gaze) : gaze_(gaze) { gaze_.start(); }
+  ~Listening() { gaze_.stop(); }
+  Listening(const Listening&) = delete;
+  Listening& operator=(const Listening&) = delete;
+
+ private:
+  GazeSource& gaze_;
+};
 
 }  // namespace
 
@@ -47,7 +62,21 @@ void Recording::watch(const std::vector<GazeSample>& samples) {
 }
 
 void Recording::require_gaze() const {
-  if (lost_) throw TrialAgain{"the eye tracker lost the eyes for over 100 ms"};
+  if (lost_) throw TrialAgain{CutCause::Gaze};
+}
+
+bool sees_eyes(const Running& run, double within_s, const Check& check) {
+  GazeSource* const gaze = run.parts.gaze;
+  if (!gaze || gaze->origin() != GazeOrigin::Tracker || !allowed(run)) return true;
+  const Listening listening(*gaze);
+  const std::int64_t until_ns = run.now_ns() + std::llround(1e9 * within_s);
+  for (;;) {
+    for (const GazeSample& sample : gaze->take()) {
+      if (sample.valid) return true;
+    }
+    if (run.now_ns() >= until_ns) return false;
+    run.parts.participant.pause({PauseKind::Black, look_again_s}, run.parts.clock, check);
+  }
 }
 
 std::string Recording::followed(const Running& run) {

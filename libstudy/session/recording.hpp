@@ -56,6 +56,10 @@ class Recording {
   std::optional<double> ipd_mm_;
 };
 
+/// Whether an eye tracker gives a valid sample within this time; the display is black meanwhile. Also true
+/// where no tracker is recorded: there is none, or the participant does not allow it.
+bool sees_eyes(const Running& run, double within_s, const Check& check);
+
 /// At the start of a session: what the headset is, and the distance between the eyes.
 void record_headset(const Running& run);
 

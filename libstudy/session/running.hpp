@@ -29,7 +29,11 @@ struct Running {
 
 /// Thrown to cut a trial and show it again.
 struct TrialAgain {
-  std::string reason;  ///< for the log
+  CutCause cause;
+  std::string news{};  ///< what else happened to the headset; may be empty
+
+  /// For notes and the log.
+  std::string reason() const { return words_of(cause).happened + (news.empty() ? news : ": " + news); }
 };
 
 /// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial. Logs

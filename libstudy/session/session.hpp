@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libstudy/base/clock.hpp"
+#include "libstudy/display/cut_cause.hpp"
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/gaze_targets.hpp"
 #include "libstudy/display/stimulus.hpp"
@@ -50,14 +51,26 @@ struct UnitDone {
   std::vector<TimingVerdict> verdicts;  ///< one for each stimulus of a trial
 };
 
-/// What the experimenter wishes, asked after every frame and often in every pause.
-enum class Wish {
-  GoOn,
-  Stop,         ///< end the program; the session can be resumed
-  EndSession,   ///< a rest, then no further unit (Store::end_session)
-  RepeatTrial,  ///< cut this trial and show it again
-  NotShown,     ///< likewise, because the screen did not show it, as when the window was minimised
-  Pause         ///< before the next unit, until the wish changes
+/// What experimenter and display wish, asked after every frame and often in every pause.
+struct Wish {
+  enum Kind {
+    GoOn,
+    Stop,        ///< end the program; the session can be resumed
+    EndSession,  ///< a rest, then no further unit (Store::end_session)
+    Cut,         ///< cut this trial, for this cause, and show it again
+    Pause        ///< before the next unit, until the wish changes
+  };
+  Wish(Kind what) : kind(what) {}
+  Wish(CutCause why) : kind(Cut), cause(why) {}
+  bool operator==(const Wish&) const = default;
+
+  Kind kind;
+  CutCause cause{};  ///< of Cut
+};
+
+/// What keeps a trial from being shown.
+struct Trouble {
+  std::string what, mend;  ///< for the experimenter
 };
 
 struct SessionHooks {
@@ -66,6 +79,9 @@ struct SessionHooks {
   std::function<void(const UnitDone&)> done;
   std::function<void(const Ending&)> ends;  ///< early; committed, and say_farewell() comes next
   std::function<Wish()> wish;
+  /// The session pauses; to be said to the experimenter. True: somebody is there who ends the pause, and
+  /// wish() is Pause until then. False, or without: the participant's page has a button to go on.
+  std::function<bool(const Trouble&)> trouble;
 };
 
 /// The session was asked to stop. Everything up to then is in the store.
@@ -84,7 +100,8 @@ std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSet
 void check_settings(const Protocol& protocol, const Display& display);
 
 /// Goes through the units of `session` that are not done, in their order. A trial that was cut short is shown
-/// again from its start, as a new attempt; what was answered is never asked again. An answer that a question
+/// again from its start, as a new attempt, as often as repeats.hpp allows; what was answered is never asked
+/// again. An answer that a question
 /// does not accept ends the session (EarlyEnd::Refused on a page of consent, once the participant has said
 /// that it is meant, else EarlyEnd::NotEligible), one at its stop_at as well (EarlyEnd::Stopped). Returns how
 /// it ended early, if it did; say_farewell() was then called. Throws Stopped, or the first failure of a part;

@@ -37,6 +37,21 @@ std::vector<Question> questions_of(const Protocol& protocol, const std::vector<s
   return out;
 }
 
+/// Why the exception that is being handled cuts a showing, for the log.
+std::string reason_of_cut() {
+  try {
+    throw;
+  } catch (const TrialAgain& again) {
+    return again.reason();
+  } catch (const Stopped&) {
+    return "the program was stopped on request";
+  } catch (const Ending&) {
+    return "the session was ended";
+  } catch (...) {
+    return "an error ended the program";
+  }
+}
+
 /// Takes what was shown off the display, however it ends.
 class Cleared {
  public:
@@ -70,12 +85,14 @@ std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const Planned
 
 std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   Showing showing{unit, unit.attempts + 1, {}, {}, {}};
+  repeats_.begin_trial();
   for (;;) {
     showing.occasion = run_.occasion(unit);
     try {
       return play_steps(showing);
     } catch (const TrialAgain& cut) {
-      again(showing, cut.reason);
+      again(showing, cut.reason());
+      repeats_.after_cut(cut.cause);
     }
   }
 }
@@ -200,9 +217,10 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   } catch (...) {
     // What cut it is the error to tell; should keeping the rest fail too, the next opening marks the cut.
     // Gaze that came after the last frame was on what cut it.
+    const std::string reason = reason_of_cut();
     try {
       parts.store.add_frames(presentation, start_ns, journal.finish({}));
-      parts.store.interrupt_presentation(run_.session.id, presentation, run_.now_ns());
+      parts.store.interrupt_presentation(run_.session.id, presentation, reason, run_.now_ns());
     } catch (const std::exception&) {
     }
     throw;

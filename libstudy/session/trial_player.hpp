@@ -1,16 +1,18 @@
 #pragma once
-/// One trial: its steps in order, as often as the experimenter has it shown.
+/// One trial: its steps in order, again after each cut (repeats.hpp).
 
 #include <array>
 #include <vector>
 
 #include "libstudy/session/questioning.hpp"
+#include "libstudy/session/repeats.hpp"
 
 namespace study {
 
 class TrialPlayer {
  public:
-  TrialPlayer(const Running& run, Questioning& questioning) : run_(run), questioning_(questioning) {}
+  TrialPlayer(const Running& run, Questioning& questioning)
+      : run_(run), questioning_(questioning), repeats_(run) {}
 
   /// Plays the steps until the last one; TrialAgain starts over with a new attempt, for which everything is
   /// asked anew. Returns how an answer ends the session, if it does.
@@ -44,6 +46,7 @@ class TrialPlayer {
 
   const Running& run_;
   Questioning& questioning_;
+  Repeats repeats_;
 };
 
 }  // namespace study

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "stats/base/error.hpp"
 
@@ -66,12 +67,23 @@ Comparison compare(Connection& database, const JournalRows& known) {
           " --into NEW.db puts both together; if the journal is of another study, move it away");
 }
 
-/// Commits what was under way when the program ended.
+/// The end of a showing whose last frames went with the program: the journal holds no frames.
+bool lacks_frames(Connection& database, const Row& row) {
+  if (row.table->name != std::string("presentation") || journal::column(row, "state") != "played")
+    return false;
+  sqlite::Statement lacks(database,
+                          "SELECT (SELECT count(*) FROM frame WHERE presentation_id = CAST(?1 AS INTEGER)) "
+                          "< CAST(?2 AS INTEGER)");
+  return lacks.bind_all(row.key, journal::column(row, "frames")).step() && lacks.integer(0) == 1;
+}
+
+/// Commits what was under way when the program ended. A showing without its frames stays as it was, and is
+/// then marked as cut.
 void roll_forward(Connection& database, const JournalRows& pending) {
   sqlite::Transaction transaction(database);
   for (const auto& [key, row] : pending) {
     const auto now = journal::stands_as(database, row);
-    if (now && now->line == row.line) continue;
+    if ((now && now->line == row.line) || lacks_frames(database, row)) continue;
     if (journal::put(database, row, journal::Put::Replace)) continue;
     throw base::Error(
         database.path().string(),
@@ -116,6 +128,7 @@ AnswerJournal::AnswerJournal(Connection& database)
 }
 
 AnswerJournal::~AnswerJournal() {
+  if (unmarked_) try_mark();
   sqlite3_update_hook(database_.handle(), nullptr, nullptr);
   sqlite3_rollback_hook(database_.handle(), nullptr, nullptr);
 }
@@ -132,7 +145,19 @@ void AnswerJournal::follow() {
       database_.handle(), [](void* self) { static_cast<AnswerJournal*>(self)->changed_.clear(); }, this);
 }
 
+/// A file that is gone, or that another program wrote, is no second copy: a new one is begun with what is
+/// about to be committed, and gets all the rest after the commit.
+void AnswerJournal::look_after_file() {
+  const std::string trouble = file_.trouble();
+  if (trouble.empty()) return;
+  const fs::path aside = file_.set_aside();
+  anew_ = true;
+  say(file_.path().string() + " " + trouble + " during the session; it is written anew from the database" +
+      (aside.empty() ? "" : ", and what stood there is now " + aside.string()));
+}
+
 void AnswerJournal::write() {
+  look_after_file();
   std::string text;
   bool answers = false;
   const auto add = [&](const Row& row) {
@@ -150,21 +175,56 @@ void AnswerJournal::write() {
     }
   }
   if (text.empty()) return;
+  if (unmarked_) text = kept_line(number_) + text;
   file_.append(text + ready_line(number_ + 1), head_for(database_), answers);
+  unmarked_ = false;
   ++number_;
   waiting_ = true;
 }
 
 void AnswerJournal::kept() {
   changed_.clear();  // what is never kept stands in the next batch again, for the last one alone is redone
-  if (!waiting_) return;
+  if (waiting_) blank_ = false;
+  unmarked_ = unmarked_ || anew_ || waiting_;
   waiting_ = false;
-  blank_ = false;
+  if (unmarked_ && !try_mark()) try_mark();
+}
+
+void AnswerJournal::write_mark() {
+  if (!anew_) return file_.append(kept_line(number_), head_for(database_), false);
+  file_.close();
+  rewrite_journal(database_);
+  number_ = 1;
+  anew_ = false;
+}
+
+/// False when the journal still lacks what was committed.
+bool AnswerJournal::try_mark() {
   try {
-    file_.append(kept_line(number_), head_for(database_), false);
-  } catch (const base::Error&) {
-    // It is kept nevertheless, and the next opening finds it so.
+    write_mark();
+    unmarked_ = false;
+    if (!trouble_.empty()) say(file_.path().string() + " is written again, and lacks nothing");
+    trouble_.clear();
+    return true;
+  } catch (const base::Error& error) {
+    const std::string why = error.what();
+    if (trouble_.empty())
+      say(why.substr(0, why.find('\n')) + "; the last answers stand in the database alone");
+    trouble_ = why;
+    return false;
   }
+}
+
+void AnswerJournal::require_written() {
+  if (!unmarked_ || try_mark()) return;
+  throw base::Error(file_.path().string(), "lacks the last answers, which stand in the database alone",
+                    "free space on the disk and see that the file can be written; vip-study resume then "
+                    "writes it");
+}
+
+void AnswerJournal::say(const std::string& line) const {
+  if (tell_) return tell_(line);
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 void AnswerJournal::remove_if_blank() noexcept {

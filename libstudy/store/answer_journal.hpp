@@ -26,9 +26,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/store/journal_file.hpp"
@@ -49,19 +51,32 @@ class AnswerJournal {
   /// Before the commit: appends what the open transaction changed. base::Error, with the file as it was, when
   /// it cannot be written.
   void write();
-  /// After the commit.
+  /// After the commit. What cannot be written now is said, and tried again by the next write(), by
+  /// require_written() and at the end.
   void kept();
+  /// base::Error when the journal still lacks what was committed.
+  void require_written();
+  /// Who is to be told, in one line, of a journal that is not as it should be; without: stderr.
+  void tell_with(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
   /// Removes the file when nothing in it was ever kept.
   void remove_if_blank() noexcept;
 
  private:
   void follow();
+  void look_after_file();
+  void write_mark();
+  bool try_mark();
+  void say(const std::string& line) const;
 
   sqlite::Connection& database_;
   JournalFile file_;
+  std::function<void(const std::string&)> tell_;
   std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // row numbers
   std::int64_t number_ = 0;                                          // of the last rows written
   bool waiting_ = false;                                             // written and not kept
+  bool unmarked_ = false;  // committed, and the journal does not say so yet
+  bool anew_ = false;      // the file was lost: it holds a part of what the database does
+  std::string trouble_;    // why the last mark could not be written; said already
   bool blank_ = true;
 };
 

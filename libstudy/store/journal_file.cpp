@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 
 namespace study {
 
@@ -186,21 +187,45 @@ std::string rewrite_line(const std::vector<std::string>& persons) {
   return line.dump() + '\n';
 }
 
-JournalFile::~JournalFile() {
-  if (fd_ >= 0) ::close(fd_);
+JournalFile::~JournalFile() { close(); }
+
+void JournalFile::close() {
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+}
+
+std::string JournalFile::trouble() const {
+  if (fd_ < 0) return {};
+  struct stat here {
+  }, there{};
+  if (::lstat(path_.c_str(), &there) != 0) return "was deleted or moved away";
+  if (::fstat(fd_, &here) != 0 || here.st_dev != there.st_dev || here.st_ino != there.st_ino)
+    return "was replaced by another file";
+  return static_cast<std::uintmax_t>(here.st_size) == size_ ? "" : "was changed by another program";
+}
+
+fs::path JournalFile::set_aside() {
+  close();
+  std::error_code failed;
+  if (!fs::exists(fs::symlink_status(path_, failed))) return {};
+  fs::path aside = path_.string() + ".replaced-" + base::utc_now();
+  for (int i = 2; fs::exists(fs::symlink_status(aside, failed)); ++i)
+    aside = path_.string() + ".replaced-" + base::utc_now() + "-" + std::to_string(i);
+  if (::rename(path_.c_str(), aside.c_str()) != 0) fail(path_, "cannot be renamed", errno);
+  return aside;
 }
 
 void JournalFile::open(const std::string& head) {
   if (fd_ >= 0) return;
   fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600);
   if (fd_ < 0) fail(path_, "cannot be opened", errno);
-  const std::uintmax_t size = size_of(fd_, path_);
+  size_ = size_of(fd_, path_);
   if (::fchmod(fd_, 0600) != 0) fail(path_, "cannot be kept private", errno);
-  if (size > 0) return;
+  if (size_ > 0) return;
   if (const int reason = write_all(fd_, head)) {
     if (::ftruncate(fd_, 0) != 0) fail(path_, "cannot be written", errno);
     fail(path_, "cannot be written", reason);
   }
+  size_ = head.size();
   sync_folder(path_);
 }
 
@@ -209,6 +234,7 @@ void JournalFile::append(const std::string& text, const std::string& head, bool 
   const std::uintmax_t before = size_of(fd_, path_);
   int reason = write_all(fd_, text);
   if (reason == 0 && to_disk && ::fdatasync(fd_) != 0) reason = errno;
+  size_ = before + (reason == 0 ? text.size() : 0);
   if (reason == 0) return;
   if (::ftruncate(fd_, static_cast<off_t>(before)) != 0) fail(path_, "cannot be written", errno);
   fail(path_, "cannot be written", reason);
@@ -218,6 +244,7 @@ void JournalFile::cut(std::uintmax_t end) {
   open("");
   if (size_of(fd_, path_) > end && ::ftruncate(fd_, static_cast<off_t>(end)) != 0)
     fail(path_, "cannot be written", errno);
+  size_ = size_of(fd_, path_);
 }
 
 namespace {

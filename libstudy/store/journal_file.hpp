@@ -54,12 +54,21 @@ class JournalFile {
   void append(const std::string& text, const std::string& head, bool to_disk);
   /// Cuts off what stands behind `end`.
   void cut(std::uintmax_t end);
+  /// Why the file at the path is not as the last append left it, in words; empty: it is, or nothing was
+  /// appended yet.
+  std::string trouble() const;
+  /// The next append opens the path anew. A file of somebody else that stands there is renamed before, to the
+  /// path that is returned; empty: none stood there.
+  std::filesystem::path set_aside();
+  /// The next append opens the path anew.
+  void close();
 
  private:
   void open(const std::string& head);
 
   std::filesystem::path path_;
   int fd_ = -1;
+  std::uintmax_t size_ = 0;  ///< bytes, as this object left it
 };
 
 /// Puts a new file in the place of the old one, which is overwritten first; without `text` it is only

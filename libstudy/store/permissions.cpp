@@ -71,6 +71,7 @@ void write_changes(Connection& database, const std::string& person, const Permis
   journal.write();
   transaction.commit();
   journal.kept();
+  journal.require_written();
 }
 
 std::int64_t count_rows(Connection& database, const std::string& rows, const std::string& person) {

@@ -78,6 +78,12 @@ void Store::make(const std::function<void(Store&)>& change) {
   }
 }
 
+void Store::tell_of_journal(const std::function<void(const std::string&)>& tell) {
+  journal_->tell_with(tell);
+}
+
+void Store::require_journal() { journal_->require_written(); }
+
 void Store::keep_file() {
   lock_->keep();
   database_->go_on_with("run vip-study resume --db " + path_.string() + "; all answers given are kept");
@@ -127,12 +133,13 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
   commit(transaction);
 }
 
-void Store::interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns) {
+void Store::interrupt_presentation(std::int64_t session, std::int64_t presentation, const std::string& why,
+                                   std::int64_t clock_ns) {
   Transaction transaction(*database_);
   Statement(*database_, "UPDATE presentation SET state = 'interrupted' WHERE presentation_id = ?")
       .bind_all(presentation)
       .run();
-  insert_event(session, presentation, "trial interrupted", "stopped on request", clock_ns);
+  insert_event(session, presentation, "trial interrupted", why, clock_ns);
   commit(transaction);
 }
 

@@ -148,6 +148,12 @@ class Store {
   /// What is still left of it, each with reason and mend: a session may go on, the command ends as an error.
   std::vector<std::string> left_to_clean() const { return left_; }
 
+  /// Who is to be told, in one line, when the journal of answers cannot be written or was lost; without:
+  /// stderr.
+  void tell_of_journal(const std::function<void(const std::string&)>& tell);
+  /// At the end of a command: base::Error when the journal still lacks what was committed.
+  void require_journal();
+
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
   /// base::Error when one of the participants has that visit under that protocol already, or a code that
   /// differs from another's in upper and lower case alone, or when the same name and version stand there with
@@ -202,8 +208,9 @@ class Store {
   /// is kept of a trial that was cut alone.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                         std::span<const FrameRecord> frames, const TimingVerdict& verdict);
-  /// Commits that a presentation was cut short; its frames stay.
-  void interrupt_presentation(std::int64_t session, std::int64_t presentation, std::int64_t clock_ns);
+  /// Commits that a presentation was cut short, and why; its frames stay.
+  void interrupt_presentation(std::int64_t session, std::int64_t presentation, const std::string& why,
+                              std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
   /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well;
   /// not so where the trial was set aside since that showing.

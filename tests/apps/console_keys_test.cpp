@@ -85,6 +85,21 @@ TEST_F(ConsoleTest, PauseHoldsUntilItIsLifted) {
   EXPECT_EQ(console_.wish(), study::Wish::GoOn);
 }
 
+TEST_F(ConsoleTest, TroubleIsAnAlarmAndPausesUntilTheExperimenterGoesOn) {
+  console_.begins(first_trial());
+  console_.trouble({"the eye tracker does not see the eyes", "calibrate it"});
+  EXPECT_EQ(console_.wish(), study::Wish::Pause);
+  EXPECT_THAT(lines(),
+              HasSubstr("PAUSED: the eye tracker does not see the eyes; calibrate it; then p goes on"));
+  const auto alarms = console_.view(0).alarms;
+  ASSERT_FALSE(alarms.empty());
+  EXPECT_EQ(alarms.front(), "the eye tracker does not see the eyes; calibrate it; then p goes on");
+  EXPECT_THAT(console_.view(0).person, HasSubstr("pictures cannot be shown"));
+  type("p");
+  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_THAT(console_.view(0).alarms, Not(::testing::Contains(HasSubstr("eye tracker"))));
+}
+
 TEST_F(ConsoleTest, TheSessionEndsOnlyOnAWholeYes) {
   for (const char* half : {"e\n", "ey\n", "eno\n", "eye\x1b", "q", "E"}) type(half);
   EXPECT_EQ(console_.wish(), study::Wish::GoOn);
@@ -97,7 +112,7 @@ TEST_F(ConsoleTest, ARunningTrialIsRepeatedOnce) {
   type("r\n");
   EXPECT_EQ(console_.wish(), study::Wish::GoOn) << "without a reason";
   type("rdoor slammed\n");
-  EXPECT_EQ(console_.wish(), study::Wish::RepeatTrial);
+  EXPECT_EQ(console_.wish(), study::CutCause::Experimenter);
   EXPECT_EQ(console_.wish(), study::Wish::GoOn);
 }
 

@@ -81,6 +81,11 @@ TEST(Refresh, AToldRateThatIsWrongIsNotBelieved) {
   EXPECT_NEAR(found.nominal_hz, 144, 0.01);
 }
 
+TEST(Refresh, ScreensOfTelevisionRatesCountAsWholeOnes) {
+  for (const double told : {0.0, 59.0, 60.0})
+    EXPECT_EQ(judge_swaps(swaps(1e9 / 59.94, 120), told).nominal_hz, 60) << told;
+}
+
 TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
   EXPECT_FALSE(judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: at once
   EXPECT_FALSE(judge_swaps(swaps(8e6, 120, 3e6), 60).in_effect);  // as long as drawing takes
@@ -160,9 +165,9 @@ TEST(Words, NothingIsLeftUnsaidInAnyLanguage) {
   using study::Offer;
   for (const char* language : {"en", "de"}) {
     const DeskWords& words = desk_words(language);
-    for (const std::string& one :
-         {words.go_on, words.confirm, words.finish, words.rest, words.pause, words.ready, words.first,
-          words.second, words.held_title, words.held, words.corner, words.begin})
+    for (const std::string& one : {words.go_on, words.confirm, words.finish, words.rest, words.pause,
+                                   words.ready, words.first, words.second, words.held_title, words.held,
+                                   words.trouble_title, words.trouble, words.corner, words.begin})
       EXPECT_FALSE(one.empty()) << language;
     for (const Notice notice : {Notice::Over, Notice::Refused, Notice::NotEligible, Notice::Kept,
                                 Notice::Deleted, Notice::Goodbye}) {

@@ -115,7 +115,7 @@ TEST_F(HeadsetRealTimeGl, AHeadsetThatIsTakenOffHoldsNobodyUp) {
   for (int i = 0; i < 200 && !spoilt; ++i) {
     display.render(stimulus);
     display.present(clock.now_ns(), clock);
-    spoilt = display.take_spoilt();
+    spoilt = display.take_spoilt().has_value();
   }
   EXPECT_TRUE(spoilt);
   display.turn();  // a slot that is not seen comes before the reason

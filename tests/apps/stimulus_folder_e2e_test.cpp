@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libsim/bake/bake_file.hpp"
+#include "libstudy/store/store.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -122,6 +123,42 @@ TEST_F(StimulusFolderE2e, AnotherFluidIsRefused) {
   const Ended ended = run_baked();
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("holds 10 frames instead of 16"));
+}
+
+TEST_F(StimulusFolderE2e, ResumeTakesAMovedBakeByItsHashAndNoOther) {
+  write_protocol("\"HiRes\"");
+  ASSERT_EQ(bake().exit_code, 0);
+  const std::string moved = folder_ / "moved", file = moved + "/dam_64_HiRes.bake";
+  for (const bool single : {false, true}) {
+    const std::string database = folder_ / (single ? "file.db" : "folder.db");
+    const std::string place = single ? bakes_ + "/dam_64_HiRes.bake" : bakes_;
+    ASSERT_EQ(run(database, {"--stimulus", place}).exit_code, 0);
+    study::Store(database, study::sqlite::Open::Write).repeat_trial(1, 1, "shown once more");
+    fs::rename(bakes_, moved);
+    const std::string hash = sim::BakeReader(file).content_hash();
+    const auto resume = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), {vip_study, "resume", "--db", database});
+      return run_program(more);
+    };
+    const Ended gone = resume({});
+    EXPECT_EQ(gone.exit_code, 1);
+    EXPECT_THAT(gone.err, AllOf(HasSubstr(place + ": is not there any more"), HasSubstr(hash),
+                                HasSubstr("vip-study resume --db " + database + " --stimulus PATH")));
+    // Another bake, by its hash.
+    const std::string other = folder_ / "other.bake";
+    const auto baked = run_program(
+        {vip_study, "bake", scene_, "--method", "HiRes", "--n-star", "64", "--frames", "12", "--out", other});
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    const Ended refused = resume({"--stimulus", other});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("holds bake " + sim::BakeReader(other).content_hash()),
+                                   HasSubstr("began with bake " + hash)));
+    const Ended done = resume({"--stimulus", single ? file : moved});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_EQ(count_in(database, "SELECT count(*) FROM presentation WHERE state = 'played'"), 2);
+    fs::remove(other);
+    fs::rename(moved, bakes_);
+  }
 }
 
 TEST_F(StimulusFolderE2e, AFolderWithoutBakesOfTheProtocolIsRefused) {

@@ -46,6 +46,15 @@ TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   }
 }
 
+TEST(VipStudyCheckE2e, AMeasuredRateCountsAsInRun) {
+  const auto outcome = vip_study("check protocols/ptpe_pilot.toml --refresh 59.94");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("59.94 Hz counts as 60 Hz"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("12 exact"));
+  const auto whole = vip_study("check protocols/ptpe_pilot.toml --refresh 60");
+  EXPECT_EQ(whole.out, outcome.out.substr(outcome.out.size() - whole.out.size())) << "all else is the same";
+}
+
 TEST(VipStudyCheckE2e, BadInputGivesOneErrorAndNoFile) {
   const study::test::TemporaryFolder folder;
   const auto json_path = folder / "check.json";

@@ -258,15 +258,14 @@ TEST(AnswerJournal, ThatCannotBeWrittenIsToldBeforeTheAnswerIsKept) {
   // A limit on the size of files that the journal alone reaches.
   constexpr std::size_t full = 4 << 20;
   std::ofstream(journal_beside(path), std::ios::app)
-      << std::string(full - fs::file_size(journal_beside(path)), 'x');
+      << R"({"kept":0,"more":")" << std::string(full, 'x') << "\"}\n";
   const auto before = test::answers_of(path);
   killed([&] {
     Store store(path, Open::Write);
     ::signal(SIGXFSZ, SIG_IGN);
     const auto session = store.open_runs().at(0).sessions.at(0);
-    std::ofstream(journal_beside(path), std::ios::app)
-        << std::string(full - fs::file_size(journal_beside(path)), 'x');
-    const rlimit limit{full, full};
+    const rlim_t bytes = fs::file_size(journal_beside(path));
+    const rlimit limit{bytes, bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(2);
     const KeptAnswer words{"remarks", {test::words("late"), 1}};
     try {

@@ -114,7 +114,7 @@ TEST(Gaze, BeginsAfterTheConsentPageAndFollowsChanges) {
 
 TEST(Gaze, OfACutShowingStays) {
   Asked asked(1);
-  asked.run(test::wish_at_frame_5(Wish::RepeatTrial, 1));
+  asked.run(test::wish_at_frame_5(CutCause::Experimenter, 1));
   EXPECT_EQ(asked.count("presentation WHERE state = 'interrupted'"), 1);
   EXPECT_EQ(asked.count("gaze JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 2 * 6);
 }

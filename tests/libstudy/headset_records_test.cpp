@@ -119,14 +119,14 @@ TEST(HeadsetRecords, HoldWhatHappenedToTheHeadset) {
   int frames = 0;
   SessionHooks hooks;
   hooks.shown = [&](const FrameRecord&) { ++frames; };
-  hooks.wish = [&] {
+  hooks.wish = [&]() -> Wish {
     if (frames != 5) return Wish::GoOn;
     ++frames;
     worn.slots.news = {"it was lost", "it was made anew"};
-    return Wish::NotShown;
+    return CutCause::Minimised;
   };
   worn.run(hooks);
-  EXPECT_EQ(worn.count("note WHERE words = 'the screen did not show it: it was lost, it was made anew'"), 1);
+  EXPECT_EQ(worn.count("note WHERE words LIKE '%window was minimised: it was lost, it was made anew'"), 1);
   EXPECT_THAT(test::column(worn.folder / "study.db", "SELECT detail FROM event WHERE kind = 'headset'"),
               ElementsAre("it was lost", "it was made anew"));
   EXPECT_EQ(worn.count("presentation WHERE state = 'played'"), 2);

@@ -15,7 +15,7 @@ using ::testing::StartsWith;
 
 TEST(SessionCounts, AreThoseOfTheTables) {
   test::OneSession session(test::paced_pairs());
-  session.run(test::wish_at_frame_5(Wish::RepeatTrial, 1));
+  session.run(test::wish_at_frame_5(CutCause::Experimenter, 1));
   const SessionCounts counts = count_session(session.folder / "study.db", 1);
   EXPECT_EQ(counts.participant, "P01");
   EXPECT_EQ(counts.state, "done");

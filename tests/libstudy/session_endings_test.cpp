@@ -83,7 +83,7 @@ TEST(Session, AStopRuleOffersARestAndShowsNothingMore) {
 TEST(Session, ATrialIsRepeatedOnWishAndBothShowingsStay) {
   OneSession one(paced_pairs());
   std::vector<int> attempts;
-  SessionHooks hooks = wish_at_frame_5(Wish::RepeatTrial, 2);
+  SessionHooks hooks = wish_at_frame_5(CutCause::Experimenter, 2);
   hooks.done = [&](const UnitDone& unit) {
     if (unit.unit.trial) attempts.push_back(unit.attempt);
   };
@@ -97,10 +97,10 @@ TEST(Session, ATrialIsRepeatedOnWishAndBothShowingsStay) {
 
 TEST(Session, ATrialThatTheScreenDidNotShowIsShownAgain) {
   OneSession one(paced_pairs());
-  one.run(wish_at_frame_5(Wish::NotShown, 1));
+  one.run(wish_at_frame_5(CutCause::Minimised, 1));
   EXPECT_EQ(one.count("presentation WHERE state = 'interrupted' AND attempt = 1"), 1);
   EXPECT_EQ(one.count("presentation WHERE state = 'played' AND attempt = 2"), 2);
-  EXPECT_EQ(one.count("note WHERE words = 'the screen did not show it'"), 1);
+  EXPECT_EQ(one.count("note WHERE words LIKE '%window was minimised'"), 1);
   EXPECT_EQ(one.row().state, "done");
 }
 
@@ -112,7 +112,7 @@ TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
     // In the rest between the two questions of the first trial.
     const bool now = !wished && one.person.seen.size() > 1 && one.person.seen.back() == "rest 9";
     wished = wished || now;
-    return now ? Wish::RepeatTrial : Wish::GoOn;
+    return now ? Wish(CutCause::Experimenter) : Wish::GoOn;
   };
   one.run(hooks);
   const auto asked = std::count(one.person.seen.begin(), one.person.seen.end(), "ask preference");

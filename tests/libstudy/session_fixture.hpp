@@ -71,8 +71,8 @@ class Scripted final : public Participant {
     return out;
   }
   void pause(const Pause& pause, Clock& clock, const Check& check) override {
-    const char* names[] = {"black", "rest", "break", "first", "second", "held"};
-    if (pause.seconds > 0 || pause.over) {
+    const char* names[] = {"black", "rest", "break", "first", "second", "held", "trouble"};
+    if (pause.seconds > 0.02 || pause.over || pause.kind == PauseKind::Trouble) {
       seen.push_back(names[static_cast<int>(pause.kind)] + in_seconds(pause.seconds));
       if (!pause.title.empty() || !pause.text.empty()) seen.back() += " '" + pause.title + "' " + pause.text;
     }
@@ -156,7 +156,7 @@ inline SessionHooks wish_at_frame_5(Wish wish, int showings) {
   auto left = std::make_shared<int>(showings);
   SessionHooks hooks;
   hooks.shown = [frame](const FrameRecord& record) { *frame = record.index; };
-  hooks.wish = [=] {
+  hooks.wish = [=]() -> Wish {
     if (*frame != 5 || *left == 0) return Wish::GoOn;
     *frame = -1;
     --*left;

@@ -104,7 +104,7 @@ void FrameLoop::make_anew() {
     facts_.last.runtime_time = facts_.last.index = 0;  // the next session counts anew
     ++facts_.world;
     moves_ns_.clear();
-    black_out();
+    black_out(study::CutCause::SessionLost);
     events_.push_back({.kind = HeadsetEvent::Kind::Lost});
   }
   changed_.notify_all();
@@ -180,12 +180,12 @@ bool FrameLoop::poll() {
 void FrameLoop::follow_world(std::int64_t predicted_ns) {
   if (std::erase_if(moves_ns_, [&](std::int64_t at_ns) { return at_ns <= predicted_ns; }) == 0) return;
   ++facts_.world;
-  black_out();
+  black_out(study::CutCause::Recentred);
 }
 
 /// What was placed in another world would jump.
-void FrameLoop::black_out() {
-  unseen_ |= picture_turns_.shows() || picture_turns_.waits();
+void FrameLoop::black_out(study::CutCause cause) {
+  if (picture_turns_.shows() || picture_turns_.waits()) note_cut(unseen_, cause);
   picture_turns_.drop();
   page_turns_.drop();
 }
@@ -217,7 +217,7 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
       page_turns_.take();
       shown_place_ = waiting_place_;
     }
-    unseen_ |= picture_turns_.shows() && !slot.should_render;
+    if (picture_turns_.shows() && !slot.should_render) note_cut(unseen_, study::CutCause::NotDrawn);
     out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
     if (out.picture) record.shown = shown_from_;
     record.world = facts_.world;
@@ -340,9 +340,10 @@ HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
     const std::lock_guard held(mutex_);
     if (picture_turns_.shows() && !picture_turns_.waits()) return came_on_;
     if (picture_turns_.waits() && running_ && !error_) continue;
-    // Nobody sees it: the headset is off, or all went black.
+    // It is not seen: the headset is off, or all went black.
     picture_turns_.clear();
-    unseen_ = true;
+    if (!running_) note_cut(unseen_, study::CutCause::TakenOff);
+    if (running_ && !unseen_) unseen_ = study::CutCause::NotDrawn;
     return {.predicted_ns = due_ns};
   }
 }
@@ -374,9 +375,9 @@ std::vector<HeadsetRecord> FrameLoop::take_records() {
   return std::exchange(records_, {});
 }
 
-bool FrameLoop::take_unseen() {
+std::optional<study::CutCause> FrameLoop::take_unseen() {
   const std::lock_guard held(mutex_);
-  return std::exchange(unseen_, false);
+  return std::exchange(unseen_, {});
 }
 
 float FrameLoop::light_at(std::int64_t at_ns) const {

@@ -17,6 +17,7 @@
 #include "apps/common/headset/session_maker.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libstudy/display/cut_cause.hpp"
 
 namespace apps {
 
@@ -106,8 +107,8 @@ class FrameLoop {
   /// takes the oldest go.
   std::vector<HeadsetEvent> take_events();
   std::vector<HeadsetRecord> take_records();
-  /// Whether, since the last call, a slot in which a picture was on could not be seen.
-  bool take_unseen();
+  /// Why, since the last call, a slot in which a picture was on could not be seen; none: all were.
+  std::optional<study::CutCause> take_unseen();
 
   /// For one who looks on from another thread: a context that shares the pictures, current nowhere.
   sim::GlContext admit_onlooker();
@@ -128,7 +129,7 @@ class FrameLoop {
   bool poll();
   HeadsetLayers take_in(HeadsetRecord record);
   void follow_world(std::int64_t predicted_ns);
-  void black_out();
+  void black_out(study::CutCause cause);
   using AskViews = EyeViews (HeadsetSession::*)(std::int64_t);
   EyeViews ask_views(AskViews ask, std::int64_t at_ns);
   float light_at(std::int64_t at_ns) const;
@@ -148,9 +149,10 @@ class FrameLoop {
   PictureTurns picture_turns_, page_turns_;
   HeldViews shown_from_, waiting_from_;
   HeadsetPage shown_place_, waiting_place_;
-  std::int64_t due_ns_ = 0;  ///< of the picture that waits
-  HeadsetSlot came_on_;      ///< of the picture that is shown
-  bool unseen_ = false, running_ = false, stopping_ = false;
+  std::int64_t due_ns_ = 0;                ///< of the picture that waits
+  HeadsetSlot came_on_;                    ///< of the picture that is shown
+  std::optional<study::CutCause> unseen_;  ///< why a picture that was on was not seen
+  bool running_ = false, stopping_ = false;
   bool doubted_ = false;       ///< times repeated or left their grid
   bool runtime_ends_ = false;  ///< no session can be made anew
   SessionFacts told_;

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "libstudy/pacing/nominal_refresh.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -35,6 +36,12 @@ HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) 
   return choice;
 }
 
+/// Why a picture is not seen in a state that is not focused.
+study::CutCause cause_of(HeadsetState state) {
+  if (state == HeadsetState::LossPending) return study::CutCause::SessionLost;
+  return state == HeadsetState::Visible ? study::CutCause::Focus : study::CutCause::TakenOff;
+}
+
 /// The same eyes with a margin around what they see.
 void widen(EyeViews& views, double margin_deg) {
   constexpr float most = 1.55f;  // a plane ends before a right angle
@@ -55,14 +62,14 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         "put it on, and close what lies before this program");
   await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  spoilt_ = false;  // a rate that was asked for has come
+  spoilt_.reset();  // a rate that was asked for has come
 }
 
-/// The rate once it has settled, where the rules have it: in the runtime's words where they are true.
+/// The rate once it has settled, where the rules have it, as schedules count it.
 std::optional<double> HeadsetDisplay::met_hz() const {
   const auto [told_hz, measured_hz] = facts().rate;
   if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
-  return told_hz && near_rate(*told_hz, *measured_hz) ? told_hz : measured_hz;
+  return study::nominal_refresh(*measured_hz, told_hz.value_or(0));
 }
 
 /// A session that was made anew counts once its rate is known: trials are compiled for it.
@@ -76,7 +83,7 @@ void HeadsetDisplay::settle_new_session() {
   news_.emplace_back("a session was made anew");
   if (near_rate(*hz, refresh_hz_)) return;
   refresh_hz_ = *hz;
-  spoilt_ = true;
+  note_cut(spoilt_, study::CutCause::Rate);
 }
 
 /// A runtime whose time goes on by itself would drop slots while the program computes.
@@ -134,13 +141,14 @@ void HeadsetDisplay::heed() {
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
     if (event.kind == Kind::Refresh && !new_session_) {
-      refresh_hz_ = event.to_hz;
+      refresh_hz_ = study::nominal_refresh(event.to_hz);
       // Also between pictures: the trial that has begun goes by the intervals of the rate before.
-      spoilt_ = true;
+      note_cut(spoilt_, study::CutCause::Rate);
     }
-    spoilt_ |= state && event.state != HeadsetState::Focused && playing_;
+    if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
   }
-  spoilt_ |= loop_.take_unseen() && playing_;
+  const auto unseen = loop_.take_unseen();
+  if (unseen && playing_) note_cut(spoilt_, *unseen);
   if (new_session_) settle_new_session();
 }
 
@@ -199,7 +207,7 @@ std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
 void HeadsetDisplay::render(study::Stimulus& stimulus) {
   pending_ = &stimulus;
   if (playing_) return;
-  spoilt_ |= !focused();  // the focus went while it was black
+  if (!focused()) note_cut(spoilt_, cause_of(new_session_ ? HeadsetState::LossPending : facts().state));
   // The first picture of a presentation takes longest, and tells how early the others must begin.
   if (slots_by_thread_) draw(loop_.next_ns());
 }
@@ -213,8 +221,9 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
   if (from) {
     times.predicted_display_ns = loop_.show(*from, scheduled_ns).predicted_ns;
   } else {
-    spoilt_ = true;
     clock.wait_until(scheduled_ns);
+    heed();
+    if (!spoilt_) spoilt_ = new_session_ ? study::CutCause::SessionLost : study::CutCause::Pose;
     times.predicted_display_ns = scheduled_ns;
   }
   heed();
@@ -238,6 +247,6 @@ void HeadsetDisplay::clear() {
   playing_ = false;
 }
 
-bool HeadsetDisplay::take_spoilt() { return std::exchange(spoilt_, false); }
+std::optional<study::CutCause> HeadsetDisplay::take_spoilt() { return std::exchange(spoilt_, {}); }
 
 }  // namespace apps

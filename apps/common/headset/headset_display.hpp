@@ -73,9 +73,9 @@ class HeadsetDisplay final : public study::Display {
 
   /// Whether the participant sees and can answer.
   bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }
-  /// Whether, since the last question, a picture that was on could not be seen, or the world or the rate
-  /// changed under it.
-  bool take_spoilt();
+  /// Why, since the last call, a picture that was on could not be seen, or the world or the rate changed
+  /// under it; none: all is well.
+  std::optional<study::CutCause> take_spoilt();
   /// What happened to the session since the last call, for the log: lost, and made anew.
   std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
@@ -96,9 +96,9 @@ class HeadsetDisplay final : public study::Display {
   std::int64_t draw_ns_ = 0;  ///< that a picture takes lately; 0: none was drawn, or slots are the caller's
   std::vector<HeadsetRecord> for_pages_, for_record_;
   std::vector<std::string> news_;
+  std::optional<study::CutCause> spoilt_;  ///< nothing more of the presentation is shown, for this cause
   bool slots_by_thread_;
   bool playing_ = false;      ///< a presentation is on
-  bool spoilt_ = false;       ///< nothing more of the presentation is shown
   bool new_session_ = false;  ///< it was made anew, and its rate has not settled yet
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "libstudy/pacing/nominal_refresh.hpp"
+
 namespace apps {
 
 namespace {
@@ -39,10 +41,11 @@ std::vector<std::int64_t> intervals_on(const RefreshCheck& check, const std::vec
 
 RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz) {
   RefreshCheck check;
-  check.refresh_hz = refresh_hz;
+  check.asked_hz = refresh_hz;
+  check.refresh_hz = study::nominal_refresh(refresh_hz);
   for (const auto& [setting, cells] : checked_settings(protocol)) {
     // The seed orders the holds; nothing that is reported depends on it.
-    check.verdicts.push_back(study::quantise(setting, protocol.pacing, refresh_hz, 0));
+    check.verdicts.push_back(study::quantise(setting, protocol.pacing, check.refresh_hz, 0));
     const auto& verdict = check.verdicts.back();
     check.exact += verdict.feasibility == study::Feasibility::Exact;
     check.approximate += verdict.feasibility == study::Feasibility::Approximate;

@@ -19,7 +19,8 @@ std::vector<CheckedSetting> checked_settings(const study::Protocol& protocol);
 
 /// A protocol on one refresh rate.
 struct RefreshCheck {
-  double refresh_hz = 0;
+  double asked_hz = 0;                          ///< as it was given
+  double refresh_hz = 0;                        ///< that schedules are counted by: study::nominal_refresh
   std::vector<study::RefreshVerdict> verdicts;  ///< one for each of checked_settings()
   int exact = 0, approximate = 0, unreachable = 0;
   double distance = 0;  ///< mean distance to the unquantised rates over the reachable settings, frames/s

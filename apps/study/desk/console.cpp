@@ -52,6 +52,7 @@ void Console::begin(const study::OpenSession& session) {
   paused_ = ended_ = repeat_ = false;
   asking_ = Asking::Nothing;
   warnings_.clear();
+  trouble_.reset();
   ending_.reset();
   verdicts_.clear();
   say(fmt::format("{}: {} steps of {} left, {}; disk {:.1f} GB free", session.plan.participant,
@@ -123,7 +124,7 @@ void Console::done(const study::UnitDone& unit) {
 study::Wish Console::wish() {
   const Guard guard(mutex_);
   if (ended_) return study::Wish::EndSession;
-  if (std::exchange(repeat_, false)) return study::Wish::RepeatTrial;
+  if (std::exchange(repeat_, false)) return study::CutCause::Experimenter;
   return paused_ ? study::Wish::Pause : study::Wish::GoOn;
 }
 
@@ -181,6 +182,7 @@ void Console::command(char byte) {
   switch (byte) {
     case 'p':
       paused_ = !paused_;
+      trouble_.reset();
       return say(paused_ ? "PAUSE before the next step; p goes on" : "goes on");
     case 'n':
       return ask(Asking::Note, "note: ");

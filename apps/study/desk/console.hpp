@@ -31,13 +31,15 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// The session's thread: a session begins; then its hooks. wish() returns RepeatTrial once.
+  /// The session's thread: a session begins; then its hooks. wish() is a cut once.
   void begin(const study::OpenSession& session);
   void begins(const study::OpenUnit& unit);
   void shown(const study::FrameRecord& frame);
   void done(const study::UnitDone& unit);
   void ends(const study::Ending& ending);
   study::Wish wish();
+  /// The session pauses until p: an alarm says why, and what to do.
+  void trouble(const study::Trouble& trouble);
   /// An alarm that stays for this session, such as what the station lacks.
   void warn(const std::string& alarm);
   /// Whether trials were opened again that this session is already past; forgets it. If not, the session is
@@ -101,6 +103,7 @@ class Console {
   std::vector<std::string> lines_;
   std::optional<Deed> deed_;  ///< to be carried out by the thread that set it
   std::vector<std::string> warnings_;
+  std::optional<study::Trouble> trouble_;  ///< for which the session pauses
   std::optional<study::Ending> ending_;
   std::vector<study::TimingVerdict> verdicts_;  ///< of last_trial_
   std::int64_t page_since_ns_ = 0;              ///< steady clock: the step began, or its stimulus ended

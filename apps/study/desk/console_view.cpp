@@ -91,6 +91,7 @@ double Console::on_page_s(std::int64_t now_ns) const {
 
 std::string Console::describe_person(std::int64_t now_ns) const {
   if (ending_) return words_of(*ending_);
+  if (trouble_ && session_ && !ended_) return "reads that the pictures cannot be shown; PAUSED, p goes on";
   if (!session_) return "nobody: the session is over";
   if (ended_) return "is led to the exit: a rest first; let nobody go before they feel well";
   const std::string next = paused_ ? "; PAUSE before the next step, p goes on" : "";
@@ -120,6 +121,7 @@ std::string Console::describe_course() const {
 std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) const {
   std::vector<std::string> all;
   if (ending_) all.push_back(words_of(*ending_));
+  if (trouble_) all.push_back(trouble_->what + "; " + trouble_->mend + "; then p goes on");
   if (disk_mb >= 0 && disk_mb < little_disk_mb)
     all.push_back(fmt::format("disk: only {:.0f} MB are free; free space before the next trial", disk_mb));
   if (const char* failure = failure_of(verdicts_))
@@ -134,6 +136,13 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
     all.push_back("nothing was pressed for " + short_time(*idle) + "; see how they are");
   all.insert(all.end(), warnings_.rbegin(), warnings_.rend());
   return all;
+}
+
+void Console::trouble(const study::Trouble& trouble) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  trouble_ = trouble;
+  paused_ = true;
+  say("PAUSED: " + trouble.what + "; " + trouble.mend + "; then p goes on");
 }
 
 ConsoleView Console::view(std::int64_t now_ns) const {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "libstudy/pacing/nominal_refresh.hpp"
+
 namespace apps {
 
 namespace {
@@ -49,8 +51,7 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   out.in_effect = true;
   out.period_ns = total / periods;
   const double measured_hz = 1e9 / out.period_ns;
-  const bool told_well = told_hz > 0 && std::abs(measured_hz / told_hz - 1) < 0.005;
-  out.nominal_hz = told_well ? told_hz : measured_hz;
+  out.nominal_hz = study::nominal_refresh(measured_hz, told_hz);
   out.beat_ns = beat_of(returns_ns.last(10), out.period_ns);
   out.finding =
       fmt::format("swaps wait for the screen: measured {:.4f} Hz, told {:.4g} Hz", measured_hz, told_hz);

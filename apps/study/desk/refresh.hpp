@@ -16,7 +16,7 @@ struct MeasuredRefresh {
 };
 
 /// From successive returns of a swap that waits until it is done. told_hz: what the system says of the
-/// screen; 0: nothing. A told rate within 0.5 % of the measured one is the nominal one: 60 for 59.95.
+/// screen; 0: nothing. The nominal rate is study::nominal_refresh: 60 for 59.95.
 /// Swaps that do not keep time (steps that are no multiples of a period of 2 to 50 ms) are not in effect.
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz);
 

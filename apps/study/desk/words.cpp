@@ -16,6 +16,9 @@ DeskWords english() {
   words.second = "Second";
   words.held_title = "The session is paused";
   words.held = "Please wait. It goes on in a moment.";
+  words.trouble_title = "A short pause";
+  words.trouble =
+      "The pictures cannot be shown at the moment. You did nothing wrong. Please tell the experimenter.";
   words.corner = "Esc: stop";
   words.begin = "You may stop at any time: press the key Esc.";
   words.corner_by_hand = "Stop";
@@ -81,6 +84,10 @@ DeskWords german() {
   words.second = "Zweites";
   words.held_title = "Die Sitzung ruht";
   words.held = "Bitte warten Sie. Es geht gleich weiter.";
+  words.trouble_title = "Eine kurze Pause";
+  words.trouble =
+      "Die Bilder lassen sich gerade nicht zeigen. Sie haben nichts falsch gemacht. Bitte sagen Sie der "
+      "Versuchsleitung Bescheid.";
   words.corner = "Esc: abbrechen";
   words.begin = "Sie können jederzeit abbrechen: drücken Sie die Taste Esc.";
   words.corner_by_hand = "Abbrechen";

@@ -21,6 +21,7 @@ struct DeskWords {
   std::string go_on, confirm, finish, rest, pause, ready;
   std::string first, second;                  ///< of two stimuli
   std::string held_title, held;               ///< while the experimenter pauses
+  std::string trouble_title, trouble;         ///< when a trial cannot be shown
   std::string corner, begin;                  ///< how to stop: on every page, and as a sentence on the first
   std::string corner_by_hand, begin_by_hand;  ///< the same in a headset
   std::string by_ray, by_stick, by_dwell;     ///< how to answer there, as sentences

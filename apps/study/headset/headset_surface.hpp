@@ -45,7 +45,7 @@ class HeadsetSurface final : public PageSurface {
   void end() override;
   void show() override;
   void show_black() override;
-  bool take_unseen() override { return display_.take_spoilt(); }
+  std::optional<study::CutCause> take_unseen() override { return display_.take_spoilt(); }
   bool unseen() const override { return !display_.focused(); }
 
  private:

@@ -57,6 +57,10 @@ void PageParticipant::pause(const study::Pause& pause, study::Clock&, const stud
     }
     case study::PauseKind::Held:
       return pages_->show_words({words.held_title, words.held}, pause.over, check);
+    case study::PauseKind::Trouble:
+      if (pause.over) return pages_->show_words({words.trouble_title, words.trouble}, pause.over, check);
+      pages_->run_page({words.trouble_title, words.trouble}, {}, 0, check);
+      return;
   }
 }
 

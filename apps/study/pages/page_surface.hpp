@@ -10,6 +10,7 @@
 #include "apps/study/desk/page.hpp"
 #include "apps/study/desk/words.hpp"
 #include "apps/study/pages/gui.hpp"
+#include "libstudy/display/cut_cause.hpp"
 
 namespace apps {
 
@@ -53,8 +54,8 @@ class PageSurface {
   virtual void show_black() = 0;
   virtual void show_cursor(bool /*shown*/) {}
 
-  /// Whether what was shown could not be seen at any time since the last call.
-  virtual bool take_unseen() = 0;
+  /// Why what was shown could not be seen at some time since the last call; none: it was seen.
+  virtual std::optional<study::CutCause> take_unseen() = 0;
   /// Whether it cannot be seen now.
   virtual bool unseen() const { return false; }
   /// The session is over, or another one begins: over, who leaves just leaves.

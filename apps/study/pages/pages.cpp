@@ -206,8 +206,9 @@ study::Wish Pages::wish(const std::function<study::Wish()>& others) {
   if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
   if (in_page_ || wish != study::Wish::GoOn) return wish;
   if (away_) return wait_while_unseen(others);
-  away_ = surface_.take_unseen();
-  if (away_) return study::Wish::NotShown;  // the cut is kept first, then one waits for the surface
+  const auto unseen = surface_.take_unseen();
+  away_ = unseen.has_value();
+  if (unseen) return *unseen;  // the cut is kept first, then one waits for the surface
   const auto events = surface_.take_events();
   if (std::none_of(events.begin(), events.end(), [](const PageEvent& event) { return event.stop; }))
     return wish;
@@ -221,7 +222,8 @@ study::Wish Pages::wish(const std::function<study::Wish()>& others) {
     return overruled.wish;
   }
   surface_.show_black();
-  return stop_wished_ ? study::Wish::EndSession : study::Wish::RepeatTrial;
+  if (stop_wished_) return study::Wish::EndSession;
+  return study::CutCause::Participant;
 }
 
 }  // namespace apps

@@ -63,7 +63,7 @@ class Pages {
   bool in_page_ = false;  ///< a wish to stop is answered there
   bool stop_wished_ = false;
   bool over_ = false;  ///< see set_over()
-  bool away_ = false;  ///< the last wish was NotShown: it may still be unseen
+  bool away_ = false;  ///< the last wish was a cut for what was not seen: it may still be unseen
 };
 
 }  // namespace apps

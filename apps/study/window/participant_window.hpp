@@ -35,7 +35,9 @@ class ParticipantWindow final : public PageSurface {
   void show() override;
   void show_black() override;
   void show_cursor(bool shown) override;
-  bool take_unseen() override { return window_.take_minimised(); }
+  std::optional<study::CutCause> take_unseen() override {
+    return window_.take_minimised() ? std::optional(study::CutCause::Minimised) : std::nullopt;
+  }
   bool unseen() const override { return window_.minimised(); }
   void set_over(bool over) override { over_ = over; }
 

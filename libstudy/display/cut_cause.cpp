@@ -1,0 +1,39 @@
+#include "libstudy/display/cut_cause.hpp"
+
+namespace study {
+
+CutWords words_of(CutCause cause) {
+  switch (cause) {
+    case CutCause::Experimenter:
+      return {"the experimenter had it shown again", "press r only where a trial must be shown again"};
+    case CutCause::Participant:
+      return {"the participant was asked whether to stop, and went on", "ask the participant what is wrong"};
+    case CutCause::Minimised:
+      return {"the participant's window was minimised", "keep that window open, and close what minimises it"};
+    case CutCause::Focus:
+      return {"another program had the headset's focus",
+              "close menus, overlays and other programs of the headset"};
+    case CutCause::TakenOff:
+      return {"the headset was taken off", "have it put on, and look at its sensor between the lenses"};
+    case CutCause::NotDrawn:
+      return {"the headset's software drew no pictures", "close overlays of the headset's software"};
+    case CutCause::Pose:
+      return {"the headset did not know where the eyes are", "light the room, and uncover its cameras"};
+    case CutCause::Recentred:
+      return {"the headset's room was recentred", "switch recentring off in the headset's software"};
+    case CutCause::Rate:
+      return {"the headset's refresh rate changed", "fix the refresh rate in the headset's software"};
+    case CutCause::SessionLost:
+      return {"the headset's software lost the session", "start the headset's software anew"};
+    case CutCause::Gaze:
+      return {"the eye tracker lost the eyes for over 100 ms",
+              "look at how the headset sits, and calibrate the eye tracker"};
+  }
+  return {};
+}
+
+void note_cut(std::optional<CutCause>& noted, CutCause cause) {
+  if (!noted || (*noted == CutCause::Focus && cause == CutCause::TakenOff)) noted = cause;
+}
+
+}  // namespace study

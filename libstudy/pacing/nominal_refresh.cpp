@@ -1,0 +1,24 @@
+#include "libstudy/pacing/nominal_refresh.hpp"
+
+#include <cmath>
+
+namespace study {
+
+namespace {
+
+double share_between(double hz, double other_hz) { return std::abs(hz / other_hz - 1); }
+
+}  // namespace
+
+double nominal_refresh(double hz, double told_hz) {
+  const double base_hz = told_hz > 0 && share_between(hz, told_hz) < same_refresh ? told_hz : hz;
+  double best_hz = base_hz, least = same_refresh;
+  for (const double usual : usual_refreshes) {
+    if (share_between(hz, usual) >= same_refresh || share_between(base_hz, usual) >= least) continue;
+    best_hz = usual;
+    least = share_between(base_hz, usual);
+  }
+  return best_hz;
+}
+
+}  // namespace study

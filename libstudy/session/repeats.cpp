@@ -1,0 +1,50 @@
+#include "libstudy/session/repeats.hpp"
+
+#include "libstudy/session/recording.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+void Repeats::begin_trial() {
+  cuts_ = 0;
+  require_eyes();
+}
+
+void Repeats::after_cut(CutCause cause) {
+  if (cause == CutCause::Gaze) eyes_seen_ = false;
+  if (++cuts_ > most_repeats) {
+    const CutWords words = words_of(cause);
+    pause({"a trial was cut " + std::to_string(cuts_) + " times, the last time because " + words.happened,
+           words.mend});
+    cuts_ = 0;
+  }
+  require_eyes();
+  const Check check = [this] { heed(run_, false); };
+  run_.parts.participant.pause({PauseKind::Black, black_after_cut_s}, run_.parts.clock, check);
+}
+
+void Repeats::require_eyes() {
+  const Check check = [this] { heed(run_, false); };
+  while (!eyes_seen_) {
+    eyes_seen_ = sees_eyes(run_, eyes_within_s, check);
+    if (!eyes_seen_)
+      pause({"the eye tracker does not see the eyes",
+             "look at how the headset sits, and calibrate the eye tracker"});
+  }
+}
+
+void Repeats::pause(const Trouble& trouble) {
+  eyes_seen_ = false;
+  const SessionParts& parts = run_.parts;
+  parts.store.log(run_.session.id, "paused by the program", trouble.what, run_.now_ns());
+  if (parts.participant.simulated())
+    throw base::Error("session of " + run_.session.plan.participant, trouble.what,
+                      trouble.mend + "; vip-study resume continues the session");
+  const bool held = run_.hooks.trouble && run_.hooks.trouble(trouble);
+  Pause pause{PauseKind::Trouble, 0, {}, {}, {}};
+  if (held) pause.over = [this] { return run_.wish().kind == Wish::GoOn; };
+  parts.participant.pause(pause, parts.clock, [this] { heed(run_, false); });
+  parts.store.log(run_.session.id, "goes on after a pause", "", run_.now_ns());
+}
+
+}  // namespace study

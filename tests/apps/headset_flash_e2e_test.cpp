@@ -1,0 +1,121 @@
+/// Nothing flashes in a headset, whatever goes wrong there again and again: read from the simulated headset's
+/// own log.
+#include <sstream>
+
+#include "libstudy/session/repeats.hpp"
+#include "libstudy/store/sqlite.hpp"
+#include "tests/apps/headset_runs.hpp"
+#include "tests/libstudy/permission_fixture.hpp"
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+using study::CutCause;
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int slots_a_second = 90;
+
+class HeadsetFlashE2e : public test::HeadsetRuns {
+ protected:
+  void SetUp() override { bake_dam(dam_, 60); }
+
+  /// Two showings of half a second without any black of their own, after a page of consent.
+  test::Ended session(const std::string& profile, const std::string& gaze) {
+    std::string text = study::test::asking_protocol().text;
+    const auto set = [&](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    set("mean_fps = [20, 50]", "mean_fps = [10, 30]");
+    set("content_step_s = 0.02", "content_step_s = 0.016666666666666666");
+    set("language = \"en\"", "language = \"en\"\naccept_approximate = true");
+    base::write_file_atomically(folder_ / "asking.toml", text);
+    fs::remove(database_);
+    fs::remove(database_ + ".answers.jsonl");
+    return study("size=32x32;" + profile,
+                 {"run", folder_ / "asking.toml", "--db", database_, "--observer", "constant:1", "--display",
+                  "openxr", "--clock", "virtual", "--stimulus", dam_, "--participants", "1", "--gaze", gaze});
+  }
+  std::int64_t count(const std::string& rows) const {
+    return study::sqlite::Connection(database_, study::sqlite::Open::Read)
+        .integer("SELECT count(*) FROM " + rows);
+  }
+  std::vector<std::string> causes() const {
+    return study::test::column(database_, "SELECT detail FROM event WHERE kind = 'trial interrupted'");
+  }
+  /// Slots in which black and the stimulus change.
+  std::vector<int> changes() const {
+    std::vector<int> all;
+    std::istringstream lines(calls());
+    bool lit = false;
+    int slot = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("frame ")) continue;
+      const bool now = line.find(" layers 0 ") == std::string::npos;
+      if (now != lit) all.push_back(slot);
+      lit = now;
+      ++slot;
+    }
+    return all;
+  }
+
+  const std::string dam_ = folder_ / "dam.bake", database_ = folder_ / "study.db";
+};
+
+/// The script from slot 60 on: `bad`, and 20 slots later `good`, again and again.
+std::string again_and_again(const std::string& bad, const std::string& good) {
+  std::string script = "at=";
+  for (int slot = 60; slot < 1200; slot += 40) {
+    script += (slot > 60 ? "," : "") + std::to_string(slot) + ":" + bad;
+    if (!good.empty()) script += "," + std::to_string(slot + 20) + ":" + good;
+  }
+  return script;
+}
+
+TEST_F(HeadsetFlashE2e, WhatGoesWrongAgainAndAgainIsShownFourTimesAtMostAndFlashesNever) {
+  struct Trouble {
+    std::string bad, good;
+    CutCause cause;
+  };
+  for (const auto& [bad, good, cause] :
+       std::vector<Trouble>{{"focus/0", "focus/1", CutCause::Focus},
+                            {"shown/0", "shown/1", CutCause::TakenOff},
+                            {"render/0", "render/1", CutCause::NotDrawn},
+                            {"orientation/0", "orientation/1", CutCause::Pose},
+                            {"recentre/5", "", CutCause::Recentred},
+                            {"gaze_valid/0", "gaze_valid/1", CutCause::Gaze}}) {
+    const bool tracked = cause == CutCause::Gaze;
+    const auto ended = session(again_and_again(bad, good), tracked ? "tracked" : "fixed");
+    EXPECT_EQ(ended.exit_code, 1) << bad << ended.out;
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("cut 4 times"), HasSubstr("vip-study resume continues"))) << bad;
+    EXPECT_EQ(count("presentation WHERE state = 'interrupted'"), study::most_repeats + 1) << bad;
+    EXPECT_THAT(causes(), Each(words_of(cause).happened)) << bad;
+    const std::vector<int> slots = changes();
+    EXPECT_GE(slots.size(), 2u) << bad << ": nothing was ever shown";
+    for (std::size_t i = 3; i < slots.size(); ++i)
+      EXPECT_GE(slots[i] - slots[i - 3], slots_a_second) << bad << ": three changes in a second";
+  }
+}
+
+TEST_F(HeadsetFlashE2e, WithoutTheEyesNothingIsShown) {
+  const auto blind = session("gaze_valid=0", "tracked");
+  EXPECT_EQ(blind.exit_code, 1);
+  EXPECT_THAT(blind.err, HasSubstr("the eye tracker does not see the eyes"));
+  EXPECT_EQ(count("presentation"), 0);
+  EXPECT_TRUE(changes().empty());
+  const auto again = study("size=32x32", {"resume", "--db", database_});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(count("presentation WHERE state = 'played'"), 2);
+  // Lost for good while it is shown.
+  const auto lost = session("at=45:gaze_valid/0", "tracked");
+  EXPECT_EQ(lost.exit_code, 1);
+  EXPECT_THAT(lost.err, HasSubstr("the eye tracker does not see the eyes"));
+  EXPECT_EQ(changes().size(), 2u);
+  EXPECT_THAT(causes(), ElementsAre(words_of(CutCause::Gaze).happened));
+}
+
+}  // namespace
+}  // namespace apps
