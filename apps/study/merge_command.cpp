@@ -8,6 +8,7 @@
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/merge.hpp"
+#include "libstudy/store/open_study.hpp"
 
 namespace apps {
 
@@ -16,10 +17,15 @@ namespace {
 struct MergeCommand {
   std::vector<std::string> sources;
   std::string into;
+  bool incomplete = false;
 };
 
 void merge(const MergeCommand& command) {
-  const study::Merge done = study::merge({command.sources.begin(), command.sources.end()}, command.into);
+  if (command.incomplete) {
+    for (const std::string& source : command.sources) print_lacking(source, study::lacking_of(source));
+  }
+  const study::Merge done =
+      study::merge({command.sources.begin(), command.sources.end()}, command.into, command.incomplete);
   std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
               static_cast<long long>(done.sessions), static_cast<long long>(done.test_sessions),
               static_cast<long long>(done.recognised));
@@ -41,6 +47,7 @@ void add_merge_command(CLI::App& app) {
   sub.add_option("--into", command->into, "Database to make, or one that takes them in")
       ->required()
       ->check(output_file());
+  add_incomplete(sub, command->incomplete);
   sub.callback([command] { merge(*command); });
 }
 

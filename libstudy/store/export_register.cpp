@@ -11,6 +11,7 @@
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_rows.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -153,8 +154,8 @@ void RegisteredExport::is_in_place() {
   transaction.commit();
 }
 
-RegisteredFiles::RegisteredFiles(const fs::path& database)
-    : database_(database), people_(everybody(*open_database(database, Open::Read, read_schema_steps()))) {}
+RegisteredFiles::RegisteredFiles(const StudyFile& study)
+    : database_(study.path), people_(everybody(*open_study(study).database)) {}
 
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
   std::set<std::string> people = everybody(*open_register(database_));

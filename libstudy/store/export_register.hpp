@@ -8,6 +8,7 @@
 
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -50,7 +51,7 @@ class RegisteredExport {
 /// Writes single files that hold values of people, such as a report; make it before their data are read.
 class RegisteredFiles {
  public:
-  explicit RegisteredFiles(const std::filesystem::path& database);
+  explicit RegisteredFiles(const StudyFile& study);
   /// Makes a missing folder for such files, 0700, with those above it. What is made here is removed by the
   /// withdrawal that leaves it empty.
   void make_folder(const std::filesystem::path& folder) const;
