@@ -7,6 +7,7 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
 
@@ -53,6 +54,7 @@ void print_change(const ConsentCommand& command) {
 void consent(const ConsentCommand& command) {
   const bool changed = !command.gaze.empty() || !command.sharing.empty();
   if (changed) print_change(command);
+  if (command.incomplete) print_lacking(command.database, study::lacking_of(command.database));
   bool refused = false;
   for (const auto& session :
        study::read_permissions({command.database, command.incomplete}, command.participant)) {

@@ -126,6 +126,7 @@ TEST(Refusal, ThatIsFinishedLaterNamesBackupsAndExports) {
   const fs::path path = make_study(folder);
   fs::copy_file(path, path.string() + ".v6-then.bak");
   export_csv(path, folder / "csv", {.words = false, .gaze = true});
+  Store(path, Open::Write);  // the export in its journal as well
   Files files(path);
   change_permissions(path, "P01", {.gaze = false, .sharing = {}});
   const std::string written = Files(path).journal;
