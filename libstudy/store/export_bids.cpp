@@ -194,6 +194,7 @@ bool is_export(const fs::path& folder) {
 }  // namespace
 
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
+  finish_cut_commit(study);
   const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);

@@ -105,6 +105,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 }  // namespace
 
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
+  finish_cut_commit(study);
   const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
