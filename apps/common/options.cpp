@@ -47,6 +47,13 @@ CLI::Option* add_database(CLI::App& command, std::string& database) {
   return command.add_option("--db", database, "Database of the study")->required();
 }
 
+void add_incomplete(CLI::App& command, bool& incomplete) {
+  command.add_flag(
+      "--incomplete", incomplete,
+      "Go on where the journal of answers beside the database holds more than the database; what "
+      "is lacking is said");
+}
+
 void add_database_argument(CLI::App& command, std::string& database) {
   auto* positional = command.add_option("database", database, "The study's database");
   command.add_option("--db", database, "The same as an option")->excludes(positional);

@@ -19,6 +19,8 @@ CLI::Option* add_database(CLI::App& command, std::string& database);
 
 /// The database of vip-stats, by its place or as --db; whoever runs the command calls check_given.
 void add_database_argument(CLI::App& command, std::string& database);
+/// --incomplete of all commands that read a study (study::StudyFile).
+void add_incomplete(CLI::App& command, bool& incomplete);
 /// CLI::RequiredError where add_database_argument was given none.
 void check_given(const std::string& database);
 

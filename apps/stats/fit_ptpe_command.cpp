@@ -35,6 +35,8 @@ struct FitCommand {
   double level = 4;
   double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
   bool force = false;
+  bool incomplete = false;
+  std::string lacking;  ///< of the database, where it is incomplete
   TaskSelection selection{TaskKind::Pilot, {}, {}};
   stats::BootstrapOptions bootstrap;
 
@@ -101,7 +103,8 @@ void print_fit(const PilotFit& fit) {
   for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
 }
 
-void write_json(const FitCommand& command, const nlohmann::ordered_json& json) {
+void write_json(const FitCommand& command, nlohmann::ordered_json json) {
+  if (!command.lacking.empty()) json["incomplete"] = command.lacking;
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
 
@@ -154,24 +157,25 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(ptpe_file(fit));
   const auto main = fit.main();
-  append_calibration(command.out, text,
-                     {{"database", std::filesystem::path(command.database).filename().string()},
-                      {"protocol", fit.data.protocol.name},
-                      {"protocol_sha256", fit.data.protocol.sha256},
-                      {"estimator", "direct"},
-                      {"level", fit.level},
-                      {"a", main.fit->a},
-                      {"b", main.fit->b},
-                      {"a_ci", main.spread->a_ci},
-                      {"b_ci", main.spread->b_ci},
-                      {"n_participants", fit.participants},
-                      {"n_simulated", fit.data.simulated.size()},
-                      {"test_data", fit.data.test_data},
-                      {"exclude", timing_rule_name(command.selection.plan.exclusions.timing)},
-                      {"relative_half_width", fit.relative_half_width()},
-                      {"max_relative_half_width", command.max_width},
-                      {"forced", command.force && command.refused(fit)},
-                      {"version", base::version()}});
+  nlohmann::ordered_json record{{"database", std::filesystem::path(command.database).filename().string()},
+                                {"protocol", fit.data.protocol.name},
+                                {"protocol_sha256", fit.data.protocol.sha256},
+                                {"estimator", "direct"},
+                                {"level", fit.level},
+                                {"a", main.fit->a},
+                                {"b", main.fit->b},
+                                {"a_ci", main.spread->a_ci},
+                                {"b_ci", main.spread->b_ci},
+                                {"n_participants", fit.participants},
+                                {"n_simulated", fit.data.simulated.size()},
+                                {"test_data", fit.data.test_data},
+                                {"exclude", timing_rule_name(command.selection.plan.exclusions.timing)},
+                                {"relative_half_width", fit.relative_half_width()},
+                                {"max_relative_half_width", command.max_width},
+                                {"forced", command.force && command.refused(fit)},
+                                {"version", base::version()}};
+  if (!command.lacking.empty()) record["incomplete"] = command.lacking;
+  append_calibration(command.out, text, record);
   base::write_file_atomically(command.out, text);
 }
 
@@ -187,7 +191,10 @@ void fit_ptpe(FitCommand& command) {
   command.bootstrap.seed = command.seed.value_or(command.selection.plan.seed);
   command.bootstrap.confidence = command.selection.plan.confidence;
   if (command.exclude) command.selection.plan.exclusions.timing = timing_rule_of(*command.exclude);
-  const auto data = select_task(study::read_tasks(command.database), command.selection);
+  const auto study = study::read_tasks({command.database, command.incomplete});
+  command.lacking = study.lacking;
+  if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
+  const auto data = select_task(study, command.selection);
   if (!data) {
     write_json(command, failed_fit_json(command.level, data.reason()));
     no_fit(command, data.reason());
@@ -206,6 +213,7 @@ void add_fit_ptpe_command(CLI::App& app) {
   auto command = std::make_shared<FitCommand>();
   auto* fit = app.add_subcommand("fit-ptpe", "Fit mu = a exp(b delta) to the ratings of a PTPE pilot");
   add_database_argument(*fit, command->database);
+  add_incomplete(*fit, command->incomplete);
   fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
   fit->add_option("--out", command->out,
                   "File for the solver (TOML), written on success only; every one is kept in "

@@ -26,6 +26,9 @@ namespace {
 
 struct ReportCommand {
   std::string database, html, json, csv, plan, bundle, sweep;
+  bool incomplete = false;
+
+  study::StudyFile file() const { return {database, incomplete}; }
 };
 
 Json document(const ReportCommand& command) {
@@ -41,7 +44,7 @@ Json document(const ReportCommand& command) {
   } else if (!command.plan.empty()) {
     request.plan = read_plan(command.plan);
   }
-  const auto study = study::read_tasks(command.database);
+  const auto study = study::read_tasks(command.file());
   Results results = make_results(study, request);
   // A task that the study never had stays absent; one without results says why.
   for (const auto& missing : results.missing) {
@@ -49,17 +52,17 @@ Json document(const ReportCommand& command) {
                                      [&](const auto& one) { return kind_of(one) == missing.task; });
     if (planned) results.json[task_name(missing.task)] = json_refused(missing.reason);
   }
-  Json sickness = sickness_json(study::read_sickness(command.database), request.plan.plan);
+  Json sickness = sickness_json(study::read_sickness(command.file()), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
   if (bundle)
     results.json["preregistration"] =
-        report::compare_with_bundle(*bundle, study::read_status(command.database).protocols, results.json);
+        report::compare_with_bundle(*bundle, study::read_status(command.file()).protocols, results.json);
   return results.json;
 }
 
 void write_report(const ReportCommand& command) {
   check_apart(command.database, {{"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}});
-  const study::RegisteredFiles files(command.database);
+  const study::RegisteredFiles files(command.file());
   const Json json = document(command);
   if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
     throw base::Error(command.database, "holds no answers of a pilot, of Task 1 or of Task 2",
@@ -91,6 +94,7 @@ void add_report_command(CLI::App& app) {
   auto command = std::make_shared<ReportCommand>();
   auto* sub = app.add_subcommand("report", "One page with every table, figure, test and decision of a study");
   add_database_argument(*sub, command->database);
+  add_incomplete(*sub, command->incomplete);
   sub->add_option("--html", command->html, "File for the page")->check(output_file());
   sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
       ->check(output_file());

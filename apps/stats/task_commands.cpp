@@ -21,6 +21,7 @@ namespace {
 struct TaskCommand {
   TaskKind task = TaskKind::Task1;
   std::string database, json, csv, plan, protocol;
+  bool incomplete = false;
 };
 
 std::string number_text(const Json& value, int decimals) {
@@ -83,6 +84,8 @@ void print_hypotheses(const Json& json) {
 }
 
 void print_results(const Json& json, TaskKind task) {
+  if (json.at("study").contains("incomplete"))
+    std::printf("incomplete: %s\n", word(json.at("study").at("incomplete")).c_str());
   const Json& flow = json.at("flow").at(task_name(task));
   std::printf("%d participants, %d of %d answered trials analysed, %zu exclusions\n",
               flow.at("analysed").get<int>(), flow.at("trials_analysed").get<int>(),
@@ -110,10 +113,12 @@ void run(const TaskCommand& command) {
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
   ResultsRequest request{command.database, {command.task}, command.protocol, {}};
+  request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = read_plan(command.plan);
   // Before the data are read; without a file nothing is to be registered.
   std::optional<study::RegisteredFiles> files;
-  if (!command.json.empty() || !command.csv.empty()) files.emplace(command.database);
+  if (!command.json.empty() || !command.csv.empty())
+    files.emplace(study::StudyFile(command.database, command.incomplete));
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
     files->write(std::string("vip-stats ") + task_name(command.task), path, bytes);
   };
@@ -135,6 +140,7 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   command->task = task;
   auto* sub = app.add_subcommand(task_name(task), what);
   add_database_argument(*sub, command->database);
+  add_incomplete(*sub, command->incomplete);
   sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   add_plan(*sub, command->plan);

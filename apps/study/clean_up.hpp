@@ -15,6 +15,11 @@ inline void print_list(const char* title, const std::vector<std::string>& lines)
   for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
 }
 
+/// Of a study that is read with --incomplete.
+inline void print_lacking(const std::filesystem::path& database, const std::string& lacking) {
+  if (!lacking.empty()) std::printf("%s is incomplete: %s\n", database.c_str(), lacking.c_str());
+}
+
 inline void print_clean_up(const study::CleanUp& done) {
   for (const auto& path : done.cleaned) {
     std::error_code ignored;

@@ -5,8 +5,9 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "libstudy/store/chores.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 
 struct ConsentCommand {
   std::string participant, database, gaze, sharing;
+  bool incomplete = false;
 };
 
 std::optional<bool> wish_of(const std::string& word) {
@@ -28,20 +30,17 @@ const char* word_of(const std::optional<bool>& granted) {
   return *granted ? "yes" : "no";
 }
 
-void print_list(const char* title, const std::vector<std::string>& lines) {
-  if (lines.empty()) return;
-  std::printf("%s\n", title);
-  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
-}
+constexpr const char* backups_title = "Backups that hold gaze still; delete them:";
+constexpr const char* exports_title =
+    "Exports that may hold gaze; delete them and their copies, or make them again:";
 
 void print_change(const ConsentCommand& command) {
   const study::PermissionChange done = study::change_permissions(
       command.database, command.participant, {wish_of(command.gaze), wish_of(command.sharing)});
   if (command.gaze == "no")
     std::printf("%lld samples of gaze deleted\n", static_cast<long long>(done.gaze_deleted));
-  print_list("Backups that hold gaze still; delete them:", done.backups);
-  print_list("Exports that may hold gaze; delete them and their copies, or make them again:",
-             done.gaze_exports);
+  print_list(backups_title, done.backups);
+  print_list(exports_title, done.gaze_exports);
   print_list("Public exports that hold the participant; delete them and their copies, or make them again:",
              done.exports);
   print_list("Could not be cleaned:", done.left);
@@ -53,11 +52,21 @@ void print_change(const ConsentCommand& command) {
 }
 
 void consent(const ConsentCommand& command) {
-  if (!command.gaze.empty() || !command.sharing.empty()) print_change(command);
-  for (const auto& session : study::read_permissions(command.database, command.participant)) {
+  const bool changed = !command.gaze.empty() || !command.sharing.empty();
+  if (changed) print_change(command);
+  if (command.incomplete) print_lacking(command.database, study::lacking_of(command.database));
+  bool refused = false;
+  for (const auto& session :
+       study::read_permissions({command.database, command.incomplete}, command.participant)) {
     std::printf("%s %s visit %d: gaze kept %s, data shared %s\n", command.participant.c_str(),
                 session.protocol.c_str(), session.visit, word_of(session.gaze), word_of(session.sharing));
+    refused = refused || session.gaze == false;
   }
+  if (changed || !refused) return;
+  const auto elsewhere =
+      study::find_gaze_elsewhere({command.database, command.incomplete}, command.participant);
+  print_list(backups_title, elsewhere.backups);
+  print_list(exports_title, elsewhere.exports);
 }
 
 }  // namespace
@@ -73,8 +82,10 @@ void add_consent_command(CLI::App& app) {
   sub.add_option("--sharing", command->sharing,
                  "Whether they may stand in public exports (BIDS, Psych-DS), with all their sessions")
       ->check(CLI::IsMember({"yes", "no"}));
+  add_incomplete(sub, command->incomplete);
   sub.footer(
-      "Without --gaze and --sharing it changes nothing. Changes hold for all sessions there are and are "
+      "Without --gaze and --sharing it changes nothing, and names what may hold gaze that was refused. "
+      "Changes hold for all sessions there are and are "
       "logged; a consent page that is answered later counts again.");
   sub.callback([command] { consent(*command); });
 }

@@ -4,11 +4,13 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/open_study.hpp"
 
 namespace apps {
 
@@ -42,7 +44,7 @@ void print_public(const study::PublicExport& done, const std::string& folder) {
 void add_export_command(CLI::App& app) {
   struct Options {
     std::string database, csv, bids, psych_ds;
-    bool words = false, gaze = false;
+    bool words = false, gaze = false, incomplete = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
@@ -59,6 +61,7 @@ void add_export_command(CLI::App& app) {
                "CSV: also free words of participants and the experimenter's notes");
   sub.add_flag("--gaze", options->gaze,
                "CSV, BIDS: also where people looked, of those who allowed that; the mouse is marked as such");
+  add_incomplete(sub, options->incomplete);
   sub.footer(
       "BIDS and Psych-DS leave out whoever refused that data be shared; CSV is the lab's own copy and holds "
       "everybody. \n"
@@ -73,14 +76,16 @@ void add_export_command(CLI::App& app) {
       "how\n"
       "to take it away).");
   sub.callback([options] {
-    check_no_withdrawal_is_due(options->database);
+    const study::StudyFile file(options->database, options->incomplete);
+    check_no_withdrawal_is_due(file);
+    if (file.incomplete) print_lacking(file.path, study::lacking_of(file.path));
     if (!options->csv.empty())
-      print_files(study::export_csv(options->database, options->csv, {options->words, options->gaze}));
+      print_files(study::export_csv(file, options->csv, {options->words, options->gaze}));
     if (!options->bids.empty()) {
-      print_public(study::export_bids(options->database, options->bids, options->gaze), options->bids);
+      print_public(study::export_bids(file, options->bids, options->gaze), options->bids);
     }
     if (!options->psych_ds.empty()) {
-      print_public(study::export_psych_ds(options->database, options->psych_ds), options->psych_ds);
+      print_public(study::export_psych_ds(file, options->psych_ds), options->psych_ds);
     }
   });
 }

@@ -9,6 +9,7 @@
 #include "apps/study/commands.hpp"
 #include "apps/study/desk/database_place.hpp"
 #include "libstudy/store/merge.hpp"
+#include "libstudy/store/open_study.hpp"
 
 namespace apps {
 
@@ -17,6 +18,7 @@ namespace {
 struct MergeCommand {
   std::vector<std::string> sources;
   std::string into;
+  bool incomplete = false;
 };
 
 /// The balance of all stations together, and on stderr where it is off and why it may be.
@@ -41,7 +43,11 @@ void print_balance(const study::Merge& done, const std::string& into) {
 
 void merge(const MergeCommand& command) {
   warn_of_place(command.into);
-  const study::Merge done = study::merge({command.sources.begin(), command.sources.end()}, command.into);
+  if (command.incomplete) {
+    for (const std::string& source : command.sources) print_lacking(source, study::lacking_of(source));
+  }
+  const study::Merge done =
+      study::merge({command.sources.begin(), command.sources.end()}, command.into, command.incomplete);
   std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
               static_cast<long long>(done.sessions), static_cast<long long>(done.test_sessions),
               static_cast<long long>(done.recognised));
@@ -64,6 +70,7 @@ void add_merge_command(CLI::App& app) {
   sub.add_option("--into", command->into, "Database to make, or one that takes them in")
       ->required()
       ->check(output_file());
+  add_incomplete(sub, command->incomplete);
   sub.callback([command] { merge(*command); });
 }
 

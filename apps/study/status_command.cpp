@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
@@ -37,8 +38,9 @@ void print_session(const study::SessionRow& session) {
       session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
-void status(const std::string& database) {
-  const study::StudyStatus found = study::read_status(database);
+void status(const std::string& database, bool incomplete) {
+  const study::StudyStatus found = study::read_status({database, incomplete});
+  print_lacking(database, found.lacking);
   for (const study::ProtocolRow& protocol : found.protocols) {
     std::printf("protocol %s version %s, hash %s%s\n", protocol.name.c_str(), protocol.version.c_str(),
                 protocol.sha256.substr(0, 12).c_str(), protocol.test_data ? " (test data)" : "");
@@ -49,7 +51,7 @@ void status(const std::string& database) {
     }
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
-  for (const std::string& code : study::wished_withdrawals(database))
+  for (const std::string& code : study::wished_withdrawals({database, incomplete}))
     std::printf("%s wished that all be deleted: vip-study withdraw %s --db %s\n", code.c_str(), code.c_str(),
                 database.c_str());
   std::printf("%lld frames recorded, %lld samples of gaze\n", static_cast<long long>(found.frames),
@@ -60,9 +62,11 @@ void status(const std::string& database) {
 
 void add_status_command(CLI::App& app) {
   auto database = std::make_shared<std::string>();
+  auto incomplete = std::make_shared<bool>(false);
   CLI::App& sub = *app.add_subcommand("status", "Say what a database holds and what is left to do");
   add_database(sub, *database);
-  sub.callback([database] { status(*database); });
+  add_incomplete(sub, *incomplete);
+  sub.callback([database, incomplete] { status(*database, *incomplete); });
 }
 
 }  // namespace apps

@@ -19,10 +19,10 @@ void withdraw_and_tell(const std::filesystem::path& database, const std::string&
   study::check_nothing_left(database, done.beside.left);
 }
 
-void check_no_withdrawal_is_due(const std::filesystem::path& database) {
-  for (const std::string& participant : study::wished_withdrawals(database)) {
-    throw base::Error(database.string(), "participant " + participant + " wished that all be deleted",
-                      "run vip-study withdraw " + participant + " --db " + database.string());
+void check_no_withdrawal_is_due(const study::StudyFile& study) {
+  for (const std::string& participant : study::wished_withdrawals(study)) {
+    throw base::Error(study.path.string(), "participant " + participant + " wished that all be deleted",
+                      "run vip-study withdraw " + participant + " --db " + study.path.string());
   }
 }
 

@@ -4,9 +4,10 @@
 #include <set>
 
 #include "libstudy/store/bids_questions.hpp"
-#include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/rating_table.hpp"
+#include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "stats/base/file.hpp"
 
@@ -21,7 +22,6 @@ using bids::Json;
 using bids::Table;
 using bids::Writer;
 using sqlite::Connection;
-using sqlite::Open;
 using sqlite::Statement;
 
 namespace {
@@ -193,12 +193,13 @@ bool is_export(const fs::path& folder) {
 
 }  // namespace
 
-PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze) {
-  const auto database = open_database(path, Open::Read, read_schema_steps());
+PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
+  finish_cut_commit(study);
+  const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
-  ExportDraft draft({path, "bids", people_of(sessions), Readers::AsUmask}, folder, is_export);
+  ExportDraft draft({study.path, "bids", people_of(sessions), Readers::AsUmask}, folder, is_export);
   Writer writer(draft);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},
@@ -217,7 +218,7 @@ PublicExport export_bids(const fs::path& path, const fs::path& folder, bool gaze
       const std::string name = "code/" + setting_file_name(setting);
       if (named.insert(name).second) writer.text(name, setting.text);
     }
-    if (!gaze) continue;
+    if (!gaze || !is_gaze_allowed(*database, session.id)) continue;
     bids::write_gaze(*database, session, writer);
     bids::write_motion(*database, session, writer);
   }

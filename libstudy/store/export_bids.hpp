@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "libstudy/store/export_folder.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -16,7 +17,6 @@ namespace study {
 /// known. With `gaze` also where people looked: ..._recording-eye1_physio.tsv.gz of an eye tracker,
 /// ..._acq-mouse_beh.tsv of the mouse. A public export: only shared_sessions() are in it. Errors and folder
 /// as export_csv().
-PublicExport export_bids(const std::filesystem::path& database, const std::filesystem::path& folder,
-                         bool gaze = false);
+PublicExport export_bids(const StudyFile& study, const std::filesystem::path& folder, bool gaze = false);
 
 }  // namespace study

@@ -7,7 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 
@@ -129,7 +130,8 @@ std::string select_sql(Connection& database, const Table& table) {
   for (const AddedColumn& column : added_columns) {
     if (is_of(column, table)) list += std::string(", ") + column.expression + " AS " + column.name;
   }
-  return "SELECT " + list + " FROM " + table.name + " ORDER BY " + table.order;
+  const std::string condition = table.gaze ? " WHERE " + gaze_allowed_sql(table.name) : "";
+  return "SELECT " + list + " FROM " + table.name + condition + " ORDER BY " + table.order;
 }
 
 bool is_written(const Table& table, const CsvChoice& choice) {
@@ -211,11 +213,13 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
   return columns;
 }
 
-std::vector<ExportedFile> export_csv(const fs::path& path, const fs::path& folder, const CsvChoice& choice) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& folder,
+                                     const CsvChoice& choice) {
+  finish_cut_commit(study);
+  const auto database = open_study(study).database;
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
-  ExportDraft draft({path, "csv", everybody(*database), Readers::Owner}, folder, is_export);
+  ExportDraft draft({study.path, "csv", everybody(*database), Readers::Owner}, folder, is_export);
   std::vector<ExportedFile> files;
   for (const Table& table : tables) {
     if (!is_written(table, choice)) continue;

@@ -8,6 +8,7 @@
 
 #include "libstudy/store/export_folder.hpp"
 #include "libstudy/store/rating_table.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -27,8 +28,8 @@ struct CsvChoice {
 /// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
 /// changed, when it holds anything else, or when the database cannot be written: the folder is registered in
 /// it with whom it holds, and a withdrawal of one of them deletes it (export_register.hpp).
-std::vector<ExportedFile> export_csv(const std::filesystem::path& database,
-                                     const std::filesystem::path& folder, const CsvChoice& choice = {});
+std::vector<ExportedFile> export_csv(const StudyFile& study, const std::filesystem::path& folder,
+                                     const CsvChoice& choice = {});
 
 /// A column of the schema with the comment that stands beside it.
 struct ColumnMeaning {

@@ -6,9 +6,9 @@
 #include <set>
 #include <span>
 
-#include "libstudy/store/database.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
@@ -18,7 +18,6 @@ namespace study {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using sqlite::Connection;
-using sqlite::Open;
 
 namespace {
 
@@ -105,14 +104,15 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 
 }  // namespace
 
-PublicExport export_psych_ds(const fs::path& path, const fs::path& folder) {
-  const auto database = open_database(path, Open::Read, read_schema_steps());
+PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
+  finish_cut_commit(study);
+  const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
   const auto sickness = read_sickness(*database);
   std::vector<SicknessSession> scored;
-  ExportDraft draft({path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
+  ExportDraft draft({study.path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
   std::vector<ExportedFile> files;
   std::set<std::string> named;
   fs::create_directory(draft.path() / "data");

@@ -11,6 +11,8 @@
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_rows.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/settling.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -92,6 +94,17 @@ std::set<std::string> everybody(Connection& database) {
   return people;
 }
 
+void finish_cut_commit(const StudyFile& study) {
+  try {
+    const fs::path file = real_file(study.path);
+    if (study.incomplete || read_journal(journal_beside(file)).pending.empty()) return;
+    const WriterLock lock(file);
+    settle_before_writing(*open_database(file, Open::Write, read_schema_steps()));
+  } catch (const base::Error&) {
+    // A session is at work, or who opens the study next is refused as well.
+  }
+}
+
 RegisteredExport::RegisteredExport(const fs::path& database, const std::string& kind, const fs::path& path,
                                    const std::set<std::string>& people)
     : database_(database), path_(without_links(path)), kind_(kind), people_(people) {
@@ -153,8 +166,10 @@ void RegisteredExport::is_in_place() {
   transaction.commit();
 }
 
-RegisteredFiles::RegisteredFiles(const fs::path& database)
-    : database_(database), people_(everybody(*open_database(database, Open::Read, read_schema_steps()))) {}
+RegisteredFiles::RegisteredFiles(const StudyFile& study) : database_(study.path) {
+  finish_cut_commit(study);
+  people_ = everybody(*open_study(study).database);
+}
 
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
   std::set<std::string> people = everybody(*open_register(database_));

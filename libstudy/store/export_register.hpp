@@ -8,11 +8,18 @@
 
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
 /// session.person of everybody who stands in a database.
 std::set<std::string> everybody(sqlite::Connection& database);
+
+/// Finishes a commit that a kill cut short, before an export writes down its own event: rows of the journal
+/// that are under way have their numbers already. Does nothing beside a session, which finishes its own. To
+/// be called before this process opens the database in another way. Never throws: opening the study says what
+/// is wrong.
+void finish_cut_commit(const StudyFile& study);
 
 /// One export while it is made: `people` stand in it.
 ///
@@ -50,7 +57,7 @@ class RegisteredExport {
 /// Writes single files that hold values of people, such as a report; make it before their data are read.
 class RegisteredFiles {
  public:
-  explicit RegisteredFiles(const std::filesystem::path& database);
+  explicit RegisteredFiles(const StudyFile& study);
   /// Makes a missing folder for such files, 0700, with those above it. What is made here is removed by the
   /// withdrawal that leaves it empty.
   void make_folder(const std::filesystem::path& folder) const;

@@ -7,6 +7,8 @@
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/merge_parts.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/refusals.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 
@@ -45,13 +47,13 @@ std::vector<fs::path> distinct(const std::vector<fs::path>& sources, const fs::p
   return out;
 }
 
-Content read_all(const std::vector<fs::path>& sources, const fs::path& into) {
+Content read_all(const std::vector<fs::path>& sources, const fs::path& into, bool incomplete) {
   Content content;
   std::error_code ignored;
   std::vector<fs::path> paths = distinct(sources, into);
   if (fs::exists(into, ignored) && fs::file_size(into, ignored) > 0) paths.push_back(into);
   for (const fs::path& path : paths) {
-    auto source = open_database(path, Open::Read, read_schema_steps());
+    auto source = open_study({path, incomplete && path != into}).database;
     source->execute("BEGIN");  // one moment of it, though a session may be running
     merging::add_source(content, std::move(source));
   }
@@ -114,12 +116,21 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
   transaction.commit();
 }
 
+/// Backups and exports of `into` that hold gaze which a refusal of another station deleted here.
+void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
+  std::set<std::string> deleted;
+  for (const std::string& person : people_without_gaze(into)) {
+    if (had_gaze.contains(person)) deleted.insert(person);
+  }
+  for (std::string& line : name_gaze_elsewhere(into, deleted)) beside.left.push_back(std::move(line));
+}
+
 }  // namespace
 
-Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
+Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool incomplete) {
   const fs::path into = real_file(given);
   WriterLock lock(into, Open::Create);
-  Content content = read_all(sources, into);
+  Content content = read_all(sources, into, incomplete);
   const auto chosen = merging::choose_sessions(content);
   const auto names = merging::name_people(content);
   const auto result = make_temporary_database(into);
@@ -133,6 +144,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
   prepare_rewrite(*target, withdrawn);
+  const std::set<std::string> had_gaze = people_with_gaze(*target);
   target->execute("PRAGMA secure_delete = ON");
   // Exports are registered beside whoever holds the lock of writers: also those of this very moment.
   target->copy_from(*result, [&] {
@@ -143,6 +155,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given) {
   });
   lock.keep();
   merge.beside = clean_up_all(*target);
+  name_refused(*target, had_gaze, merge.beside);
   return merge;
 }
 

@@ -39,7 +39,9 @@ struct Merge {
 /// changes. Sources stay as they are, `into` changes in one transaction or not at all; what is to follow
 /// beside it is written down in that transaction (chores.hpp), so that a kill leaves nothing forgotten.
 /// Personal data stay at their stations. base::Error, with nothing changed: a source with rows that belong to
-/// nothing, or with rows of one session that point into another.
-Merge merge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& into);
+/// nothing, or with rows of one session that point into another; one that lacks what its journal holds,
+/// unless `incomplete`.
+Merge merge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& into,
+            bool incomplete = false);
 
 }  // namespace study

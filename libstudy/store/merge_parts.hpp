@@ -54,6 +54,11 @@ std::vector<std::string> station_troubles(const Content& content);
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,
                  const std::map<std::string, std::string>& names, sqlite::Connection& target);
 
+/// Adds the changes of permissions of a session in whatever copy, each once, to row `session` of the target.
+/// What was known to be superseded in one copy is so in all; no clock decides.
+void add_permissions(Content& content, const std::string& uid, sqlite::Connection& target,
+                     std::int64_t session);
+
 /// Adds the registered exports of a source and whom they hold; of one path, what was written last counts.
 void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "libstudy/store/merge_parts.hpp"
-#include "libstudy/store/permissions.hpp"
+#include "libstudy/store/refusals.hpp"
 #include "stats/base/error.hpp"
 
 namespace study::merging {
@@ -140,33 +140,10 @@ class Union {
     add_run(source, copy, numbers);
     for (const Table& table : session_tables)
       copy_rows(source, target_, table, copy.id, numbers, changes_to(table, copy));
-    add_permissions(copy.uid, numbers.at("session_id").at(copy.id));
+    add_permissions(content_, copy.uid, target_, numbers.at("session_id").at(copy.id));
   }
 
  private:
-  /// Changes of permissions in whatever copy, each once, in the order of time: the last one counts, and of
-  /// two in the same second the refusal.
-  void add_permissions(const std::string& uid, std::int64_t session) {
-    std::set<std::tuple<std::string, bool, std::string>> changes;  // when, refused, what
-    std::set<std::pair<std::string, std::string>> events;          // when, detail
-    for (const SessionCopy& copy : content_.copies) {
-      if (copy.uid != uid) continue;
-      Connection& source = *content_.sources[copy.source];
-      Statement change(source, "SELECT utc, granted, what FROM permission_change WHERE session_id = ?");
-      for (change.bind_all(copy.id); change.step();)
-        changes.emplace(change.text(0), change.integer(1) == 0, change.text(2));
-      Statement event(source, "SELECT utc, detail FROM event WHERE session_id = ? AND kind = ?");
-      for (event.bind_all(copy.id, permission_event); event.step();)
-        events.emplace(event.text(0), event.text(1));
-    }
-    Statement change(target_,
-                     "INSERT INTO permission_change (session_id, utc, granted, what) VALUES (?,?,?,?)");
-    for (const auto& [utc, refused, what] : changes)
-      change.bind_all(session, utc, refused ? 0 : 1, what).run();
-    Statement event(target_, "INSERT INTO event (session_id, utc, kind, detail) VALUES (?,?,?,?)");
-    for (const auto& [utc, detail] : events) event.bind_all(session, utc, permission_event, detail).run();
-  }
-
   std::map<std::string, std::string> changes_to(const Table& table, const SessionCopy& copy) const {
     if (std::string(table.name) != "session") return {};
     return {{"participant", names_.at(copy.person)}};

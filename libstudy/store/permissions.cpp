@@ -1,11 +1,10 @@
 #include "libstudy/store/permissions.hpp"
 
-#include <array>
-
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/backups.hpp"
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/settling.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -19,14 +18,6 @@ using sqlite::Statement;
 using sqlite::Transaction;
 
 namespace {
-
-/// What is recorded only of who allows gaze, the gaze itself first; ?1 is the person.
-constexpr std::array gaze_of_person{
-    "gaze WHERE presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
-    "JOIN session USING (session_id) WHERE person = ?1)",
-    "head WHERE presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
-    "JOIN session USING (session_id) WHERE person = ?1)",
-    "gaze_validation WHERE session_id IN (SELECT session_id FROM session WHERE person = ?1)"};
 
 std::string person_of(Connection& database, const std::string& participant) {
   Statement here(database, "SELECT person FROM session WHERE participant = ?");
@@ -46,11 +37,10 @@ std::optional<bool> granted(const Statement& row, int column) {
 
 void write_change(Connection& database, const std::string& person, const char* what, bool allowed) {
   const std::string now = base::utc_now();
-  Statement(database,
-            "INSERT INTO permission_change (session_id, what, granted, utc) "
-            "SELECT session_id, ?2, ?3, ?4 FROM session WHERE person = ?1 ORDER BY session_id")
-      .bind_all(person, what, allowed ? 1 : 0, now)
-      .run();
+  std::vector<std::int64_t> sessions;
+  Statement row(database, "SELECT session_id FROM session WHERE person = ? ORDER BY session_id");
+  for (row.bind_all(person); row.step();) sessions.push_back(row.integer(0));
+  for (const std::int64_t session : sessions) record_permission(database, session, what, allowed, now);
   Statement(database,
             "INSERT INTO event (session_id, utc, kind, detail) "
             "SELECT session_id, ?2, ?3, ?4 FROM session WHERE person = ?1 ORDER BY session_id")
@@ -63,63 +53,28 @@ void write_changes(Connection& database, const std::string& person, const Permis
   Transaction transaction(database);
   if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
   if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
-  if (wish.gaze && !*wish.gaze) {
-    for (const char* rows : gaze_of_person)
-      Statement(database, std::string("DELETE FROM ") + rows).bind_all(person).run();
-    ChorePlan(database).rewrite();
-  }
+  delete_refused_gaze(database);
   journal.write();
   transaction.commit();
   journal.kept();
   journal.require_written();
 }
 
-std::int64_t count_rows(Connection& database, const std::string& rows, const std::string& person) {
-  Statement row(database, "SELECT count(*) FROM " + rows);
-  return row.bind_all(person).step() ? row.integer(0) : 0;
-}
-
-/// Of any schema.
-bool holds_gaze(const fs::path& path, const std::string& person) {
-  Connection backup(path, Open::Read);
-  Statement there(backup, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?");
-  for (const std::string rows : gaze_of_person) {
-    const bool any = there.bind_all(rows.substr(0, rows.find(' '))).step();
-    there.reset();
-    if (any && count_rows(backup, rows, person) > 0) return true;
-  }
-  return false;
-}
-
-/// One that cannot be read may hold it.
-std::vector<std::string> backups_with_gaze(const fs::path& database, const std::string& person) {
-  std::vector<std::string> found;
-  for (const fs::path& backup : backups_of(database)) {
-    try {
-      if (holds_gaze(backup, person)) found.push_back(backup.string());
-    } catch (const base::Error&) {
-      found.push_back(backup.string() + " (cannot be read)");
-    }
-  }
-  return found;
-}
-
-/// Of a person. The register does not tell which of them were made with gaze.
-std::vector<std::string> exports_of(Connection& database, const std::string& person, bool public_only) {
+/// Public exports that hold a person.
+std::vector<std::string> public_exports_of(Connection& database, const std::string& person) {
   Statement row(database,
                 "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
-                "(export_id) WHERE person = ?1 AND (NOT ?2 OR kind IN ('bids', 'psych-ds', 'unknown')) "
+                "(export_id) WHERE person = ?1 AND kind IN ('bids', 'psych-ds', 'unknown') "
                 "ORDER BY export_id");
-  row.bind_all(person, public_only ? 1 : 0);
   std::vector<std::string> found;
-  while (row.step()) found.push_back(row.text(0));
+  for (row.bind_all(person); row.step();) found.push_back(row.text(0));
   return found;
 }
 
 }  // namespace
 
-std::vector<SessionPermission> read_permissions(const fs::path& path, const std::string& participant) {
-  const auto database = open_database(path, Open::Read, read_schema_steps());
+std::vector<SessionPermission> read_permissions(const StudyFile& study, const std::string& participant) {
+  const auto database = open_study(study).database;
   const std::string person = person_of(*database, participant);
   Statement row(*database,
                 "SELECT p.name, s.visit, g.granted, h.granted FROM session s JOIN protocol p USING "
@@ -133,23 +88,51 @@ std::vector<SessionPermission> read_permissions(const fs::path& path, const std:
   return sessions;
 }
 
+GazeElsewhere find_gaze_elsewhere(const StudyFile& study, const std::string& participant) {
+  const auto database = open_study(study).database;
+  return find_gaze_elsewhere(*database, person_of(*database, participant));
+}
+
 PermissionChange change_permissions(const fs::path& path, const std::string& participant,
                                     const PermissionWish& wish) {
   const WriterLock lock(path);
   const auto database = open_database(path, Open::Write, read_schema_steps());
   database->execute("PRAGMA temp_store = MEMORY; PRAGMA secure_delete = ON");
   const std::string person = person_of(*database, participant);
-  const bool no_gaze = wish.gaze && !*wish.gaze, no_sharing = wish.sharing && !*wish.sharing;
   PermissionChange done;
-  if (no_gaze) done.gaze_deleted = count_rows(*database, gaze_of_person.front(), person);
+  const std::int64_t before = count_gaze(*database, person);
+  JournalFile journal(journal_beside(database->path()));
+  std::set<std::string> others = settle(*database, journal).gaze_deleted;
+  others.erase(person);
+  done.left = name_gaze_elsewhere(*database, others);
   write_changes(*database, person, wish);
-  if (no_gaze) {
-    done.left = clean_up(*database).left;
-    done.backups = backups_with_gaze(path, person);
-    done.gaze_exports = exports_of(*database, person, false);
+  done.gaze_deleted = before - count_gaze(*database, person);
+  const auto left = clean_up(*database).left;
+  done.left.insert(done.left.end(), left.begin(), left.end());
+  if (wish.gaze && !*wish.gaze) {
+    GazeElsewhere elsewhere = find_gaze_elsewhere(*database, person);
+    done.backups = std::move(elsewhere.backups);
+    done.gaze_exports = std::move(elsewhere.exports);
   }
-  if (no_sharing) done.exports = exports_of(*database, person, true);
+  if (wish.sharing && !*wish.sharing) done.exports = public_exports_of(*database, person);
   return done;
+}
+
+void record_permission(Connection& database, std::int64_t session, const std::string& what, bool allowed,
+                       const std::string& utc) {
+  Statement(database,
+            "UPDATE permission_change SET superseded = 1 "
+            "WHERE session_id = ? AND what = ? AND superseded IS NOT 1")
+      .bind_all(session, what)
+      .run();
+  Statement(database,
+            "INSERT INTO permission_change (session_id, what, granted, utc, uid, turn, answers, showings, "
+            "superseded) VALUES (?1, ?2, ?3, ?4, lower(hex(randomblob(16))), "
+            "(SELECT coalesce(max(turn), 0) + 1 FROM permission_change WHERE session_id = ?1), "
+            "coalesce((SELECT answers FROM permission_answer WHERE session_id = ?1 AND what = ?2), 0), "
+            "(SELECT count(*) FROM presentation JOIN trial USING (trial_id) WHERE session_id = ?1), 0)")
+      .bind_all(session, what, allowed ? 1 : 0, utc)
+      .run();
 }
 
 SharingCount count_sharing(Connection& database) {
@@ -164,22 +147,6 @@ SharingCount count_sharing(Connection& database) {
       "WHERE c.session_id = p.session_id AND c.what = 'sharing'))) AS said FROM sharing) h");
   row.step();
   return {row.integer(0), row.integer(1), row.integer(2), row.integer(3)};
-}
-
-void drop_unallowed_gaze(Connection& database) {
-  for (const char* table : {"gaze", "head"}) {
-    database.execute(
-        std::string("DELETE FROM ") + table +
-        " WHERE presentation_id IN (SELECT presentation_id FROM presentation p JOIN trial t USING (trial_id) "
-        "JOIN permission g ON g.session_id = t.session_id AND g.what = 'gaze' WHERE g.granted IS NOT 1 OR "
-        "EXISTS (SELECT 1 FROM permission_change c WHERE c.session_id = t.session_id AND c.what = 'gaze' AND "
-        "c.granted = 0 AND c.utc >= p.started_utc))");
-  }
-  // Of no time of day: one refusal in any copy is enough.
-  database.execute(
-      "DELETE FROM gaze_validation WHERE session_id IN (SELECT session_id FROM permission WHERE what = "
-      "'gaze' AND granted IS NOT 1) OR session_id IN (SELECT session_id FROM permission_change WHERE what = "
-      "'gaze' AND granted = 0)");
 }
 
 }  // namespace study

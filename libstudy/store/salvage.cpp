@@ -11,7 +11,7 @@
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/earlier_shapes.hpp"
-#include "libstudy/store/permissions.hpp"
+#include "libstudy/store/refusals.hpp"
 #include "libstudy/store/salvage_rows.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"

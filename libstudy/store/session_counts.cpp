@@ -1,6 +1,6 @@
 #include "libstudy/store/session_counts.hpp"
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
 
 namespace study {
 
@@ -30,7 +30,7 @@ std::string number(std::int64_t count) { return std::to_string(count); }
 }  // namespace
 
 SessionCounts count_session(const std::filesystem::path& path, std::int64_t session) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+  const auto database = open_study(path).database;
   sqlite::Statement row(*database, counts_sql);
   SessionCounts counts;
   if (!row.bind_all(session).step()) return counts;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -128,8 +128,8 @@ std::vector<SicknessSession> read_sickness(sqlite::Connection& database) {
   return Reader(database).sessions();
 }
 
-std::vector<SicknessSession> read_sickness(const std::filesystem::path& path) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+std::vector<SicknessSession> read_sickness(const StudyFile& study) {
+  const auto database = open_study(study).database;
   return read_sickness(*database);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/study_file.hpp"
 #include "stats/analysis/ssq.hpp"
 
 namespace study {
@@ -52,6 +53,6 @@ struct SicknessSession {
 /// outside its scale.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
 /// base::Error as read_tasks().
-std::vector<SicknessSession> read_sickness(const std::filesystem::path& database);
+std::vector<SicknessSession> read_sickness(const StudyFile& study);
 
 }  // namespace study

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
 
 namespace study {
 
@@ -59,9 +59,10 @@ std::optional<bool> flag(const Statement& row, int column) {
 
 }  // namespace
 
-StudyStatus read_status(const std::filesystem::path& path) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+StudyStatus read_status(const StudyFile& study) {
+  auto [database, lacking] = open_study(study);
   StudyStatus status;
+  status.lacking = std::move(lacking);
   for (Statement row(*database, protocols_sql); row.step();) {
     ProtocolRow protocol{.id = row.integer(0),
                          .name = row.text(1),
@@ -103,7 +104,7 @@ StudyStatus read_status(const std::filesystem::path& path) {
 
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, std::int64_t run_id,
                                              FpsMean mean) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+  const auto database = open_study(path).database;
   Statement row(*database, certificate_sql(mean));
   row.bind_all(run_id);
   std::vector<CertificateRow> rows;

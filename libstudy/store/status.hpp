@@ -9,6 +9,7 @@
 
 #include "libstudy/pacing/schedule.hpp"
 #include "libstudy/protocol/design.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -44,8 +45,9 @@ struct StudyStatus {
   std::vector<std::string> withdrawn;  ///< codes of those who withdrew
   std::int64_t frames = 0;
   std::int64_t gaze = 0;  ///< samples
+  std::string lacking;    ///< what its journal alone holds (open_study.hpp); empty: nothing
 };
-StudyStatus read_status(const std::filesystem::path& database);
+StudyStatus read_status(const StudyFile& study);
 
 /// Timing of all answered presentations of one cell: a line of the certificate.
 struct CertificateRow {

@@ -7,6 +7,7 @@
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
+#include "libstudy/store/settling.hpp"
 #include "libstudy/store/store_statements.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -42,7 +43,9 @@ std::optional<std::string> words_of(const Answer& answer) {
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
     : path_(real_file(path)), lock_(std::in_place, path_, how) {
   database_ = open_database(path_, how, read_schema_steps(), max_pages, waiting);
-  left_ = clean_up(*database_).left;
+  left_ = settle_before_writing(*database_);
+  const auto cleaned = clean_up(*database_).left;
+  left_.insert(left_.end(), cleaned.begin(), cleaned.end());
   for (const std::string& participant : study::wished_withdrawals(*database_)) {
     const auto left = withdraw(*database_, participant).beside.left;
     left_.insert(left_.end(), left.begin(), left.end());

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "libstudy/protocol/protocol.hpp"
-#include "libstudy/store/database.hpp"
 #include "libstudy/store/names.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/stored_protocol.hpp"
 
 namespace study {
@@ -234,13 +234,14 @@ TaskProtocol describe(const Protocol& protocol) {
 
 }  // namespace
 
-TaskStudy read_tasks(const std::filesystem::path& path) {
-  const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
+TaskStudy read_tasks(const StudyFile& file) {
+  auto [database, lacking] = open_study(file);
   TaskStudy study;
+  study.lacking = std::move(lacking);
   study.withdrawn = static_cast<int>(database->integer("SELECT count(*) FROM tombstone"));
   Statement row(*database, "SELECT protocol_id FROM protocol ORDER BY protocol_id");
   while (row.step()) {
-    const Protocol protocol = stored_protocol(*database, row.integer(0), path.string());
+    const Protocol protocol = stored_protocol(*database, row.integer(0), file.path.string());
     TaskProtocol out = describe(protocol);
     out.sessions = Reader(*database, row.integer(0), protocol).sessions();
     study.protocols.push_back(std::move(out));

@@ -13,6 +13,7 @@
 #include "libstudy/protocol/question.hpp"
 #include "libstudy/store/frame_costs.hpp"
 #include "libstudy/store/run_settings.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -106,11 +107,12 @@ struct TaskProtocol {
 
 struct TaskStudy {
   std::vector<TaskProtocol> protocols;
-  int withdrawn = 0;  ///< participants who withdrew, from whatever protocol
+  int withdrawn = 0;    ///< participants who withdrew, from whatever protocol
+  std::string lacking;  ///< what the database lacks of its journal (open_study.hpp); empty: nothing
 };
 
 /// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error
 /// naming the file: missing, not a database of this program, damaged, or newer than this program.
-TaskStudy read_tasks(const std::filesystem::path& database);
+TaskStudy read_tasks(const StudyFile& file);
 
 }  // namespace study

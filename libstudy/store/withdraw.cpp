@@ -1,11 +1,14 @@
 #include "libstudy/store/withdraw.hpp"
 
 #include <optional>
-#include "libstudy/store/answer_journal.hpp"
 
+#include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/backups.hpp"
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/refusals.hpp"
+#include "libstudy/store/settling.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 
@@ -61,8 +64,8 @@ std::vector<std::string> wished_withdrawals(Connection& database) {
   return participants;
 }
 
-std::vector<std::string> wished_withdrawals(const fs::path& path) {
-  return wished_withdrawals(*open_database(path, sqlite::Open::Read, read_schema_steps()));
+std::vector<std::string> wished_withdrawals(const StudyFile& study) {
+  return wished_withdrawals(*open_study(study).database);
 }
 
 Withdrawal withdraw(Connection& database, const std::string& participant) {
@@ -89,7 +92,13 @@ Withdrawal withdraw(Connection& database, const std::string& participant) {
 Withdrawal withdraw(const fs::path& given, const std::string& participant) {
   const fs::path path = real_file(given);
   const WriterLock lock(path);
-  return withdraw(*open_database(path, sqlite::Open::Write, read_schema_steps()), participant);
+  const auto database = open_database(path, sqlite::Open::Write, read_schema_steps());
+  JournalFile journal(journal_beside(path));
+  const std::set<std::string> gaze_deleted = settle(*database, journal).gaze_deleted;
+  Withdrawal done = withdraw(*database, participant);
+  const auto named = name_gaze_elsewhere(*database, gaze_deleted);  // of who is still there
+  done.beside.left.insert(done.beside.left.end(), named.begin(), named.end());
+  return done;
 }
 
 }  // namespace study

@@ -8,6 +8,7 @@
 
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace study {
 
@@ -30,7 +31,7 @@ struct Withdrawal {
 inline constexpr const char* withdrawal_wish = "withdrawal wished";
 
 /// Participants with such an event. base::Error as read_tasks().
-std::vector<std::string> wished_withdrawals(const std::filesystem::path& database);
+std::vector<std::string> wished_withdrawals(const StudyFile& study);
 std::vector<std::string> wished_withdrawals(sqlite::Connection& database);
 
 /// Deletes all rows of a participant but a tombstone from `database`, its log, its backups, the file of

@@ -2,6 +2,7 @@
 #include <array>
 #include <tuple>
 
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 
@@ -10,11 +11,7 @@ namespace study {
 using sqlite::Statement;
 using sqlite::Transaction;
 
-bool Store::allows_gaze(std::int64_t session) {
-  Statement row(*database_,
-                "SELECT 1 FROM permission WHERE session_id = ? AND what = 'gaze' AND granted = 1");
-  return row.bind_all(session).step();
-}
+bool Store::allows_gaze(std::int64_t session) { return is_gaze_allowed(*database_, session); }
 
 /// Of a presentation that is being shown.
 std::int64_t Store::session_of(std::int64_t presentation) {
@@ -56,16 +53,20 @@ void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigi
   commit(transaction);
 }
 
-/// Who answers a consent page after the experimenter changed a permission has the last word.
+/// Who answers a consent page after the experimenter changed a permission has the last word. A refusal takes
+/// with it what was recorded before.
 void Store::answer_over_change(std::int64_t session, const std::string& question, const std::string& now) {
   if (question != gaze_question && question != sharing_question) return;
-  Statement(
-      *database_,
-      "INSERT INTO permission_change (session_id, what, granted, utc) "
-      "SELECT session_id, what, answered, ?3 FROM permission_answer WHERE session_id = ?1 AND what = ?2 "
-      "AND what IN (SELECT what FROM permission_change WHERE session_id = ?1)")
-      .bind_all(session, question == gaze_question ? "gaze" : "sharing", now)
-      .run();
+  const std::string what = question == gaze_question ? "gaze" : "sharing";
+  Statement row(*database_,
+                "SELECT answered FROM permission_answer WHERE session_id = ?1 AND what = ?2 "
+                "AND EXISTS (SELECT 1 FROM permission_change WHERE session_id = ?1 AND what = ?2)");
+  if (row.bind_all(session, what).step()) {
+    const bool allowed = row.integer(0) == 1;
+    row.reset();
+    record_permission(*database_, session, what, allowed, now);
+  }
+  delete_refused_gaze(*database_);
 }
 
 }  // namespace study

@@ -115,4 +115,30 @@ inline std::vector<std::string> column(const std::filesystem::path& path, const 
   return out;
 }
 
+/// "P01 gaze 1", ... with ~ where the protocol does not ask.
+inline std::vector<std::string> permissions_of(const std::filesystem::path& path) {
+  return column(path,
+                "SELECT participant || ' ' || what || ' ' || coalesce(granted, '~') FROM permission "
+                "JOIN session USING (session_id) ORDER BY participant, visit, what");
+}
+
+/// P01 and P02 allow all and have one gaze sample each; P01 has a second visit.
+inline std::filesystem::path gaze_of_two(const TemporaryFolder& folder, double x = 0.5) {
+  Store store(folder / "study.db", sqlite::Open::Create);
+  add_people(store, asking_protocol(), {{"P01", 1, 1}, {"P02", 1, 1}});
+  add_people(store, asking_protocol(), {{"P01", 1, 1}}, 2);
+  for (const std::int64_t presentation : {1, 2, 3}) {
+    const GazeSample sample{5, {}, true, GazePoint{presentation == 2 ? 0.125 : x, 0.5}};
+    store.add_gaze(presentation, 0, GazeOrigin::Mouse, {&sample, 1});
+  }
+  return folder / "study.db";
+}
+
+/// Codes, once for each sample.
+inline std::vector<std::string> gaze_of(const std::filesystem::path& path) {
+  return column(path,
+                "SELECT participant FROM gaze JOIN presentation USING (presentation_id) "
+                "JOIN trial USING (trial_id) JOIN session USING (session_id) ORDER BY 1");
+}
+
 }  // namespace study::test

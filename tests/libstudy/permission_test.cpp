@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "libstudy/store/merge.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -20,15 +19,7 @@ using sqlite::Connection;
 using sqlite::Open;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
-
-/// "P01 gaze 1", ... with ~ where the protocol does not ask.
-std::vector<std::string> permissions(const fs::path& path) {
-  return test::column(path,
-                      "SELECT participant || ' ' || what || ' ' || coalesce(granted, '~') FROM permission "
-                      "JOIN session USING (session_id) ORDER BY participant, visit, what");
-}
 
 TEST(Permission, IsWhatWasAnswered) {
   const test::TemporaryFolder folder;
@@ -38,8 +29,9 @@ TEST(Permission, IsWhatWasAnswered) {
     test::add_people(store, test::asking_protocol(), {{"P01", 1, 0}, {"P02", 0, 1}, {"P03", {}, {}}});
     test::add_people(store, test::asking_protocol(false, false), {{"P04", {}, {}}});
   }
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 0", "P02 gaze 0", "P02 sharing 1",
-                                             "P03 gaze 0", "P03 sharing 0", "P04 gaze ~", "P04 sharing ~"));
+  EXPECT_THAT(test::permissions_of(path),
+              ElementsAre("P01 gaze 1", "P01 sharing 0", "P02 gaze 0", "P02 sharing 1", "P03 gaze 0",
+                          "P03 sharing 0", "P04 gaze ~", "P04 sharing ~"));
 }
 
 TEST(Permission, OneRefusalOfAPersonCountsForAllSessions) {
@@ -87,10 +79,10 @@ TEST(Permission, OfAScaleThatIsNotNoAndYesIsRefused) {
     Store store(path, Open::Create);
     test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}});
   }
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 1"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 1", "P01 sharing 1"));
   Connection(path, Open::Write).execute("UPDATE question SET scale_max = 2 WHERE code = 'gaze_kept'");
   Connection(path, Open::Write).execute("UPDATE question SET kind = 'scale' WHERE code = 'data_shared'");
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 0", "P01 sharing 0"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 0", "P01 sharing 0"));
 }
 
 TEST(Permission, GoesWithWhoWithdraws) {
@@ -104,7 +96,7 @@ TEST(Permission, GoesWithWhoWithdraws) {
     Connection database(path, Open::Write);
     database.execute(
         "INSERT INTO permission_change (session_id, what, granted, utc) "
-        "SELECT session_id, 'gaze', 0, 'now' FROM session");
+        "SELECT session_id, 'gaze', 1, 'now' FROM session");
     database.execute(
         "INSERT INTO gaze (presentation_id, sample_index, source, sampled_ns, device_ns, valid, x, y) "
         "SELECT presentation_id, 0, 'mouse', 0, NULL, 1, 0.5, 0.5 FROM presentation");
@@ -119,33 +111,15 @@ TEST(Permission, GoesWithWhoWithdraws) {
               ElementsAre("P02"));
 }
 
-/// P01 and P02 allow all and have one gaze sample each; P01 has a second visit.
-fs::path gaze_study(const test::TemporaryFolder& folder, double x = 0.5) {
-  Store store(folder / "study.db", Open::Create);
-  test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}, {"P02", 1, 1}});
-  test::add_people(store, test::asking_protocol(), {{"P01", 1, 1}}, 2);
-  for (const std::int64_t presentation : {1, 2, 3}) {
-    const GazeSample sample{5, {}, true, GazePoint{presentation == 2 ? 0.125 : x, 0.5}};
-    store.add_gaze(presentation, 0, GazeOrigin::Mouse, {&sample, 1});
-  }
-  return folder / "study.db";
-}
-
-std::vector<std::string> gaze_of(const fs::path& path) {
-  return test::column(path,
-                      "SELECT participant FROM gaze JOIN presentation USING (presentation_id) "
-                      "JOIN trial USING (trial_id) JOIN session USING (session_id) ORDER BY 1");
-}
-
 TEST(PermissionChange, HoldsForAllSessionsAndIsLogged) {
   const test::TemporaryFolder folder;
-  const fs::path path = gaze_study(folder);
+  const fs::path path = test::gaze_of_two(folder);
   change_permissions(path, "P01", {.gaze = {}, .sharing = false});
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 0", "P01 gaze 1", "P01 sharing 0",
-                                             "P02 gaze 1", "P02 sharing 1"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 1", "P01 sharing 0", "P01 gaze 1",
+                                                      "P01 sharing 0", "P02 gaze 1", "P02 sharing 1"));
   change_permissions(path, "P01", {.gaze = true, .sharing = true});
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 1", "P01 gaze 1", "P01 sharing 1",
-                                             "P02 gaze 1", "P02 sharing 1"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 1", "P01 sharing 1", "P01 gaze 1",
+                                                      "P01 sharing 1", "P02 gaze 1", "P02 sharing 1"));
   EXPECT_THAT(test::column(path,
                            "SELECT session_id || ' ' || detail FROM event WHERE kind = 'permission changed' "
                            "ORDER BY event_id"),
@@ -160,7 +134,7 @@ TEST(PermissionChange, HoldsForAllSessionsAndIsLogged) {
 TEST(PermissionChange, NoGazeLeavesNoByteOfItAndTheSessionGoesOn) {
   const test::TemporaryFolder folder;
   constexpr double telling = 0.7123456789;
-  const fs::path path = gaze_study(folder, telling);
+  const fs::path path = test::gaze_of_two(folder, telling);
   std::string bytes(8, '\0');  // as SQLite stores a number
   std::memcpy(bytes.data(), &telling, 8);
   std::reverse(bytes.begin(), bytes.end());
@@ -170,7 +144,7 @@ TEST(PermissionChange, NoGazeLeavesNoByteOfItAndTheSessionGoesOn) {
   EXPECT_EQ(done.gaze_deleted, 2);
   EXPECT_FALSE(stands());
   EXPECT_TRUE(!fs::exists(path.string() + "-wal") || fs::file_size(path.string() + "-wal") == 0);
-  EXPECT_THAT(gaze_of(path), ElementsAre("P02"));
+  EXPECT_THAT(test::gaze_of(path), ElementsAre("P02"));
   Store store(path, Open::Write);
   const auto runs = store.open_runs();
   EXPECT_EQ(runs.at(0).sessions.at(0).units.size(), 1u);
@@ -192,14 +166,14 @@ TEST(PermissionChange, ALaterAnswerCountsAgain) {
     test::answer_consent(store, store.open_runs().at(0).sessions.at(0), {"P01", 0, 0});
     EXPECT_FALSE(store.allows_gaze(1));
   }
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 0", "P01 sharing 0"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 0", "P01 sharing 0"));
   change_permissions(path, "P01", {.gaze = true, .sharing = {}});
-  EXPECT_THAT(permissions(path), ElementsAre("P01 gaze 1", "P01 sharing 0"));
+  EXPECT_THAT(test::permissions_of(path), ElementsAre("P01 gaze 1", "P01 sharing 0"));
 }
 
 TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
   const test::TemporaryFolder folder;
-  const fs::path path = gaze_study(folder);
+  const fs::path path = test::gaze_of_two(folder);
   fs::copy_file(path, path.string() + ".v3-then.bak");
   fs::copy_file(fs::path(VIP_TEST_DIR) / "libstudy/fixtures/study_v2.db", path.string() + ".v2-then.bak");
   {
@@ -226,7 +200,7 @@ TEST(PermissionChange, NamesBackupsWithGazeAndPublicExports) {
 
 TEST(PermissionChange, OfNobodyOrDuringASessionIsAnError) {
   const test::TemporaryFolder folder;
-  const fs::path path = gaze_study(folder);
+  const fs::path path = test::gaze_of_two(folder);
   const auto change = [&](const std::string& who) {
     change_permissions(path, who, {.gaze = false, .sharing = {}});
   };
@@ -235,59 +209,9 @@ TEST(PermissionChange, OfNobodyOrDuringASessionIsAnError) {
     Store store(path, Open::Write);
     EXPECT_THAT([&] { change("P01"); }, ThrowsMessage<base::Error>(HasSubstr("mend: ")));
   }
-  EXPECT_EQ(gaze_of(path).size(), 3u);
+  EXPECT_EQ(test::gaze_of(path).size(), 3u);
   withdraw(path, "P02");
   EXPECT_THAT([&] { change("P02"); }, ThrowsMessage<base::Error>(HasSubstr("P02 withdrew")));
-}
-
-class PermissionMerge : public ::testing::Test {
- protected:
-  /// Two copies of one database.
-  PermissionMerge() { fs::copy_file(gaze_study(folder_), here_); }
-  void expect_merged(const std::vector<std::string>& permitted, const std::vector<std::string>& gaze) {
-    for (const auto& [from, into] : {std::pair{here_, there_}, std::pair{there_, here_}}) {
-      const fs::path all = folder_ / ("all" + into.filename().string());
-      merge({from, into}, all);
-      EXPECT_EQ(permissions(all), permitted);
-      EXPECT_EQ(gaze_of(all), gaze);
-      merge({from}, all);  // once more changes nothing
-      EXPECT_EQ(permissions(all), permitted);
-      EXPECT_THAT(
-          test::column(all,
-                       "SELECT count(*) FROM event WHERE kind = 'permission changed' GROUP BY detail, "
-                       "session_id HAVING count(*) > 1"),
-          IsEmpty());
-    }
-  }
-
-  test::TemporaryFolder folder_;
-  fs::path there_ = folder_ / "study.db", here_ = folder_ / "copy.db";
-  const std::vector<std::string> all_allowed_{"P01 gaze 1",    "P01 sharing 1", "P01 gaze 1",
-                                              "P01 sharing 1", "P02 gaze 1",    "P02 sharing 1"};
-};
-
-TEST_F(PermissionMerge, CarriesGazeOver) { expect_merged(all_allowed_, {"P01", "P01", "P02"}); }
-
-TEST_F(PermissionMerge, ARefusalInOneCopyHoldsThoughTheOtherWentOn) {
-  change_permissions(here_, "P01", {.gaze = false, .sharing = false});
-  {
-    Store store(there_, Open::Write);
-    const auto session = store.open_runs().at(0).sessions.at(0);
-    test::answer_one(store, session, session.units.at(0), "rating", test::score(3));
-  }
-  expect_merged({"P01 gaze 0", "P01 sharing 0", "P01 gaze 0", "P01 sharing 0", "P02 gaze 1", "P02 sharing 1"},
-                {"P02"});
-  EXPECT_THAT(test::column(folder_ / "allcopy.db",
-                           "SELECT count(*) FROM response JOIN question USING (question_id) "
-                           "WHERE code = 'rating'"),
-              ElementsAre("4"));
-}
-
-TEST_F(PermissionMerge, TheLaterChangeWinsAndDeletedGazeStaysAway) {
-  change_permissions(here_, "P01", {.gaze = false, .sharing = false});
-  change_permissions(there_, "P01", {.gaze = true, .sharing = true});
-  Connection(there_, Open::Write).execute("UPDATE permission_change SET utc = '2999-01-01T00:00:00Z'");
-  expect_merged(all_allowed_, {"P02"});
 }
 
 }  // namespace

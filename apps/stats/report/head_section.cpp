@@ -38,6 +38,9 @@ std::string head_section(const Field& root) {
                     (study["database"].words().empty() ? "a study" : words(study["database"])) + "</h1>\n" +
                     paragraph((names.empty() ? "" : "Protocols: " + names + ". ") +
                               (root["date_utc"].there() ? "Computed " + words(root["date_utc"]) + "." : ""));
+  if (study["incomplete"].there())
+    out += "<p class=\"warning\"><strong>Incomplete.</strong> " + words(study["incomplete"]) +
+           ": the database lacks them, and so do these results.</p>\n";
   const auto test = titles(study, [](const Field& protocol) { return protocol["test_data"].yes(); });
   if (!test.empty())
     out += "<p class=\"warning\"><strong>Test data.</strong> There are no other data of " + enumerated(test) +

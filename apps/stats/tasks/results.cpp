@@ -107,7 +107,7 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
 }  // namespace
 
 Results study_results(const ResultsRequest& request) {
-  return make_results(study::read_tasks(request.database), request);
+  return make_results(study::read_tasks({request.database, request.incomplete}), request);
 }
 
 Results make_results(const study::TaskStudy& study, const ResultsRequest& request) {
@@ -122,6 +122,7 @@ Results make_results(const study::TaskStudy& study, const ResultsRequest& reques
     }
   }
   out.json = assemble(request, parts);
+  if (!study.lacking.empty()) out.json["study"]["incomplete"] = study.lacking;
   return out;
 }
 

@@ -21,6 +21,7 @@ struct ResultsRequest {
   PlanInForce plan;
   std::shared_ptr<const SweepTables> sweep = {};  ///< none = not asked
   std::string sweep_file = {};                    ///< its name to show
+  bool incomplete = false;                        ///< go on where the journal holds more than the database
 };
 
 /// A task of the request that has no results.

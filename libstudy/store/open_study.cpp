@@ -1,0 +1,139 @@
+#include "libstudy/store/open_study.hpp"
+
+#include <algorithm>
+
+#include "libstudy/store/backups.hpp"
+#include "libstudy/store/beside.hpp"
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/settling.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using journal::Row;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+constexpr int rounds = 5;
+
+bool is_of(const Row& row, const char* table) { return row.table->name == std::string(table); }
+
+bool stands(Connection& database, const Row& row) {
+  const auto now = journal::stands_as(database, row);
+  return now && now->line == row.line;
+}
+
+/// Persons with sessions in the database of whom the journal says that they withdrew.
+std::vector<std::string> withdrawn(Connection& database, const JournalContent& content) {
+  std::set<std::string> named;
+  for (const JournalRows* rows : {&content.kept, &content.pending}) {
+    for (const auto& [key, row] : *rows) {
+      if (is_of(row, "tombstone")) named.insert(journal::column(row, "person"));
+    }
+  }
+  if (content.rewriting) named.insert(content.forgotten.begin(), content.forgotten.end());
+  std::vector<std::string> here;
+  Statement session(database, "SELECT 1 FROM session WHERE person = ?");
+  for (const std::string& person : named) {
+    if (session.bind_all(person).step()) here.push_back(person);
+    session.reset();
+  }
+  return here;
+}
+
+/// Changes of permissions and answers on consent pages that the database has not, or otherwise. What they
+/// belong to may be missing as well: then there is nothing that they could keep back.
+void take_decisions(Connection& copy, const JournalRows& rows) {
+  Statement asks(copy,
+                 "SELECT 1 FROM question WHERE question_id = ? AND code IN ('gaze_kept', 'data_shared')");
+  for (const auto& [key, row] : rows) {
+    bool decides = is_of(row, "permission_change");
+    if (is_of(row, "response")) {
+      decides = asks.bind_all(journal::column(row, "question_id")).step();
+      asks.reset();
+    }
+    if (decides && !stands(copy, row)) journal::put(copy, row, journal::Put::Replace);
+  }
+}
+
+/// How one moment of a database stands to its journal.
+struct Findings {
+  bool ahead = false;   ///< the journal holds more than the database
+  bool begun = false;   ///< a commit was under way
+  std::string lacking;  ///< in words
+  std::vector<std::string> withdrawn;
+};
+
+Findings look(Connection& database, const JournalContent& content) {
+  Findings found;
+  if (!content.exists) return found;
+  found.withdrawn = withdrawn(database, content);
+  if (content.rewriting) return found;  // its rows are those of before
+  const Comparison comparison = compare(database, content.kept);
+  found.ahead = is_ahead(comparison, content, database);
+  if (found.ahead) found.lacking = words_of(comparison);
+  found.begun = std::any_of(content.pending.begin(), content.pending.end(),
+                            [&](const auto& one) { return !stands(database, one.second); });
+  return found;
+}
+
+/// What a writer would make of database and journal.
+std::unique_ptr<Connection> as_settled(Connection& database, const JournalContent& content,
+                                       const Findings& found) {
+  auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
+  copy->copy_from(database);
+  copy->execute("PRAGMA foreign_keys = ON");
+  sqlite::Transaction transaction(*copy);
+  if (found.ahead) {
+    take_decisions(*copy, content.kept);
+    take_decisions(*copy, content.pending);
+  }
+  for (const std::string& person : found.withdrawn) bury(*copy, person, copy->integer("PRAGMA user_version"));
+  JournalContent rest = content;
+  if (found.ahead) rest.pending.clear();
+  finish_what_was_begun(*copy, rest);
+  transaction.commit();
+  copy->execute("PRAGMA query_only = ON");
+  return copy;
+}
+
+[[noreturn]] void refuse(const fs::path& database, const Findings& found) {
+  throw base::Error(
+      database.string(),
+      "lacks a part of what " + journal_beside(database).filename().string() +
+          " says it holds: " + found.lacking,
+      "put back the database that was written last with its -wal file, or run vip-study salvage "
+      "--db " +
+          database.string() + " --into NEW.db, which puts both together; --incomplete goes on without it");
+}
+
+}  // namespace
+
+OpenedStudy open_study(const StudyFile& study) {
+  const fs::path path = real_file(study.path);
+  for (int round = 1;; ++round) {
+    // The journal first: what it calls kept by then is in the database.
+    const JournalContent content = read_journal(journal_beside(path));
+    auto database = open_database(path, Open::Read, read_schema_steps());
+    database->execute("BEGIN");
+    const Findings found = look(*database, content);
+    if (found.ahead && round < rounds) {
+      // Unless somebody withdrew in between.
+      const JournalContent now = read_journal(journal_beside(path));
+      if (now.rewriting || now.end != content.end) continue;
+    }
+    if (found.ahead && !study.incomplete) refuse(study.path, found);
+    const bool as_it_is = !found.ahead && !found.begun && found.withdrawn.empty();
+    auto opened = as_it_is ? nullptr : as_settled(*database, content, found);
+    database->execute("COMMIT");
+    return {opened ? std::move(opened) : std::move(database), found.lacking};
+  }
+}
+
+std::string lacking_of(const fs::path& database) { return open_study({database, true}).lacking; }
+
+}  // namespace study
