@@ -82,7 +82,7 @@ void roll_forward(Connection& database, const JournalRows& pending) {
 }
 
 /// Returns the largest number in use.
-std::int64_t settle(Connection& database, JournalFile& file) {
+std::int64_t bring_together(Connection& database, JournalFile& file) {
   JournalContent content = read_journal(file.path());
   if (!content.exists || content.rewriting) {
     rewrite_journal(database);
@@ -105,6 +105,12 @@ std::int64_t settle(Connection& database, JournalFile& file) {
   if (!found.news.empty()) marks += batch(found.news, ++content.last_number);
   if (!marks.empty()) file.append(marks, head_for(database), true);
   return content.last_number;
+}
+
+std::int64_t settle(Connection& database, JournalFile& file) {
+  const std::int64_t number = bring_together(database, file);
+  database.keep_log(false);  // it tells nothing else than the journal does
+  return number;
 }
 
 }  // namespace
@@ -177,7 +183,7 @@ void AnswerJournal::remove_if_blank() noexcept {
 
 void prepare_rewrite(Connection& database, const std::vector<std::string>& persons) {
   JournalFile file(journal_beside(database.path()));
-  if (!read_journal(file.path()).exists) return;
+  if (!read_journal(file.path()).exists) return database.keep_log(false);
   settle(database, file);
   file.append(rewrite_line(persons), head_for(database), true);
 }

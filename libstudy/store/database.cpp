@@ -1,12 +1,17 @@
 #include "libstudy/store/database.hpp"
 
+#include <sqlite3.h>
+
 #include <array>
 #include <fstream>
+#include <random>
 #include <string_view>
 #include <utility>
 
 #include "libstudy/store/beside.hpp"
+#include "libstudy/store/foreign_log.hpp"
 #include "libstudy/store/private_file.hpp"
+#include "libstudy/store/schema.hpp"
 #include "libstudy/store/snapshot.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -36,7 +41,7 @@ struct Identity {
 
 Identity identify(Connection& database) {
   return {database.integer("PRAGMA application_id"), database.integer("PRAGMA user_version"),
-          database.integer("SELECT count(*) FROM sqlite_schema") == 0};
+          database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
 }
 
 /// Throws unless the database is ours, or blank where one may be made, and not newer than the program.
@@ -111,10 +116,20 @@ void back_up(Connection& database, std::int64_t version) {
   }
 }
 
+/// A number by chance, by which a log is known to be of this database (foreign_log.hpp).
+void give_identity(Connection& database) {
+  if (database.integer("PRAGMA schema_version") >= first_identity) return;
+  std::mt19937 chance{std::random_device()()};
+  const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // which keeps the number
+  database.execute("PRAGMA schema_version = " + std::to_string(number));
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
 /// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
-void take_step(Connection& database, const std::string& sql, std::size_t version) {
+void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
-  database.execute(sql);
+  database.execute(steps.at(version - 1));
   if (sqlite::Statement lost(database, "PRAGMA foreign_key_check"); lost.step()) {
     throw base::Error(database.path().string(),
                       "cannot be upgraded: a row of " + lost.text(0) + " belongs to none of " + lost.text(2),
@@ -122,6 +137,7 @@ void take_step(Connection& database, const std::string& sql, std::size_t version
   }
   database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
   database.execute("PRAGMA user_version = " + std::to_string(version));
+  if (version == steps.size()) give_identity(database);
   transaction.commit();
 }
 
@@ -129,7 +145,7 @@ void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t versio
   // The switch has no effect within a transaction.
   database.execute("PRAGMA foreign_keys = OFF");
   for (auto step = static_cast<std::size_t>(version); step < steps.size(); ++step)
-    take_step(database, steps[step], step + 1);
+    take_step(database, steps, step + 1);
   database.execute("PRAGMA foreign_keys = ON");
 }
 
@@ -140,6 +156,7 @@ std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaStep
   copy->copy_from(database);
   upgrade(*copy, steps, version);
   copy->execute("PRAGMA query_only = ON");
+  copy->seal();
   return copy;
 }
 
@@ -147,6 +164,7 @@ std::unique_ptr<Connection> to_read(std::unique_ptr<Connection> database, const 
                                     std::int64_t version) {
   if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps, version);
   database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
+  database->seal();
   return database;
 }
 
@@ -163,6 +181,8 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
                       "put the database on a local disk");
   }
   database->watch();
+  database->mark_commits();
+  database->seal();
   return database;
 }
 
@@ -189,13 +209,18 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());
-  // The log may tell otherwise than the file does: it stays beside it until all is recognised.
+  // A reader changes nothing; a writer compares the log with the journal of answers before (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
-  if (how == Open::Read && !database->can_read()) database = snapshot(path);
+  database->distrust();
+  if (how == Open::Read && !database->can_read()) {
+    database = snapshot(path);
+    database->distrust();
+  }
   const Identity found = identify(*database);
   recognise(path, found, how, steps.size());
+  check_schema(*database, steps, found.version);
+  database->recognise();
   database->check_integrity();
-  database->keep_log(false);
   if (how == Open::Read) return to_read(std::move(database), steps, found.version);
   return to_write(std::move(database), steps, found.version, max_pages);
 }

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -97,7 +98,7 @@ class Reader {
       batch_.push_back(std::move(*row));
       return;
     }
-    const Json mark = Json::parse(text, nullptr, false);
+    const Json mark = base::parse_json<Json>(text, journal::most_levels);
     if (!mark.is_object() || !take(mark)) {
       ++skipped_;
       return;

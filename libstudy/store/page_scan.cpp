@@ -181,8 +181,8 @@ std::vector<Shape> shapes_of(sqlite::Connection& database) {
 }
 
 void scan_pages(const fs::path& file, const std::vector<Shape>& shapes,
-                const std::function<void(const Shape&, Values)>& take) {
-  const Pages pages(file);
+                const std::function<void(const Shape&, Values)>& take, bool use_log) {
+  const Pages pages(file, use_log);
   for (std::size_t number = 1; number <= pages.count(); ++number) {
     if (!pages.is_free(number)) scan_page(pages, number, shapes, take);
   }
