@@ -7,9 +7,9 @@
 #include "apps/common/picture_measure.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/render/offscreen.hpp"
-#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/picture_size.hpp"
-#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 

@@ -141,20 +141,11 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
   transaction.commit();
 }
 
-void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t version) {
-  // The switch has no effect within a transaction.
-  database.execute("PRAGMA foreign_keys = OFF");
-  for (auto step = static_cast<std::size_t>(version); step < steps.size(); ++step)
-    take_step(database, steps, step + 1);
-  database.execute("PRAGMA foreign_keys = ON");
-}
-
 /// An older database as this program reads it: the file stays as it is.
-std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps,
-                                          std::int64_t version) {
+std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
   copy->copy_from(database);
-  upgrade(*copy, steps, version);
+  upgrade(*copy, steps);
   copy->execute("PRAGMA query_only = ON");
   copy->seal();
   return copy;
@@ -162,7 +153,7 @@ std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaStep
 
 std::unique_ptr<Connection> to_read(std::unique_ptr<Connection> database, const SchemaSteps& steps,
                                     std::int64_t version) {
-  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps, version);
+  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps);
   database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
   database->seal();
   return database;
@@ -175,7 +166,7 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
   database->execute("PRAGMA synchronous = FULL");
   if (max_pages > 0) database->limit_pages(max_pages);
   if (version > 0 && version < static_cast<std::int64_t>(steps.size())) back_up(*database, version);
-  upgrade(*database, steps, version);
+  upgrade(*database, steps);
   if (database->text("PRAGMA journal_mode = WAL") != "wal") {
     throw base::Error(path.string(), "cannot keep a write-ahead log here",
                       "put the database on a local disk");
@@ -197,9 +188,18 @@ SchemaSteps read_schema_steps() {
   return steps;
 }
 
+void upgrade(Connection& database, const SchemaSteps& steps) {
+  // The switch has no effect within a transaction.
+  database.execute("PRAGMA foreign_keys = OFF");
+  for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
+       ++step)
+    take_step(database, steps, step + 1);
+  database.execute("PRAGMA foreign_keys = ON");
+}
+
 std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const SchemaSteps& steps) {
   auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
-  upgrade(*database, steps, 0);
+  upgrade(*database, steps);
   return database;
 }
 

@@ -8,8 +8,8 @@
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/rating_table.hpp"
 #include "libstudy/store/run_settings.hpp"
-#include "stats/base/json_depth.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 

@@ -11,8 +11,8 @@
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
-#include "stats/base/json_depth.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 

@@ -1,10 +1,10 @@
 #pragma once
-/// Whether the log "<database>-wal" and the journal "<database>-journal" that stand beside a database are its own.
-/// SQLite knows no such question: it takes whatever is sound by itself into the database.
+/// Whether the log "<database>-wal" and the journal "<database>-journal" that stand beside a database are its
+/// own. SQLite knows no such question: it takes whatever is sound by itself into the database.
 ///
-/// Databases of this program answer it in the first page, which each of their commits writes again. The schema
-/// cookie is a number that a database was given by chance when it was made (`identity_at`); the change counter
-/// goes on where the database stands. The format: https://www.sqlite.org/fileformat2.html
+/// Databases of this program answer it in the first page, which each of their commits writes again. The
+/// schema cookie is a number that a database was given by chance when it was made (`identity_at`); the change
+/// counter goes on where the database stands. The format: https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
 #include <cstdint>
@@ -23,8 +23,8 @@ struct ForeignLog {
   std::string problem;
 };
 
-/// None: they are the database's own, or there are none. `header` gives the first 100 bytes of the database as
-/// they are at that time: another program may be writing. Nothing is changed.
+/// None: they are the database's own, or there are none. `header` gives the first 100 bytes of the database
+/// as they are at that time: another program may be writing. Nothing is changed.
 std::optional<ForeignLog> foreign_log(const std::filesystem::path& database,
                                       const std::function<std::string()>& header);
 

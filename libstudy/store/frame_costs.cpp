@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "stats/base/json_depth.hpp"
 #include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study::journal {
 
@@ -83,8 +83,9 @@ std::string selection(const Table& table, const std::string& condition) {
   const std::string context = table.context;
   std::string order;
   for (const std::string& name : table.key) order += (order.empty() ? "x." : ", x.") + name;
-  return "SELECT " + listed(columns_of(table.name), "x.") + (context.empty() ? "" : ", NULL AS of, " + context) + " FROM " + table.name + " x " +
-         table.joins + condition + " ORDER BY " + order;
+  return "SELECT " + listed(columns_of(table.name), "x.") +
+         (context.empty() ? "" : ", NULL AS of, " + context) + " FROM " + table.name + " x " + table.joins +
+         condition + " ORDER BY " + order;
 }
 
 void bind_value(Statement& statement, int index, const Json& value) {

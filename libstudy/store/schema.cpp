@@ -48,7 +48,8 @@ using Key = std::pair<std::string, std::string>;
 
 [[noreturn]] void refuse(const Connection& database, const std::string& problem, const Key& extra = {}) {
   const std::string path = database.path().string();
-  std::string mend = "keep it elsewhere and make one without it: vip-study salvage --db " + path + " --into NEW";
+  std::string mend =
+      "keep it elsewhere and make one without it: vip-study salvage --db " + path + " --into NEW";
   // SQLite makes the index of a constraint itself and drops it with its table alone.
   if (is_plain(extra.second) && !extra.second.starts_with("sqlite_auto")) {
     mend = "if it is yours, copy the file and take it out: sqlite3 " + path + " 'DROP " + upper(extra.first) +
@@ -56,6 +57,8 @@ using Key = std::pair<std::string, std::string>;
   }
   throw ForeignSchema(path, problem, mend);
 }
+
+const char* article(const Key& key) { return key.first == "index" ? "an " : "a "; }
 
 std::string named(const Key& key) { return printable(key.first) + " '" + printable(key.second) + "'"; }
 
@@ -131,12 +134,14 @@ void check_schema(Connection& database, const SchemaSteps& steps, std::int64_t v
   const Schema& wanted = schema_after(first_steps(steps, version));
   if (found == wanted) return;
   for (const auto& [key, object] : found) {
-    if (!wanted.contains(key)) refuse(database, "has a " + named(key) + " that vip-study did not make", key);
+    if (!wanted.contains(key))
+      refuse(database, "has " + article(key) + named(key) + " that vip-study did not make", key);
   }
   for (const auto& [key, object] : wanted) {
     const auto there = found.find(key);
     if (there == found.end()) refuse(database, "lacks the " + named(key) + " of its schema");
-    if (there->second != object) refuse(database, "has the " + named(key) + " otherwise than vip-study made it");
+    if (there->second != object)
+      refuse(database, "has the " + named(key) + " otherwise than vip-study made it");
   }
 }
 
@@ -172,7 +177,8 @@ std::unique_ptr<Connection> without_foreign_parts(Connection& foreign, const Sch
     std::string places;
     for (std::size_t i = 0; i < columns.size(); ++i) places += i ? ", ?" : "?";
     Statement row(foreign, "SELECT " + listed(columns, "x.") + " FROM main." + key.second + " x");
-    Statement insert(*own, "INSERT INTO " + key.second + " (" + listed(columns) + ") VALUES (" + places + ")");
+    Statement insert(*own,
+                     "INSERT INTO " + key.second + " (" + listed(columns) + ") VALUES (" + places + ")");
     while (row.step()) {
       for (int i = 0; i < row.columns(); ++i) insert.bind_from(i, row, i);
       insert.run();

@@ -1,6 +1,7 @@
 #pragma once
-/// The schema that this program's steps make, compared with the one that stands in a file. Whoever can write a
-/// database can also put views, triggers and columns into it, which would run or be copied as if they were ours.
+/// The schema that this program's steps make, compared with the one that stands in a file. Whoever can write
+/// a database can also put views, triggers and columns into it, which would run or be copied as if they were
+/// ours.
 
 #include <cstdint>
 #include <map>
@@ -41,8 +42,8 @@ void check_schema(sqlite::Connection& database, const SchemaSteps& steps, std::i
 /// Columns of a table of the newest schema in their order, as the program's own steps make them.
 const std::vector<std::string>& columns_of(const std::string& table);
 
-/// The names as SQL lists them, each in quotes and behind `prefix`, as "x." for those of table x: SQLite takes
-/// a bare name in quotes for a text where there is no such column.
+/// The names as SQL lists them, each in quotes and behind `prefix`, as "x." for those of table x: SQLite
+/// takes a bare name in quotes for a text where there is no such column.
 std::string listed(const std::vector<std::string>& columns, const std::string& prefix = "");
 
 /// A temporary database of the schema `version` with the rows of `foreign`: its tables of the same names and,

@@ -36,6 +36,9 @@ enum class Open {
 /// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
 struct Temporary {};
 
+/// How much may be done with a file that may be anybody's.
+enum class Work { OfASchema, Any };
+
 /// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
 /// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
 using Waiting = std::function<bool(const std::string& holder)>;
@@ -65,11 +68,12 @@ class Connection {
   std::string header();
   /// Whether SQLite can read it where it stands; not where it would have to write beside it and may not.
   bool can_read();
-  /// Whether a log stays beside the file as it is, so that no page of it is copied into the file. At first: no.
+  /// Whether a log stays beside the file as it is, so that no page of it is copied into the file. At first:
+  /// no.
   void keep_log(bool keep);
-  /// The file may be anybody's: until recognise() nothing is changed, no view and no trigger of it is run, and
-  /// what takes longer than the reading of a schema is ended with a base::Error.
-  void distrust();
+  /// The file may be anybody's: until recognise() nothing is changed, no view and no trigger of it is run,
+  /// and with Work::OfASchema what takes longer than the reading of a schema is ended with a base::Error.
+  void distrust(Work limit = Work::OfASchema);
   /// The schema is ours.
   void recognise();
   /// From now on tables, views and triggers of the file stay as they are, and no other file is attached.

@@ -33,9 +33,9 @@ bool only_reads(int action) {
 }
 
 bool changes_schema(int action) {
-  constexpr std::array actions{SQLITE_CREATE_INDEX, SQLITE_CREATE_TABLE, SQLITE_CREATE_TRIGGER,
+  constexpr std::array actions{SQLITE_CREATE_INDEX, SQLITE_CREATE_TABLE,  SQLITE_CREATE_TRIGGER,
                                SQLITE_CREATE_VIEW,  SQLITE_CREATE_VTABLE, SQLITE_DROP_INDEX,
-                               SQLITE_DROP_TABLE,   SQLITE_DROP_TRIGGER, SQLITE_DROP_VIEW,
+                               SQLITE_DROP_TABLE,   SQLITE_DROP_TRIGGER,  SQLITE_DROP_VIEW,
                                SQLITE_DROP_VTABLE,  SQLITE_ALTER_TABLE};
   return std::find(actions.begin(), actions.end(), action) != actions.end();
 }
@@ -55,10 +55,11 @@ void Connection::protect() {
   sqlite3_set_authorizer(handle_, &Connection::authorise, this);
 }
 
-void Connection::distrust() {
+void Connection::distrust(Work limit) {
   trust_ = Trust::Unknown;
   work_ = 0;
-  sqlite3_progress_handler(handle_, operations_a_step, &Connection::grow_tired, this);
+  if (limit == Work::OfASchema)
+    sqlite3_progress_handler(handle_, operations_a_step, &Connection::grow_tired, this);
 }
 
 void Connection::recognise() {

@@ -7,7 +7,8 @@
 
 namespace base {
 
-/// True where brackets and braces outside of strings are nested deeper than `levels`. The text may be no JSON.
+/// True where brackets and braces outside of strings are nested deeper than `levels`. The text may be no
+/// JSON.
 inline bool nested_deeper_than(int levels, std::string_view json) {
   int depth = 0;
   bool text = false;

@@ -6,9 +6,9 @@
 #include <set>
 #include <tuple>
 
-#include "stats/base/json_depth.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
