@@ -58,7 +58,7 @@ using Key = std::pair<std::string, std::string>;
   throw ForeignSchema(path, problem, mend);
 }
 
-const char* article(const Key& key) { return key.first == "index" ? "an " : "a "; }
+std::string article(const Key& key) { return key.first == "index" ? "an " : "a "; }
 
 std::string named(const Key& key) { return printable(key.first) + " '" + printable(key.second) + "'"; }
 
