@@ -181,7 +181,8 @@ bool put(Connection& database, const Row& row, Put how) {
   try {
     return insert.step();
   } catch (const base::Error&) {
-    if ((sqlite3_errcode(database.handle()) & 0xff) != SQLITE_CONSTRAINT) throw;
+    const int code = sqlite3_errcode(database.handle()) & 0xff;
+    if (code != SQLITE_CONSTRAINT && code != SQLITE_MISMATCH) throw;
     return false;
   }
 }
