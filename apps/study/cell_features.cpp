@@ -9,6 +9,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -88,7 +89,7 @@ std::string to_json(const std::string& key, const study::PictureFeatures& featur
 std::optional<study::PictureFeatures> read_features(const std::filesystem::path& path,
                                                     const std::string& key) {
   if (!std::filesystem::exists(path)) return {};
-  const auto json = nlohmann::json::parse(base::read_file(path, 1 << 16), nullptr, false);
+  const auto json = base::parse_json<nlohmann::json>(base::read_file(path, 1 << 16));
   const auto of = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
   if (of("key") != key || !of("granularity_px").is_number() || !of("flicker").is_number()) return {};
   const study::PictureFeatures found{of("granularity_px"), of("flicker")};

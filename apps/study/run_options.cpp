@@ -6,6 +6,7 @@
 #include "apps/common/picture_size.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
@@ -79,7 +80,7 @@ std::string format_run_options(const RunOptions& options) {
 
 RunOptions parse_run_options(const std::string& text, const std::string& place) {
   try {
-    const auto json = nlohmann::json::parse(text);
+    const auto json = base::parse_json<nlohmann::json>(text);
     if (json.at("format") != format_version) {
       throw base::Error(place, "options of another format",
                         "finish it with the version of vip-study that wrote it");

@@ -43,6 +43,8 @@ void salvage(const SalvageCommand& command) {
                 number(done.answers_under_way));
   for (const std::string& line : done.different)
     std::printf("told otherwise by the two, the database's was taken: %s\n", line.c_str());
+  for (const std::string& part : done.left_out)
+    std::printf("not of vip-study, and was left out: %s\n", part.c_str());
   for (const std::string& code : done.withdrawn)
     std::printf("withdrew, and was left out: %s\n", code.c_str());
   print_lost(done);

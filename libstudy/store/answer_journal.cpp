@@ -10,6 +10,7 @@
 
 namespace study {
 
+namespace fs = std::filesystem;
 using journal::Row;
 using journal::Table;
 using sqlite::Connection;
@@ -132,7 +133,7 @@ void AnswerJournal::remove_if_blank() noexcept {
 
 void prepare_rewrite(Connection& database, const std::vector<std::string>& persons) {
   JournalFile file(journal_beside(database.path()));
-  if (!read_journal(file.path()).exists) return;
+  if (!read_journal(file.path()).exists) return database.keep_log(false);
   settle(database, file);
   file.append(rewrite_line(persons), head_for(database), true);
 }

@@ -6,6 +6,7 @@
 
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -125,10 +126,13 @@ std::vector<fs::path> backups_of(const fs::path& database) {
 
 bool delete_from_backup(const fs::path& path, const std::string& person) {
   Connection backup(path, Open::Write);
+  backup.distrust();
   const auto version = backup.integer("PRAGMA user_version");
   if (backup.integer("PRAGMA application_id") != database_application_id || version < 1 ||
       version > static_cast<std::int64_t>(read_schema_steps().size()))
     throw base::Error(path.string(), "is not a backup that this program knows", "delete it");
+  check_schema(backup, read_schema_steps(), version);
+  backup.recognise();
   backup.text("PRAGMA journal_mode = DELETE");
   backup.execute("PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY");
   const auto sessions = version == 1 ? sessions_in_schema_1(path, person) : sessions_of(backup, person);

@@ -111,7 +111,9 @@ void rewrite_file(Connection& database) {
   empty_log(database);
   database.execute("VACUUM");
   empty_log(database);
+  Transaction transaction(database);
   database.execute("DELETE FROM chore WHERE kind = 'rewrite'");
+  transaction.commit();
 }
 
 bool is_anything_left(Connection& database) {

@@ -1,12 +1,17 @@
 #include "libstudy/store/database.hpp"
 
+#include <sqlite3.h>
+
 #include <array>
 #include <fstream>
+#include <random>
 #include <string_view>
 #include <utility>
 
 #include "libstudy/store/beside.hpp"
+#include "libstudy/store/foreign_log.hpp"
 #include "libstudy/store/private_file.hpp"
+#include "libstudy/store/schema.hpp"
 #include "libstudy/store/snapshot.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -36,7 +41,7 @@ struct Identity {
 
 Identity identify(Connection& database) {
   return {database.integer("PRAGMA application_id"), database.integer("PRAGMA user_version"),
-          database.integer("SELECT count(*) FROM sqlite_schema") == 0};
+          database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
 }
 
 /// Throws unless the database is ours, or blank where one may be made, and not newer than the program.
@@ -111,10 +116,20 @@ void back_up(Connection& database, std::int64_t version) {
   }
 }
 
+/// A number by chance, by which a log is known to be of this database (foreign_log.hpp).
+void give_identity(Connection& database) {
+  if (database.integer("PRAGMA schema_version") >= first_identity) return;
+  std::mt19937 chance{std::random_device()()};
+  const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // which keeps the number
+  database.execute("PRAGMA schema_version = " + std::to_string(number));
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
 /// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
-void take_step(Connection& database, const std::string& sql, std::size_t version) {
+void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
-  database.execute(sql);
+  database.execute(steps.at(version - 1));
   if (sqlite::Statement lost(database, "PRAGMA foreign_key_check"); lost.step()) {
     throw base::Error(database.path().string(),
                       "cannot be upgraded: a row of " + lost.text(0) + " belongs to none of " + lost.text(2),
@@ -122,31 +137,25 @@ void take_step(Connection& database, const std::string& sql, std::size_t version
   }
   database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
   database.execute("PRAGMA user_version = " + std::to_string(version));
+  if (version == steps.size()) give_identity(database);
   transaction.commit();
 }
 
-void upgrade(Connection& database, const SchemaSteps& steps, std::int64_t version) {
-  // The switch has no effect within a transaction.
-  database.execute("PRAGMA foreign_keys = OFF");
-  for (auto step = static_cast<std::size_t>(version); step < steps.size(); ++step)
-    take_step(database, steps[step], step + 1);
-  database.execute("PRAGMA foreign_keys = ON");
-}
-
 /// An older database as this program reads it: the file stays as it is.
-std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps,
-                                          std::int64_t version) {
+std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
   copy->copy_from(database);
-  upgrade(*copy, steps, version);
+  upgrade(*copy, steps);
   copy->execute("PRAGMA query_only = ON");
+  copy->seal();
   return copy;
 }
 
 std::unique_ptr<Connection> to_read(std::unique_ptr<Connection> database, const SchemaSteps& steps,
                                     std::int64_t version) {
-  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps, version);
+  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps);
   database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
+  database->seal();
   return database;
 }
 
@@ -157,12 +166,14 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
   database->execute("PRAGMA synchronous = FULL");
   if (max_pages > 0) database->limit_pages(max_pages);
   if (version > 0 && version < static_cast<std::int64_t>(steps.size())) back_up(*database, version);
-  upgrade(*database, steps, version);
+  upgrade(*database, steps);
   if (database->text("PRAGMA journal_mode = WAL") != "wal") {
     throw base::Error(path.string(), "cannot keep a write-ahead log here",
                       "put the database on a local disk");
   }
   database->watch();
+  database->mark_commits();
+  database->seal();
   return database;
 }
 
@@ -177,9 +188,18 @@ SchemaSteps read_schema_steps() {
   return steps;
 }
 
+void upgrade(Connection& database, const SchemaSteps& steps) {
+  // The switch has no effect within a transaction.
+  database.execute("PRAGMA foreign_keys = OFF");
+  for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
+       ++step)
+    take_step(database, steps, step + 1);
+  database.execute("PRAGMA foreign_keys = ON");
+}
+
 std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const SchemaSteps& steps) {
   auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
-  upgrade(*database, steps, 0);
+  upgrade(*database, steps);
   return database;
 }
 
@@ -189,13 +209,18 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());
-  // The log may tell otherwise than the file does: it stays beside it until all is recognised.
+  // A reader changes nothing; a writer compares the log with the journal of answers before (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
-  if (how == Open::Read && !database->can_read()) database = snapshot(path);
+  database->distrust();
+  if (how == Open::Read && !database->can_read()) {
+    database = snapshot(path);
+    database->distrust();
+  }
   const Identity found = identify(*database);
   recognise(path, found, how, steps.size());
+  check_schema(*database, steps, found.version);
+  database->recognise();
   database->check_integrity();
-  database->keep_log(false);
   if (how == Open::Read) return to_read(std::move(database), steps, found.version);
   return to_write(std::move(database), steps, found.version, max_pages);
 }

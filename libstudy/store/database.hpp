@@ -27,12 +27,18 @@ SchemaSteps read_schema_steps();
 /// in one transaction, after a copy "<path>.v<version>-<UTC time>.bak"; both are 0600 then, and watched
 /// (Connection::watch). Whoever writes holds a WriterLock before. Open::Read gives an upgraded, temporary
 /// copy of an older one, and where nothing can be written beside the file a temporary copy as well.
-/// base::Error, with the file left byte for byte as it was: not a database of this program, newer than
-/// `steps`, or damaged so that SQLite cannot make it whole (integrity check). max_pages > 0 limits the file
-/// to that many pages of 4 KiB; waiting: Connection::wait_with.
+/// base::Error, with the file and what stands beside it left byte for byte as they were: not a database of
+/// this program, with tables or views that it did not make (schema.hpp), beside a log of another one
+/// (foreign_log.hpp), newer than `steps`, or damaged so that SQLite cannot make it whole (integrity check).
+/// A log that stood beside it stays as it is: for good with Open::Read, else until
+/// Connection::keep_log(false), which comes with the comparison with the journal of answers. max_pages > 0
+/// limits the file to that many pages of 4 KiB; waiting: Connection::wait_with.
 std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,
                                                   const SchemaSteps& steps, std::int64_t max_pages = 0,
                                                   const sqlite::Waiting& waiting = {});
+
+/// Brings a database to the newest schema of `steps`, each step in one transaction.
+void upgrade(sqlite::Connection& database, const SchemaSteps& steps);
 
 /// Empty, of the newest schema, without a file; messages name `shown`.
 std::unique_ptr<sqlite::Connection> make_temporary_database(const std::filesystem::path& shown,

@@ -10,6 +10,7 @@
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 
@@ -186,7 +187,7 @@ bool is_export(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 20)
     return false;
-  const auto json = Json::parse(base::read_file(description, 1u << 20), nullptr, false);
+  const auto json = base::parse_json<Json>(base::read_file(description, 1u << 20));
   return json.is_object() && json.contains("GeneratedBy") &&
          json["GeneratedBy"].dump().find("\"vip-study\"") != std::string::npos;
 }

@@ -12,6 +12,7 @@
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 
@@ -53,7 +54,7 @@ bool is_export(const fs::path& folder) {
   const fs::path description = folder / description_file;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
     return false;
-  const auto json = Json::parse(base::read_file(description, 1u << 24), nullptr, false);
+  const auto json = base::parse_json<Json>(base::read_file(description, 1u << 24));
   return json.is_object() && json.value("creator", "") == "vip-study";
 }
 

@@ -50,6 +50,7 @@ std::unique_ptr<Connection> open_register(const fs::path& database) {
   check_writable(file);
   const SchemaSteps steps = read_schema_steps();
   auto connection = std::make_unique<Connection>(file, Open::Write);
+  connection->mark_commits();
   if (connection->integer("PRAGMA user_version") != static_cast<std::int64_t>(steps.size())) {
     connection.reset();
     const WriterLock lock(file);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 
@@ -27,7 +28,9 @@ std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::st
   };
   try {
     std::vector<FrameCosts> out;
-    for (const auto& one : nlohmann::json::parse(text)) {
+    const auto json = base::parse_json<nlohmann::json>(text);
+    if (!json.is_array()) throw unreadable();
+    for (const auto& one : json) {
       out.push_back({{one.at("scene"), one.at("method"), one.at("n_star"), one.value("effects", "")},
                      one.at("mean_ms"),
                      one.at("p95_ms")});

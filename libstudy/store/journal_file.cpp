@@ -11,6 +11,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study {
 
@@ -98,7 +99,7 @@ class Reader {
       batch_.push_back(std::move(*row));
       return;
     }
-    const Json mark = Json::parse(text, nullptr, false);
+    const Json mark = base::parse_json<Json>(text, journal::most_levels);
     if (!mark.is_object() || !take(mark)) {
       ++skipped_;
       return;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study::journal {
 
@@ -81,8 +83,9 @@ std::string selection(const Table& table, const std::string& condition) {
   const std::string context = table.context;
   std::string order;
   for (const std::string& name : table.key) order += (order.empty() ? "x." : ", x.") + name;
-  return "SELECT x.*" + (context.empty() ? "" : ", NULL AS of, " + context) + " FROM " + table.name + " x " +
-         table.joins + condition + " ORDER BY " + order;
+  return "SELECT " + listed(columns_of(table.name), "x.") +
+         (context.empty() ? "" : ", NULL AS of, " + context) + " FROM " + table.name + " x " + table.joins +
+         condition + " ORDER BY " + order;
 }
 
 void bind_value(Statement& statement, int index, const Json& value) {
@@ -94,14 +97,6 @@ void bind_value(Statement& statement, int index, const Json& value) {
     statement.bind_at(index, value.get<std::int64_t>());
   else
     statement.bind_at(index, std::nullopt);
-}
-
-std::vector<std::string> columns_of(Connection& database, const Table& table) {
-  Statement row(database, "SELECT name FROM pragma_table_info(?)");
-  row.bind_all(table.name);
-  std::vector<std::string> names;
-  while (row.step()) names.push_back(row.text(0));
-  return names;
 }
 
 }  // namespace
@@ -147,7 +142,7 @@ std::optional<Row> stands_as(Connection& database, const Row& wanted) {
 }
 
 std::optional<Row> read_row(const std::string& text) {
-  const Json line = Json::parse(text, nullptr, false);
+  const Json line = base::parse_json<Json>(text, most_levels);
   if (!line.is_object() || !line.contains("table") || !line["table"].is_string()) return {};
   const Table* table = find_table(line["table"].get<std::string>());
   if (!table) return {};
@@ -167,7 +162,7 @@ bool put(Connection& database, const Row& row, Put how) {
   const Json line = Json::parse(row.line);
   std::string names, values, changes;
   std::vector<const Json*> given;
-  for (const std::string& name : columns_of(database, *row.table)) {
+  for (const std::string& name : columns_of(row.table->name)) {
     const auto value = line.find(name);
     if (value == line.end()) continue;
     names += (names.empty() ? "" : ", ") + name;
@@ -186,7 +181,8 @@ bool put(Connection& database, const Row& row, Put how) {
   try {
     return insert.step();
   } catch (const base::Error&) {
-    if ((sqlite3_errcode(database.handle()) & 0xff) != SQLITE_CONSTRAINT) throw;
+    const int code = sqlite3_errcode(database.handle()) & 0xff;
+    if (code != SQLITE_CONSTRAINT && code != SQLITE_MISMATCH) throw;
     return false;
   }
 }

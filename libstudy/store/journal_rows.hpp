@@ -46,6 +46,9 @@ void each_row_of_protocol(sqlite::Connection& database, const Table& table, std:
 /// The row as the database has it now; none: it is not there.
 std::optional<Row> stands_as(sqlite::Connection& database, const Row& row);
 
+/// Levels of JSON in a line; a deeper one is none of a journal.
+inline constexpr int most_levels = 8;
+
 /// None: not a line of a row that this program follows.
 std::optional<Row> read_row(const std::string& line);
 /// The value of a column as text; empty for NULL and for a column that is not there.

@@ -6,6 +6,7 @@
 
 #include "libstudy/store/merge_parts.hpp"
 #include "libstudy/store/refusals.hpp"
+#include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
 
 namespace study::merging {
@@ -59,15 +60,12 @@ const Table session_tables[] = {
 /// Copies the rows of one table: row numbers become new ones, `changed` columns their new values.
 void copy_rows(Connection& source, Connection& target, const Table& table, std::int64_t parent,
                RowNumbers& numbers, const std::map<std::string, std::string>& changed = {}) {
-  const std::string name = table.name, key = table.key;
-  Statement row(
-      source, "SELECT * FROM " + name + " WHERE " + table.rows + " ORDER BY " + (key.empty() ? "1, 2" : key));
+  const std::string name = table.name, key = table.key, columns = listed(columns_of(name));
+  Statement row(source, "SELECT " + columns + " FROM " + name + " WHERE " + table.rows + " ORDER BY " +
+                            (key.empty() ? "1, 2" : key));
   row.bind_all(parent);
-  std::string columns, values;
-  for (int i = 0; i < row.columns(); ++i) {
-    columns += (i ? ", " : "") + row.column_name(i);
-    values += i ? ", ?" : "?";
-  }
+  std::string values;
+  for (int i = 0; i < row.columns(); ++i) values += i ? ", ?" : "?";
   Statement insert(target, "INSERT INTO " + name + " (" + columns + ") VALUES (" + values + ")");
   std::vector<const std::unordered_map<std::int64_t, std::int64_t>*> mapped;
   std::vector<const std::string*> fixed;

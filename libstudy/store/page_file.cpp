@@ -104,12 +104,21 @@ void Log::read_frames(std::string_view head) {
     open[u32(frame, 0)] = at + frame_header_bytes;
     if (u32(frame, 4) == 0) continue;
     for (const auto& [page, place] : open) places_[page] = place;
+    if (open.contains(1)) first_pages_.push_back(open.at(1));
     open.clear();
+    ++commits_;
     page_count_ = u32(frame, 4);
   }
 }
 
-Pages::Pages(const fs::path& path) : file_(path), log_(path.string() + "-wal") {
+std::vector<std::string> Log::heads() const {
+  std::vector<std::string> heads;
+  for (const std::size_t place : first_pages_) heads.push_back(file_.read(place, Pages::header_bytes));
+  return heads;
+}
+
+Pages::Pages(const fs::path& path, bool use_log)
+    : file_(path), log_(use_log ? fs::path(path.string() + "-wal") : fs::path()) {
   const std::string head = log_.holds(1) ? log_.read(1).substr(0, header_bytes) : file_.read(0, header_bytes);
   const auto told =
       head.starts_with("SQLite format 3") ? page_size(big_endian(head.substr(16, 2))) : std::nullopt;

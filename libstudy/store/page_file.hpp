@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace study::salvaging {
 
@@ -45,6 +46,10 @@ class Log {
   std::size_t page_bytes() const { return page_bytes_; }
   std::size_t page_count() const { return page_count_; }
   bool holds(std::size_t page) const { return places_.contains(page); }
+  bool is_empty() const { return commits_ == 0; }
+  std::size_t commits() const { return commits_; }
+  /// The first 100 bytes of page 1, once for each commit that wrote it, in their order.
+  std::vector<std::string> heads() const;
   /// A page that it holds.
   std::string read(std::size_t page) const { return file_.read(places_.at(page), page_bytes_); }
 
@@ -55,8 +60,9 @@ class Log {
   File file_;
   bool big_ = false;
   std::uint32_t first_ = 0, second_ = 0;  // checksums so far
-  std::size_t page_bytes_ = 0, page_count_ = 0;
+  std::size_t page_bytes_ = 0, page_count_ = 0, commits_ = 0;
   std::map<std::size_t, std::size_t> places_;
+  std::vector<std::size_t> first_pages_;  // where each version of page 1 stands
 };
 
 /// The pages of a database, those in its log "<path>-wal" in place of the older ones. Numbers count from 1.
@@ -65,7 +71,8 @@ class Pages {
   /// Of the first page these come before what is on every page.
   static constexpr std::size_t header_bytes = 100;
 
-  explicit Pages(const std::filesystem::path& path);
+  /// `use_log` false: a log that stands there is of another database.
+  explicit Pages(const std::filesystem::path& path, bool use_log = true);
 
   std::size_t count() const { return count_; }
   /// Bytes of a page that hold cells.

@@ -45,9 +45,21 @@ class Cursor {
   std::size_t at_;
 };
 
+/// Further pages that may still be read. Each belongs to one row, but a made-up file may have every cell
+/// point to all of them: rows beyond are as good as destroyed.
+class Allowance {
+ public:
+  explicit Allowance(std::size_t pages) : left_(most_readings * pages) {}
+  bool take_one() { return left_ > 0 && left_-- > 0; }
+
+ private:
+  static constexpr std::size_t most_readings = 16;
+  std::size_t left_;
+};
+
 /// The payload of a cell, with what of it stands on further pages.
 std::optional<std::string> payload_at(const Pages& pages, std::string_view page, Cursor cell,
-                                      std::uint64_t size, bool table) {
+                                      std::uint64_t size, bool table, Allowance& allowance) {
   const std::size_t usable = pages.usable();
   const std::size_t most = table ? usable - 35 : (usable - 12) * 64 / 255 - 23;
   const std::size_t least = (usable - 12) * 32 / 255 - 23;
@@ -63,7 +75,7 @@ std::optional<std::string> payload_at(const Pages& pages, std::string_view page,
   std::string payload(*here);
   std::size_t next = u32(page, cell.at());
   for (std::size_t steps = 0; payload.size() < size; ++steps) {
-    if (next < 2 || next > pages.count() || steps > pages.count()) return {};
+    if (next < 2 || next > pages.count() || steps > pages.count() || !allowance.take_one()) return {};
     const std::string more = pages.read(next);
     if (more.size() < usable) return {};
     payload += more.substr(4, std::min(usable - 4, size - payload.size()));
@@ -131,7 +143,7 @@ bool fits(const Shape& shape, const Values& values) {
 }
 
 /// All cells of one page, if it is one that holds rows.
-void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes,
+void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes, Allowance& allowance,
                const std::function<void(const Shape&, Values)>& take) {
   const std::string page = pages.read(number);
   const std::size_t start = number == 1 ? Pages::header_bytes : 0;
@@ -147,7 +159,7 @@ void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>&
     const auto size = cell.number();
     const auto row = table ? cell.number() : std::optional<std::uint64_t>(0);
     if (!size || !row) continue;
-    const auto payload = payload_at(pages, page, cell, *size, table);
+    const auto payload = payload_at(pages, page, cell, *size, table, allowance);
     auto values = payload ? record(*payload) : std::nullopt;
     if (!values) continue;
     for (const Shape& shape : shapes) {
@@ -181,10 +193,11 @@ std::vector<Shape> shapes_of(sqlite::Connection& database) {
 }
 
 void scan_pages(const fs::path& file, const std::vector<Shape>& shapes,
-                const std::function<void(const Shape&, Values)>& take) {
-  const Pages pages(file);
+                const std::function<void(const Shape&, Values)>& take, bool use_log) {
+  const Pages pages(file, use_log);
+  Allowance allowance(pages.count());
   for (std::size_t number = 1; number <= pages.count(); ++number) {
-    if (!pages.is_free(number)) scan_page(pages, number, shapes, take);
+    if (!pages.is_free(number)) scan_page(pages, number, shapes, allowance, take);
   }
 }
 

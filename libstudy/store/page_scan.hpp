@@ -35,9 +35,10 @@ struct Shape {
 std::vector<Shape> shapes_of(sqlite::Connection& database);
 
 /// Calls `take` for each row found in the file and in the committed part of its log "<file>-wal"; free pages
-/// are left out as far as the first page tells which are. Rows of one table come in no order, some perhaps
-/// twice. A missing file has none. Nothing is changed. base::Error when the file cannot be read.
+/// are left out as far as the first page tells which are. `use_log` false: without that log. Rows of one
+/// table come in no order, some perhaps twice. A missing file has none. Nothing is changed. base::Error when
+/// the file cannot be read.
 void scan_pages(const std::filesystem::path& file, const std::vector<Shape>& shapes,
-                const std::function<void(const Shape&, Values)>& take);
+                const std::function<void(const Shape&, Values)>& take, bool use_log = true);
 
 }  // namespace study::salvaging

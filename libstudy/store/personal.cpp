@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "libstudy/store/beside.hpp"
+#include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -39,19 +40,22 @@ void make_private(const fs::path& path) {
   }
 }
 
-/// A broken index, a trigger or another shape would let stand what is said to be deleted.
-void check_whole(sqlite::Connection& file) {
-  Statement foreign(
-      file, "SELECT name FROM sqlite_schema WHERE sql NOT IN ('CREATE TABLE ' || ?, 'CREATE TABLE ' || ?)");
-  foreign.bind_all(tables[0], tables[1]);
-  std::string wrong = foreign.step() ? "holds '" + foreign.text(0) + "', which vip-study did not make" : "";
-  if (const std::string found = file.text("PRAGMA integrity_check(1)"); wrong.empty() && found != "ok")
-    wrong = "is damaged: " + found;
-  if (!wrong.empty()) {
-    throw base::Error(
-        file.path().string(), wrong,
-        "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
+[[noreturn]] void refuse(const sqlite::Connection& file, const std::string& problem) {
+  throw base::Error(
+      file.path().string(), problem,
+      "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
+}
+
+/// A trigger or another shape would let stand what is said to be deleted.
+void check_schema(sqlite::Connection& file) {
+  file.distrust();
+  {
+    Statement foreign(
+        file, "SELECT name FROM sqlite_schema WHERE sql NOT IN ('CREATE TABLE ' || ?, 'CREATE TABLE ' || ?)");
+    if (foreign.bind_all(tables[0], tables[1]).step())
+      refuse(file, "holds '" + printable(foreign.text(0)) + "', which vip-study did not make");
   }
+  file.recognise();
 }
 
 }  // namespace
@@ -60,9 +64,12 @@ PersonalFile::PersonalFile(const fs::path& database) {
   const fs::path path = beside(database);
   make_private(path);
   file_ = std::make_unique<sqlite::Connection>(path, sqlite::Open::Write);
+  check_schema(*file_);
   file_->execute(opening);
   for (const char* table : tables) file_->execute(std::string("CREATE TABLE IF NOT EXISTS ") + table);
-  check_whole(*file_);
+  if (const std::string found = file_->text("PRAGMA integrity_check(1)"); found != "ok")
+    refuse(*file_, "is damaged: " + found);
+  file_->seal();
 }
 
 fs::path PersonalFile::beside(const fs::path& database) { return study::beside(database, ".personal"); }

@@ -11,8 +11,11 @@
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/earlier_shapes.hpp"
+#include "libstudy/store/foreign_log.hpp"
+#include "libstudy/store/page_file.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/salvage_rows.hpp"
+#include "libstudy/store/schema.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -77,17 +80,44 @@ std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
   return std::make_unique<WriterLock>(database);
 }
 
+/// The rows of our tables out of a copy that has more than these.
+std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
+                                                       std::vector<std::string>& left_out) {
+  Connection foreign(copied, Open::Write);
+  foreign.distrust(sqlite::Work::Any);
+  const SchemaSteps steps = read_schema_steps();
+  auto own = without_foreign_parts(foreign, steps, foreign.integer("PRAGMA user_version"), left_out);
+  upgrade(*own, steps);
+  return own;
+}
+
 /// A copy of the database as SQLite reads it; null: it is damaged, or none.
-std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied) {
-  for (const char* beside : {"", "-wal", "-journal"})
-    copy(database.string() + beside, copied.string() + beside);
+std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied, bool use_log,
+                                       std::vector<std::string>& left_out) {
+  for (const std::string beside : {"", "-wal", "-journal"})
+    if (use_log || beside.empty()) copy(database.string() + beside, copied.string() + beside);
+  std::vector<std::string> parts;
   try {
-    auto sound = open_database(copied, Open::Write, read_schema_steps());
+    std::unique_ptr<Connection> sound;
+    try {
+      sound = open_database(copied, Open::Write, read_schema_steps());
+    } catch (const ForeignSchema&) {
+      sound = open_without_foreign_parts(copied, parts);
+    }
     if (Statement lost(*sound, "PRAGMA foreign_key_check"); lost.step()) return {};
+    left_out.insert(left_out.end(), parts.begin(), parts.end());
     return sound;
   } catch (const base::Error&) {
     return {};
   }
+}
+
+/// False, and told, where the log or the journal beside the database is of another one.
+bool may_use_log(const fs::path& database, Salvage& told) {
+  const auto foreign = foreign_log(
+      database, [&] { return salvaging::File(database).read(0, salvaging::Pages::header_bytes); });
+  if (foreign) told.left_out.push_back(foreign->file.filename().string() + ", which " + foreign->problem);
+  return !foreign;
 }
 
 using Take = std::function<void(const Shape&, Values)>;
@@ -111,32 +141,39 @@ void read_sound(Connection& database, const std::vector<Shape>& shapes, bool lar
   }
 }
 
+/// What is read page by page.
+struct Damaged {
+  const fs::path& database;
+  bool use_log;
+};
+
 /// Rows of the tables that are large, or of those that are not.
-void read_rows(Connection* sound, const fs::path& database, const std::vector<Shape>& shapes,
+void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
                const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);
   std::vector<Shape> all = shapes;
   for (const auto& one : earlier) all.push_back(one.shape);
-  salvaging::scan_pages(database, all, [&](const Shape& shape, Values values) {
+  const auto take_row = [&](const Shape& shape, Values values) {
     if (salvaging::is_large(shape.table) != large) return;
     const auto index = static_cast<std::size_t>(&shape - all.data());
     if (index < shapes.size()) return take(shape, std::move(values));
     const auto& before = earlier[index - shapes.size()];
     take(shapes[before.now], salvaging::as_now(before, values));
-  });
+  };
+  salvaging::scan_pages(damaged.database, all, take_row, damaged.use_log);
 }
 
-void fill(Connection& target, Connection* sound, const fs::path& database, const JournalContent& journal,
+void fill(Connection& target, Connection* sound, const Damaged& damaged, const JournalContent& journal,
           Salvage& told) {
   sqlite::Transaction transaction(target);
   const auto shapes = salvaging::shapes_of(target);
   const auto earlier = sound ? std::vector<EarlierShape>() : salvaging::earlier_shapes(shapes);
   RowsByTable rows;
-  read_rows(sound, database, shapes, earlier, false,
+  read_rows(sound, damaged, shapes, earlier, false,
             [&](const Shape& shape, Values values) { rows[shape.table].push_back(std::move(values)); });
   salvaging::Rebuild rebuild(target, journal, told);
   rebuild.take(std::move(rows));
-  read_rows(sound, database, shapes, earlier, true,
+  read_rows(sound, damaged, shapes, earlier, true,
             [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
   drop_unallowed_gaze(target);  // rows may be older than a refusal
   rebuild.sum_up();
@@ -177,15 +214,16 @@ Salvage salvage(const fs::path& database, const fs::path& into) {
   const auto lock = lock_out_writers(database);
   const JournalContent journal = read_journal(journal_beside(database));
   const Workplace workplace(into);
-  const auto sound = open_sound(database, workplace / "copy.db");
   Salvage told;
+  const Damaged damaged{database, may_use_log(database, told)};
+  const auto sound = open_sound(database, workplace / "copy.db", damaged.use_log, told.left_out);
   told.sound = sound != nullptr;
   told.journal = journal.exists;
   told.unreadable = journal.unreadable;
   const fs::path made = workplace / "made.db";
   {
     const auto target = open_database(made, Open::Create, read_schema_steps());
-    fill(*target, sound.get(), database, journal, told);
+    fill(*target, sound.get(), damaged, journal, told);
     if (told.sessions == 0 && told.withdrawn.empty()) {
       throw base::Error(database.string(),
                         "nothing of a study was found in it" +

@@ -26,6 +26,9 @@ struct Salvage {
   std::map<std::string, std::int64_t> answers_lost;
   /// Rows found that belong to nothing that was found: number by table.
   std::map<std::string, std::int64_t> rows_lost;
+  /// Of the database, but not of vip-study: tables, views, triggers and columns, and a log of another
+  /// database.
+  std::vector<std::string> left_out;
   std::vector<std::string> withdrawn;  ///< codes of those who withdrew: nothing of theirs was taken over
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -60,7 +61,10 @@ void fuller_first(std::vector<Values>& rows) {
 std::int64_t last_event(const JournalRows& rows) {
   std::int64_t last = 0;
   for (const auto& [key, row] : rows) {
-    if (row.table->name == std::string("event")) last = std::max<std::int64_t>(last, std::stoll(row.key));
+    if (row.table->name != std::string("event")) continue;
+    std::int64_t number = 0;  // stays so where the key is no whole number
+    std::from_chars(row.key.data(), row.key.data() + row.key.size(), number);
+    last = std::max(last, number);
   }
   return last;
 }

@@ -119,7 +119,9 @@ std::set<std::string> finish_what_was_begun(Connection& database, const JournalC
   return delete_refused_gaze(database);
 }
 
-Settled settle(Connection& database, JournalFile& file) {
+namespace {
+
+Settled bring_together(Connection& database, JournalFile& file) {
   JournalContent content = read_journal(file.path());
   const bool anew = !content.exists || content.rewriting;
   Comparison found;
@@ -141,6 +143,14 @@ Settled settle(Connection& database, JournalFile& file) {
   if (!found.news.empty()) marks += batch(found.news, ++content.last_number);
   if (!marks.empty()) file.append(marks, head_for(database), true);
   return {content.last_number, std::move(gaze_deleted)};
+}
+
+}  // namespace
+
+Settled settle(Connection& database, JournalFile& file) {
+  Settled settled = bring_together(database, file);
+  database.keep_log(false);  // it holds nothing that the journal does not hold too
+  return settled;
 }
 
 std::vector<std::string> settle_before_writing(Connection& database) {

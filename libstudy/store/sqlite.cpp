@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libstudy/store/file_watch.hpp"
+#include "libstudy/store/foreign_log.hpp"
 #include "libstudy/store/lock_holder.hpp"
 #include "libstudy/store/private_file.hpp"
 #include "stats/base/error.hpp"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t second_ns = 1'000'000'000, longest_wait_ns = 5 * second_ns;
 constexpr std::chrono::milliseconds between_tries{20};
+constexpr int pages_of_a_log = 1000;  // after which it is copied into the file, as SQLite has it
 
 std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -48,7 +50,10 @@ void check_is_file(const fs::path& path, Open how) {
 
 Connection::Connection(const fs::path& path, Open how) : path_(path) {
   check_is_file(path, how);
-  if (how == Open::Create) create_private(path);
+  if (how == Open::Create) {
+    refuse_orphaned_log(path);
+    create_private(path);
+  }
   // Readers take part in the log like writers where they may, so that nothing is left beside the file.
   const bool write = how != Open::Read || writable(path);
   const int code = sqlite3_open_v2(
@@ -61,6 +66,12 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
     fail(code, message, system_error);
   }
   protect();
+  try {
+    refuse_foreign_log(path_, [this] { return header(); });
+  } catch (...) {
+    sqlite3_close_v2(std::exchange(handle_, nullptr));
+    throw;
+  }
 }
 
 Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
@@ -70,13 +81,6 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
     throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
   }
   protect();
-}
-
-void Connection::protect() {
-  sqlite3_busy_handler(handle_, &Connection::wait, this);
-  // A file from elsewhere must not run code of its own.
-  sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
 }
 
 Connection::~Connection() {
@@ -100,12 +104,13 @@ std::string Connection::header() {
 }
 
 bool Connection::can_read() {
-  const int code = sqlite3_exec(handle_, "SELECT count(*) FROM sqlite_schema", nullptr, nullptr, nullptr);
+  const int code = sqlite3_exec(handle_, "SELECT 1 FROM sqlite_schema LIMIT 1", nullptr, nullptr, nullptr);
   return (code & 0xff) != SQLITE_CANTOPEN && (code & 0xff) != SQLITE_READONLY;
 }
 
 void Connection::keep_log(bool keep) {
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
+  sqlite3_wal_autocheckpoint(handle_, keep ? 0 : pages_of_a_log);
 }
 
 void Connection::limit_pages(std::int64_t pages) {
@@ -154,6 +159,11 @@ void Connection::fail(int code, const std::string& message, int system_error) co
     case SQLITE_IOERR:
       throw error("cannot be read or written: " + message + system,
                   "check the disk, its quota and file-size limit, then " + go_on_);
+    case SQLITE_INTERRUPT:
+    case SQLITE_AUTH:
+    case SQLITE_TOOBIG:
+      throw error("holds what no database of vip-study does: " + message,
+                  "do not use it; whoever made it knows why");
     case SQLITE_NOTADB:
       throw error("is not a database of vip-study", "name the file that vip-study run wrote");
     case SQLITE_CORRUPT:
@@ -216,16 +226,19 @@ bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_)
 void Connection::unwatch() { watch_.reset(); }
 
 void Connection::watch() {
-  integer("SELECT count(*) FROM sqlite_schema");  // the log is made by the first look into the file
+  integer("SELECT 1 FROM sqlite_schema LIMIT 1");  // the log is made by the first look into the file
   watch_ = std::make_unique<FileWatch>(path_, handle_);
 }
 
 void Connection::begin() {
   if (lost_) throw base::Error(path_.string(), lost_->problem, lost_->mend);
   execute("BEGIN IMMEDIATE");
+  changes_before_ = sqlite3_total_changes64(handle_);
 }
 
 void Connection::commit() {
+  if (marked_ && sqlite3_total_changes64(handle_) != changes_before_)
+    execute("PRAGMA user_version = " + std::to_string(integer("PRAGMA user_version")));
   std::string trouble = watch_ ? watch_->trouble() : "";
   // The commit then goes into the log alone, and from there into the copy beside the file.
   if (!trouble.empty()) sqlite3_wal_autocheckpoint(handle_, 0);

@@ -36,6 +36,9 @@ enum class Open {
 /// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
 struct Temporary {};
 
+/// How much may be done with a file that may be anybody's.
+enum class Work { OfASchema, Any };
+
 /// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
 /// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
 using Waiting = std::function<bool(const std::string& holder)>;
@@ -65,8 +68,18 @@ class Connection {
   std::string header();
   /// Whether SQLite can read it where it stands; not where it would have to write beside it and may not.
   bool can_read();
-  /// Whether a log stays beside the file as it is when this is the last connection to close. At first: no.
+  /// Whether a log stays beside the file as it is, so that no page of it is copied into the file. At first:
+  /// no.
   void keep_log(bool keep);
+  /// The file may be anybody's: until recognise() nothing is changed, no view and no trigger of it is run,
+  /// and with Work::OfASchema what takes longer than the reading of a schema is ended with a base::Error.
+  void distrust(Work limit = Work::OfASchema);
+  /// The schema is ours.
+  void recognise();
+  /// From now on tables, views and triggers of the file stay as they are, and no other file is attached.
+  void seal();
+  /// From now on each commit that changes rows says in its pages of which database it is (foreign_log.hpp).
+  void mark_commits() { marked_ = true; }
   /// Lets the file grow to so many pages.
   void limit_pages(std::int64_t pages);
   /// Waits for locks as long as `waiting` says, and not for five seconds.
@@ -102,6 +115,10 @@ class Connection {
  private:
   friend class Transaction;
   void protect();
+  static int authorise(void* connection, int action, const char* first, const char* second,
+                       const char* schema, const char* inner);
+  static int grow_tired(void* connection);
+  bool allows(int action, const char* first, const char* second, const char* schema, const char* inner) const;
   static int wait(void* connection, int tries);
   [[noreturn]] void fail(int code, const std::string& message, int system_error) const;
   void begin();
@@ -113,7 +130,11 @@ class Connection {
   sqlite3* handle_ = nullptr;
   Waiting waiting_;
   std::int64_t wait_began_ns_ = 0, told_ns_ = 0;
-  bool limited_ = false;
+  bool limited_ = false, marked_ = false;
+  enum class Trust { Free, Unknown, Sealed };
+  Trust trust_ = Trust::Free;
+  int work_ = 0;                     ///< done since distrust(), in steps of the progress handler
+  std::int64_t changes_before_ = 0;  ///< rows changed when the open transaction began
   std::string go_on_ = "give the command again";
   std::unique_ptr<FileWatch> watch_;
   struct Lost {

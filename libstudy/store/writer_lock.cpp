@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "libstudy/store/foreign_log.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
 
@@ -65,7 +66,10 @@ bool leads_to(const fs::path& path, int fd) {
 }  // namespace
 
 WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(database) {
-  if (how == sqlite::Open::Create) base::make_folder_of(path_);
+  if (how == sqlite::Open::Create) {
+    base::make_folder_of(path_);
+    refuse_orphaned_log(path_);
+  }
   // Another round when the file was made, or removed by who had made it, between two steps.
   for (int round = 0;; ++round) {
     if (locked_here(path_)) throw_busy(path_);

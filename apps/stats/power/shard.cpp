@@ -8,6 +8,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
@@ -118,7 +119,7 @@ Json read_shard(const fs::path& file) {
     throw base::Error(file.string(), "is not a shard of vip-stats power",
                       "name files that vip-stats power --cell wrote");
   }
-  const Json out = Json::parse(text, nullptr, false);
+  const Json out = base::parse_json<Json>(text);
   if (out.is_discarded() || !out.is_object() || !out.contains("studies") || !out.at("studies").is_object() ||
       !out.contains("outcomes"))
     refuse_damaged(file);

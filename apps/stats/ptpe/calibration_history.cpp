@@ -5,6 +5,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
@@ -26,7 +27,7 @@ Json last_of(const std::filesystem::path& path, const std::string& record) {
   std::string line, before;
   Json last;
   for (int number = 1; std::getline(lines, line); ++number) {
-    last = Json::parse(line, nullptr, false);
+    last = base::parse_json<Json>(line);
     if (!last.is_object() || !last.contains("file_sha256") || !last.contains("previous_sha256"))
       damaged(path, number, "is no calibration");
     if (last["previous_sha256"] != (before.empty() ? "" : base::sha256_hex(before)))

@@ -5,6 +5,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
@@ -32,7 +33,7 @@ std::optional<StepTimes> read_step_times(const fs::path& folder, const std::stri
   const fs::path path = file_of(folder, key);
   if (folder.empty() || !fs::exists(path)) return {};
   try {
-    const auto json = nlohmann::json::parse(base::read_file(path, most_bytes));
+    const auto json = base::parse_json<nlohmann::json>(base::read_file(path, most_bytes));
     const StepTimes times{json.at("compute_s"), json.at("draw_s")};
     if (json.at("key") == key && is_sound(times)) return times;
   } catch (const nlohmann::json::exception&) {

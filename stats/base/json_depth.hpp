@@ -1,0 +1,41 @@
+#pragma once
+/// How deep a JSON text is nested, before a parser builds it: printing or comparing a tree goes down it by
+/// recursion, so that a deep one ends the program.
+
+#include <cstddef>
+#include <string_view>
+
+namespace base {
+
+/// True where brackets and braces outside of strings are nested deeper than `levels`. The text may be no
+/// JSON.
+inline bool nested_deeper_than(int levels, std::string_view json) {
+  int depth = 0;
+  bool text = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (text) {
+      if (c == '\\') ++i;
+      if (c == '"') text = false;
+    } else if (c == '"') {
+      text = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > levels) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return false;
+}
+
+/// Levels that no file of this program reaches.
+inline constexpr int most_json_levels = 32;
+
+/// `Json::parse` without exceptions: discarded for what is no JSON or nested deeper than `levels`.
+template <class Json>
+Json parse_json(std::string_view text, int levels = most_json_levels) {
+  if (nested_deeper_than(levels, text)) return Json(Json::value_t::discarded);
+  return Json::parse(text, nullptr, false);
+}
+
+}  // namespace base
