@@ -9,6 +9,7 @@
 #include "libstudy/store/chores.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -56,7 +57,8 @@ void consent(const ConsentCommand& command) {
   if (!command.gaze.empty() || !command.sharing.empty()) print_change(command);
   for (const auto& session : study::read_permissions(command.database, command.participant)) {
     std::printf("%s %s visit %d: gaze kept %s, data shared %s\n", command.participant.c_str(),
-                session.protocol.c_str(), session.visit, word_of(session.gaze), word_of(session.sharing));
+                base::shortened(session.protocol).c_str(), session.visit, word_of(session.gaze),
+                word_of(session.sharing));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "libstudy/store/merge_parts.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -70,7 +71,8 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   for (const SessionCopy& copy : chosen) {
     if (copy.test_data) ++merge.test_sessions;
     const std::string& name = names.at(copy.person);
-    if (name != copy.code) renamed.insert(copy.code + " of station '" + copy.station + "' is " + name);
+    if (name != copy.code)
+      renamed.insert(copy.code + " of station '" + base::shortened(copy.station) + "' is " + name);
   }
   merge.renamed.assign(renamed.begin(), renamed.end());
   for (const auto& [person, stone] : content.tombstones) merge.withdrawn.push_back(names.at(person));
@@ -78,7 +80,7 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   Statement row(result,
                 "SELECT name || ' ' || version FROM protocol WHERE test_data = 0 GROUP BY name, version "
                 "HAVING count(*) > 1 ORDER BY 1");
-  while (row.step()) merge.namesakes.push_back(row.text(0));
+  while (row.step()) merge.namesakes.push_back(base::shortened(row.text(0)));
   return merge;
 }
 

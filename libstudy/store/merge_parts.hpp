@@ -46,6 +46,10 @@ std::map<std::string, std::string> name_people(const Content& content);
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,
                  const std::map<std::string, std::string>& names, sqlite::Connection& target);
 
+/// Gives the union its labels (export_labels.hpp): those of the source that stands at the target's path stay,
+/// then those of the others by when somebody was first planned.
+void add_labels(const Content& content, sqlite::Connection& target);
+
 /// Adds the registered exports of a source and whom they hold; of one path, what was written last counts.
 void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 

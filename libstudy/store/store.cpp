@@ -42,13 +42,19 @@ std::optional<std::string> words_of(const Answer& answer) {
 Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, const sqlite::Waiting& waiting)
     : path_(real_file(path)), lock_(std::in_place, path_, how) {
   database_ = open_database(path_, how, read_schema_steps(), max_pages, waiting);
-  left_ = clean_up(*database_).left;
-  for (const std::string& participant : study::wished_withdrawals(*database_)) {
-    const auto left = withdraw(*database_, participant).beside.left;
-    left_.insert(left_.end(), left.begin(), left.end());
+  // Refuses a file that is not the one that was written, before anything beside it is touched for it.
+  journal_ = std::make_unique<AnswerJournal>(*database_);
+  const auto wishes = study::wished_withdrawals(*database_);
+  if (is_anything_left(*database_) || !wishes.empty()) {
+    journal_.reset();
+    left_ = clean_up(*database_).left;
+    for (const std::string& participant : wishes) {
+      const auto left = withdraw(*database_, participant).beside.left;
+      left_.insert(left_.end(), left.begin(), left.end());
+    }
+    journal_ = std::make_unique<AnswerJournal>(*database_);
   }
   statements_ = std::make_unique<Statements>(*database_);
-  journal_ = std::make_unique<AnswerJournal>(*database_);
   // A new database may have a plan: the journal's, whose commit was under way when an earlier one was given
   // up.
   if (!lock_->made() || database_->integer("SELECT EXISTS (SELECT 1 FROM run)") == 1) keep_file();
