@@ -10,6 +10,7 @@ cd "$(dirname "$0")/.."
 root=$PWD
 build=$(realpath "${VIP_BUILD:-build/dev}")
 out=$(realpath -m "${VIP_DOCS_OUT:-out/docs}")
+export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoever runs this
 [ $# -gt 0 ] || set -- README.md docs/*.md
 
 # PAGE | HOW A COMMAND BEGINS | WHAT RUNS INSTEAD | WHY | TEST

@@ -83,6 +83,7 @@ std::string error_text(const std::exception& error, const std::string& command) 
 int run_program(CLI::App& app, int argc, char** argv) {
   if (!open_standard_streams()) return 1;
   wait_passively(argv);
+  const PlainOutput plain;
   app.set_version_flag("--version", base::version());
   app.require_subcommand(0, 1);
   app.failure_message([](const CLI::App* failed, const CLI::Error& error) {

@@ -28,6 +28,60 @@ bool reader_left() {
 
 }  // namespace
 
+namespace {
+
+bool write_out(const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = ::write(STDOUT_FILENO, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+ssize_t write_plain(void* text, const char* bytes, std::size_t size) {
+  return write_out(static_cast<base::TerminalText*>(text)->next({bytes, size})) ? static_cast<ssize_t>(size)
+                                                                                : 0;
+}
+
+}  // namespace
+
+PlainOutput::PlainOutput() : before_(stdout) {
+  std::fflush(stdout);
+  plain_ = ::fopencookie(&text_, "w", {nullptr, write_plain, nullptr, nullptr});
+  if (!plain_) throw base::Error("standard output", "cannot be opened", "free memory and do this again");
+  std::setvbuf(plain_, nullptr, ::isatty(STDOUT_FILENO) == 1 ? _IOLBF : _IOFBF, BUFSIZ);
+  stdout = plain_;
+}
+
+PlainOutput::~PlainOutput() {
+  std::fflush(plain_);
+  write_out(text_.rest());
+  stdout = before_;
+  std::fclose(plain_);
+}
+
+void print_coloured(const std::string& text) {
+  std::fflush(stdout);
+  base::TerminalText plain;
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t colour = text.find("\033[", at);
+    const std::size_t end =
+        colour == std::string::npos ? colour : text.find_first_not_of("0123456789", colour + 2);
+    if (end == std::string::npos) {
+      out += plain.next(std::string_view(text).substr(at));
+      break;
+    }
+    out += plain.next(std::string_view(text).substr(at, colour - at));
+    const bool is_colour = text[end] == 'm';
+    out += is_colour ? text.substr(colour, end + 1 - colour) : std::string("?");
+    at = is_colour ? end + 1 : colour + 1;
+  }
+  write_out(out + plain.rest());
+}
+
 // The lowest free number is given first, and what is opened here stays open over exec.
 bool open_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

@@ -10,6 +10,7 @@
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -59,7 +60,8 @@ void consent(const ConsentCommand& command) {
   for (const auto& session :
        study::read_permissions({command.database, command.incomplete}, command.participant)) {
     std::printf("%s %s visit %d: gaze kept %s, data shared %s\n", command.participant.c_str(),
-                session.protocol.c_str(), session.visit, word_of(session.gaze), word_of(session.sharing));
+                base::shortened(session.protocol).c_str(), session.visit, word_of(session.gaze),
+                word_of(session.sharing));
     refused = refused || session.gaze == false;
   }
   if (changed || !refused) return;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/common/streams.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
@@ -11,6 +12,7 @@
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
 #include "libstudy/store/open_study.hpp"
+#include "libstudy/store/own_exports.hpp"
 
 namespace apps {
 
@@ -44,14 +46,14 @@ void print_public(const study::PublicExport& done, const std::string& folder) {
 void add_export_command(CLI::App& app) {
   struct Options {
     std::string database, csv, bids, psych_ds;
-    bool words = false, gaze = false, incomplete = false;
+    bool words = false, gaze = false, incomplete = false, excel = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
   add_database(sub, options->database);
   auto* formats = sub.add_option_group("formats");
-  formats->add_option("--csv", options->csv, "Folder of CSV files with a data dictionary")
-      ->check(output_folder());
+  auto* csv = formats->add_option("--csv", options->csv, "Folder of CSV files with a data dictionary")
+                  ->check(output_folder());
   formats->add_option("--bids", options->bids, "Folder of a BIDS data set (behaviour)")
       ->check(output_folder());
   formats->add_option("--psych-ds", options->psych_ds, "Folder of a Psych-DS data set")
@@ -59,16 +61,24 @@ void add_export_command(CLI::App& app) {
   formats->require_option(1, 3);
   sub.add_flag("--words", options->words,
                "CSV: also free words of participants and the experimenter's notes");
+  sub.add_flag("--excel", options->excel,
+               "CSV: for spreadsheets that open a file at a double click: a byte-order mark, and where the "
+               "locale's decimal mark is a comma, semicolons and decimal commas")
+      ->needs(csv);
   sub.add_flag("--gaze", options->gaze,
                "CSV, BIDS: also where people looked, of those who allowed that; the mouse is marked as such");
   add_incomplete(sub, options->incomplete);
   sub.footer(
       "BIDS and Psych-DS leave out whoever refused that data be shared; CSV is the lab's own copy and holds "
       "everybody. \n"
-      "A folder is made, or replaced when it is an earlier export. It is registered in the database, which "
-      "must be\n"
-      "writable for that: when one of the people in it withdraws, the folder is deleted, to be exported "
-      "again.\n"
+      "A folder is made, or replaced when it is an earlier export as it was written. It is registered in the "
+      "database,\n"
+      "which must be writable for that, and in your own register (~/.local/state/vip-lab/exports.jsonl): "
+      "when "
+      "one of\n"
+      "the people in it withdraws, the folder is deleted, to be exported again. What the register lacks, or "
+      "what was\n"
+      "changed, is named and stays.\n"
       "CSV is the owner's alone to read (folder 0700, files 0600), since it holds all that is known of "
       "people;\n"
       "BIDS and Psych-DS are for others, as the umask says.\n"
@@ -79,8 +89,16 @@ void add_export_command(CLI::App& app) {
     const study::StudyFile file(options->database, options->incomplete);
     check_no_withdrawal_is_due(file);
     if (file.incomplete) print_lacking(file.path, study::lacking_of(file.path));
-    if (!options->csv.empty())
-      print_files(study::export_csv(file, options->csv, {options->words, options->gaze}));
+    if (const auto why = study::why_not_registered())
+      std::fprintf(stderr, "exports cannot be registered, so that a withdrawal names and keeps them: %s\n",
+                   for_terminal(*why).c_str());
+    if (!options->csv.empty()) {
+      const study::CsvDialect dialect = options->excel ? study::excel_dialect() : study::CsvDialect{};
+      print_files(study::export_csv(file, options->csv, {options->words, options->gaze, dialect}));
+      if (options->excel)
+        std::printf("%s: '%c' between fields, '%c' as the decimal mark, as the locale has it\n",
+                    options->csv.c_str(), dialect.separator, dialect.decimal);
+    }
     if (!options->bids.empty()) {
       print_public(study::export_bids(file, options->bids, options->gaze), options->bids);
     }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/common/program.hpp"
+#include "apps/common/streams.hpp"
 #include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/check/kept_times.hpp"
 #include "apps/study/check/measuring.hpp"
@@ -89,7 +90,7 @@ void tell_length(const study::Protocol& protocol, const std::vector<const Measur
   std::fprintf(
       stderr,
       "%s: measuring %zu live stimul%s %s, up to %s and their making, once for this station and build\n",
-      protocol.name.c_str(), open.size(), open.size() == 1 ? "us" : "i", where.c_str(),
+      for_terminal(protocol.name).c_str(), open.size(), open.size() == 1 ? "us" : "i", where.c_str(),
       base::duration_words(seconds).c_str());
 }
 
@@ -170,15 +171,16 @@ MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, 
   const std::set<int> doubtful = slow_by_kept(report, live);
   if (!doubtful.empty() && !accept_slow) {
     std::fprintf(stderr, "%s: too slow by the rates that were kept; they are measured again\n",
-                 protocol.name.c_str());
+                 for_terminal(protocol.name).c_str());
     place.anew = [&doubtful](int cell) { return doubtful.count(cell) > 0; };
     report = judge_here(protocol, setup, measure_live(protocol, *setup.stimuli, place));
   }
   if (report.cells.empty()) return report;
-  std::fprintf(stderr, "%s: live on this station\n%s", protocol.name.c_str(), measured_table(report).c_str());
+  std::fprintf(stderr, "%s: live on this station\n%s\n", for_terminal(protocol.name).c_str(),
+               for_terminal(measured_table(report)).c_str());
   if (!report.collapse.empty())
-    std::fprintf(stderr, "%s: timing = \"native\" compares equal stimuli here: %s\n", protocol.name.c_str(),
-                 report.collapse.c_str());
+    std::fprintf(stderr, "%s: timing = \"native\" compares equal stimuli here: %s\n",
+                 for_terminal(protocol.name).c_str(), for_terminal(report.collapse).c_str());
   if (report.too_slow && !accept_slow)
     throw base::Error(protocol.name + " on this station", refusal(report),
                       "bake what may be baked, make the picture smaller, use a faster machine, or add "

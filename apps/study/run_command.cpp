@@ -7,6 +7,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/common/picture_size.hpp"
+#include "apps/common/streams.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/headset/answer_ways.hpp"
@@ -194,14 +195,14 @@ void run(RunCommand& command) {
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty()) {
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
-                 setup.departure().c_str());
+                 for_terminal(setup.departure()).c_str());
   }
   for (const std::string& note : setup.stimuli->bakes().notes(command.protocol))
-    std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), note.c_str());
+    std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), for_terminal(note).c_str());
   for (const std::string& note : setup.stimuli->settings().notes(protocol))
-    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
   for (const std::string& note : framing_notes(protocol, setup.scenes))
-    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), note.c_str());
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
   if (setup.gaze && !asks_gaze(protocol)) {
     std::fprintf(stderr, "%s: does not ask %s; where one looks will not be recorded\n",
                  command.protocol.c_str(), study::gaze_question);

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "apps/common/program.hpp"
+#include "apps/common/streams.hpp"
 #include "apps/study/desk/certificate.hpp"
 #include "apps/study/desk/console.hpp"
 #include "apps/study/desk/progress.hpp"
@@ -70,7 +71,8 @@ study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
   return [database, calls = 0](const std::string& holder) mutable {
     if (calls++ % 10 == 0) {
       std::fprintf(stderr, "%s%s: %s keeps it locked; waiting, nothing is lost. Close it there.\n",
-                   ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", database.c_str(), holder.c_str());
+                   ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", for_terminal(database.string()).c_str(),
+                   for_terminal(holder).c_str());
     }
     return !StopSignals::stop_wished();
   };
@@ -181,7 +183,7 @@ void tell_length(const study::OpenRun& run, const study::Protocol& protocol, con
   const auto showing_s = showing_times(protocol, setup.rates);
   double seconds = 0;
   for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person, showing_s);
-  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", protocol.name.c_str(),
+  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", for_terminal(protocol.name).c_str(),
                run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
                base::duration_words(seconds).c_str());
 }
@@ -301,7 +303,7 @@ void print_certificate(const std::filesystem::path& database, const study::OpenR
                        const study::Protocol& protocol) {
   const auto rows = study::read_certificate(database, run.id, protocol.pacing.mean);
   const bool coloured = ::isatty(STDOUT_FILENO) == 1;
-  std::fputs(format_certificate(rows, protocol.pacing.mean, coloured).c_str(), stdout);
+  print_coloured(format_certificate(rows, protocol.pacing.mean, coloured));
 }
 
 }  // namespace apps

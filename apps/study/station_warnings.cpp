@@ -52,7 +52,7 @@ std::vector<std::string> warn_of_station(study::Store& store, const std::filesys
   if (const auto problem = clock_problem(base::utc_now(), store.newest_utc(), base::built_utc());
       !problem.empty())
     warnings.push_back(problem);
-  for (const std::string& one : warnings) std::fprintf(stderr, "warning: %s\n", one.c_str());
+  for (const std::string& one : warnings) std::fprintf(stderr, "warning: %s\n", for_terminal(one).c_str());
   return warnings;
 }
 

@@ -8,6 +8,7 @@
 #include "apps/study/commands.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/withdraw.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -30,11 +31,11 @@ void print_session(const study::SessionRow& session) {
   std::printf(
       "  %-12s visit %d  %3lld of %lld trials, %lld of %lld steps, %lld cut short, %lld excluded  %-12s  %s "
       "clock, %s%s%s\n",
-      session.participant.c_str(), session.visit, static_cast<long long>(session.answered),
+      base::shortened(session.participant).c_str(), session.visit, static_cast<long long>(session.answered),
       static_cast<long long>(session.trials), static_cast<long long>(session.done),
       static_cast<long long>(session.units), static_cast<long long>(session.interrupted),
       static_cast<long long>(session.excluded), state_of(session).c_str(), session.clock.c_str(),
-      session.observer.empty() ? "person" : ("simulated " + session.observer).c_str(),
+      session.observer.empty() ? "person" : ("simulated " + base::shortened(session.observer)).c_str(),
       session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
@@ -42,8 +43,10 @@ void status(const std::string& database, bool incomplete) {
   const study::StudyStatus found = study::read_status({database, incomplete});
   print_lacking(database, found.lacking);
   for (const study::ProtocolRow& protocol : found.protocols) {
-    std::printf("protocol %s version %s, hash %s%s\n", protocol.name.c_str(), protocol.version.c_str(),
-                protocol.sha256.substr(0, 12).c_str(), protocol.test_data ? " (test data)" : "");
+    std::printf("protocol %s version %s, hash %s%s\n", base::shortened(protocol.name).c_str(),
+                base::shortened(protocol.version).c_str(),
+                base::shortened(protocol.sha256.substr(0, 12)).c_str(),
+                protocol.test_data ? " (test data)" : "");
     std::printf("  %lld sessions, %lld of %lld trials answered\n", static_cast<long long>(protocol.sessions),
                 static_cast<long long>(protocol.answered), static_cast<long long>(protocol.trials));
     for (const study::SessionRow& session : found.sessions) {

@@ -116,10 +116,6 @@ void rewrite_file(Connection& database) {
   transaction.commit();
 }
 
-bool is_anything_left(Connection& database) {
-  return database.integer("SELECT EXISTS (SELECT 1 FROM chore)") != 0 || holds_withdrawn(database);
-}
-
 template <class Value>
 void keep_one_of_each(std::vector<Value>& values) {
   std::sort(values.begin(), values.end());
@@ -127,6 +123,10 @@ void keep_one_of_each(std::vector<Value>& values) {
 }
 
 }  // namespace
+
+bool is_anything_left(Connection& database) {
+  return database.integer("SELECT EXISTS (SELECT 1 FROM chore)") != 0 || holds_withdrawn(database);
+}
 
 void check_nothing_left(const fs::path& database, const std::vector<std::string>& left) {
   if (left.empty()) return;

@@ -44,9 +44,13 @@ class ChorePlan {
   std::string batch_;
 };
 
+/// Whether clean_up() has anything to do.
+bool is_anything_left(sqlite::Connection& database);
+
 /// Does all chores of a database that is open for writing under its WriterLock, deletes the exports of those
-/// who withdrew (export_register.hpp), and rewrites the file when anything changed. Never throws for what
-/// cannot be done: that is `left`.
+/// who withdrew (export_register.hpp), and rewrites the file when anything changed. Compare the database with
+/// its journal first (AnswerJournal): another file in its place has nothing done for it. Never throws for
+/// what cannot be done: that is `left`.
 CleanUp clean_up(sqlite::Connection& database);
 /// The same with the journal of answers made anew, as prepare_rewrite() announced (answer_journal.hpp).
 CleanUp clean_up_all(sqlite::Connection& database);

@@ -3,6 +3,8 @@
 #include <sqlite3.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <random>
 #include <string_view>
@@ -13,6 +15,7 @@
 #include "libstudy/store/private_file.hpp"
 #include "libstudy/store/schema.hpp"
 #include "libstudy/store/snapshot.hpp"
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -107,9 +110,10 @@ void back_up(Connection& database, std::int64_t version) {
   if (!create_private(draft)) throw base::Error(draft, "is in the way", "move it away and try again");
   try {
     sqlite::Statement(database, "VACUUM INTO ?").bind_all(draft).run();
-    fs::rename(draft, copy, failed);
-    if (failed)
-      throw base::Error(copy, "cannot be put in place: " + failed.message(), "check the disk and try again");
+    base::sync_file(draft);
+    if (!base::rename_durably(draft, copy))
+      throw base::Error(copy, std::string("cannot be put in place: ") + std::strerror(errno),
+                        "check the disk and try again");
   } catch (...) {
     fs::remove(draft, failed);
     throw;

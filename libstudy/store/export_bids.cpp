@@ -192,15 +192,26 @@ bool is_export(const fs::path& folder) {
          json["GeneratedBy"].dump().find("\"vip-study\"") != std::string::npos;
 }
 
+bool is_our_name(const std::string& name) {
+  static const std::set<std::string> names{description_file, "README.md", "participants.tsv",
+                                           "participants.json"};
+  return names.contains(name) || name.starts_with("sub-") || name.starts_with("phenotype/") ||
+         name.starts_with("code/setting_");
+}
+
+constexpr ExportKind bids_kind{"bids", is_export, is_our_name};
+
 }  // namespace
 
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
   finish_cut_commit(study);
+  open_study(study);  // refuses a file that is not sound before anything is written to it
+  label_everybody(study.path);
   const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
-  ExportDraft draft({study.path, "bids", people_of(sessions), Readers::AsUmask}, folder, is_export);
+  ExportDraft draft({study.path, bids_kind, people_of(sessions), Readers::AsUmask}, folder);
   Writer writer(draft);
   writer.json(description_file,
               {{"Name", draft.target().filename().string()},

@@ -104,16 +104,15 @@ bool is_our_name(const std::string& name) {
   return false;
 }
 
-/// True for an earlier export of ours: only our names, and a dictionary that begins like ours.
+/// Whether a dictionary stands there that begins like ours.
 bool is_export(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !is_our_name(entry.path().filename().string())) return false;
-  }
   std::ifstream dictionary(folder / dictionary_file, std::ios::binary);
   std::string begin(std::strlen(dictionary_header), '\0');
   dictionary.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   return begin == dictionary_header;
 }
+
+constexpr ExportKind csv_kind{"csv", is_export, is_our_name};
 
 std::vector<ColumnMeaning> columns_of(Connection& database, const Table& table) {
   Statement sql(database, "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
@@ -138,16 +137,29 @@ bool is_written(const Table& table, const CsvChoice& choice) {
   return (!table.free_words || choice.words) && (!table.gaze || choice.gaze);
 }
 
+std::string spreadsheet_meaning(const CsvDialect& dialect) {
+  return std::string("written for spreadsheets (--excel): UTF-8 behind a byte-order mark, '") +
+         dialect.separator + "' between fields, '" + dialect.decimal +
+         "' as the decimal mark. R reads it by " +
+         (dialect.separator == ';' ? "read.csv2(file, fileEncoding = \"UTF-8-BOM\"), pandas by "
+                                     "read_csv(file, sep=\";\", decimal=\",\", encoding=\"utf-8-sig\")"
+                                   : "read.csv(file, fileEncoding = \"UTF-8-BOM\"), pandas by "
+                                     "read_csv(file, encoding=\"utf-8-sig\")") +
+         ". A spreadsheet keeps 15 digits of a number: seeds and times in ns may lose their last ones there";
+}
+
 std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, const CsvChoice& choice) {
   ExportFile file(draft, dictionary_file);
-  file.write(dictionary_header);
-  file.write("(all),(all),TEXT," + csv_field(formula_guard_meaning) + "\r\n");
-  std::int64_t rows = 1;
+  const CsvDialect& dialect = draft.dialect();
+  file.write(csv_head({"file", "column", "type", "meaning"}, dialect));
+  std::int64_t rows = 0;
   const auto write = [&](const char* name, const ColumnMeaning& column) {
-    file.write(std::string(name) + ',' + csv_field(column.column) + ',' + column.type + ',' +
-               csv_field(column.meaning) + "\r\n");
+    file.write(csv_line(
+        {name, csv_field(column.column, dialect), column.type, csv_field(column.meaning, dialect)}, dialect));
     ++rows;
   };
+  write("(all)", {"", "(all)", "TEXT", formula_guard_meaning});
+  if (dialect.mark) write("(all)", {"", "(all)", "TEXT", spreadsheet_meaning(dialect)});
   for (const Table& table : tables) {
     if (!is_written(table, choice)) continue;
     for (const ColumnMeaning& column : columns_of(database, table)) write(table.file, column);
@@ -219,7 +231,7 @@ std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& fol
   const auto database = open_study(study).database;
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
-  ExportDraft draft({study.path, "csv", everybody(*database), Readers::Owner}, folder, is_export);
+  ExportDraft draft({study.path, csv_kind, everybody(*database), Readers::Owner, choice.dialect}, folder);
   std::vector<ExportedFile> files;
   for (const Table& table : tables) {
     if (!is_written(table, choice)) continue;

@@ -14,8 +14,9 @@ namespace study {
 
 /// What is written on demand alone.
 struct CsvChoice {
-  bool words = false;  ///< free words of participants and the experimenter's notes: words.csv, notes.csv
-  bool gaze = false;   ///< gaze.csv, heads.csv, gaze_validations.csv
+  bool words = false;       ///< free words of participants and the experimenter's notes: words.csv, notes.csv
+  bool gaze = false;        ///< gaze.csv, heads.csv, gaze_validations.csv
+  CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets; dictionary.csv says which was taken
 };
 
 /// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from
@@ -25,9 +26,10 @@ struct CsvChoice {
 ///
 /// Folder and files are the owner's alone.
 /// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
-/// part. `folder` may be absent, empty or an earlier export, which is replaced; base::Error, with nothing
-/// changed, when it holds anything else, or when the database cannot be written: the folder is registered in
-/// it with whom it holds, and a withdrawal of one of them deletes it (export_register.hpp).
+/// part. `folder` may be absent, empty or an earlier export as it was written, which is replaced;
+/// base::Error, with nothing changed, when a file was added or changed, or when the database cannot be
+/// written: the folder is registered in it with whom it holds, and a withdrawal of one of them deletes it
+/// (export_register.hpp).
 std::vector<ExportedFile> export_csv(const StudyFile& study, const std::filesystem::path& folder,
                                      const CsvChoice& choice = {});
 

@@ -1,6 +1,8 @@
 #include "libstudy/store/export_folder.hpp"
 
 #include <fcntl.h>
+#include <langinfo.h>
+#include <locale.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,10 +11,17 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <map>
+#include <sstream>
 
+#include "libstudy/store/own_exports.hpp"
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/file_hash.hpp"
 #include "stats/base/new_file.hpp"
+#include "stats/base/outgoing.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -22,29 +31,64 @@ using sqlite::Statement;
 
 namespace {
 
+constexpr std::size_t most_list_bytes = 1 << 28, sha256_digits = 64;
+
 fs::path whole_path(const fs::path& folder) {
   fs::path target = fs::absolute(folder).lexically_normal();
   return target.has_filename() ? target : target.parent_path();
 }
 
-void check_target(const fs::path& folder, const ExportDraft::IsExport& is_export) {
+/// SHA-256 by name, as an export's own list says; empty: it has none.
+std::map<std::string, std::string> listed_files(const fs::path& folder, const ExportKind& kind) {
+  const fs::path marker = folder / marker_of(kind.name);
+  std::map<std::string, std::string> files;
+  std::error_code ignored;
+  if (fs::symlink_status(marker, ignored).type() != fs::file_type::regular) return files;
+  std::istringstream lines(base::read_file(marker, most_list_bytes));
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() > sha256_digits + 2 && line[0] != '#')
+      files[line.substr(sha256_digits + 2)] = line.substr(0, sha256_digits);
+  files[marker_of(kind.name)] = base::sha256_of_file(marker);
+  return files;
+}
+
+/// What is wrong with a folder as an earlier export that is to be replaced; empty: nothing.
+std::string strange_file(const fs::path& folder, const ExportKind& kind) {
+  const auto listed = listed_files(folder, kind);
+  std::set<std::string> added, changed;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (entry.is_directory() && !entry.is_symlink()) continue;
+    const bool is_file = entry.is_regular_file() && !entry.is_symlink();
+    if (!is_file || !(listed.empty() ? kind.is_name(name) : listed.contains(name)))
+      added.insert(name);
+    else if (!listed.empty() && base::sha256_of_file(entry.path()) != listed.at(name))
+      changed.insert(name);
+  }
+  if (!added.empty()) return " alone: '" + base::shortened(*added.begin()) + "' was added";
+  if (!changed.empty())
+    return " as it was written: '" + base::shortened(*changed.begin()) + "' was changed since";
+  return listed.empty() && !kind.is_export(folder) ? ": it was not written by vip-study" : "";
+}
+
+void check_target(const fs::path& folder, const ExportKind& kind) {
   std::error_code ignored;
   if (!fs::exists(fs::symlink_status(folder, ignored))) return;
-  const bool ours = !fs::is_symlink(folder) && fs::is_directory(folder, ignored) &&
-                    (fs::is_empty(folder, ignored) || is_export(folder));
-  if (!ours) {
-    throw base::Error(folder.string(), "exists and is not an earlier export",
-                      "name another folder, or move what is there away");
-  }
+  std::string strange = ": it is no folder";
+  if (!fs::is_symlink(folder) && fs::is_directory(folder, ignored))
+    strange = fs::is_empty(folder, ignored) ? "" : strange_file(folder, kind);
+  if (strange.empty()) return;
+  throw base::Error(folder.string(), "exists and is not an earlier export" + strange,
+                    "name another folder, or move what is there away");
 }
 
 }  // namespace
 
-ExportDraft::ExportDraft(const ExportSource& source, const fs::path& target, const IsExport& is_export)
-    : target_(whole_path(target)), readers_(source.readers) {
-  check_target(target_, is_export);
-  record_.emplace(source.database, source.kind, target_, source.people);
-  path_ = draft_of(target_);
+ExportDraft::ExportDraft(const ExportSource& source, const fs::path& target)
+    : target_(whole_path(target)), kind_(source.kind), readers_(source.readers), dialect_(source.dialect) {
+  check_target(target_, kind_);
+  record_.emplace(source.database, kind_.name, target_, source.people);
+  path_ = record_->draft();
   base::make_folder_of(target_);
   if (::mkdir(path_.c_str(), readers_ == Readers::Owner ? 0700 : 0777) != 0) fail("cannot be made");
 }
@@ -55,11 +99,13 @@ ExportDraft::~ExportDraft() {
 }
 
 void ExportDraft::put_in_place() {
-  record_->will_be(sha256_of_names(path_));
+  const std::string list = list_of_files(path_, kind_.name, record_->id());
+  write_file(*this, marker_of(kind_.name), list);
+  base::sync_folders(path_);
+  record_->will_be(base::sha256_hex(list));
   replace_target();
   // The earlier export: it may hold people who do not stand in this one.
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  base::remove_durably(path_);
   record_->is_in_place();
 }
 
@@ -67,7 +113,7 @@ void ExportDraft::put_in_place() {
 void ExportDraft::replace_target() {
   std::error_code ignored;
   const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
-  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), flags) == 0) return;
+  if (base::rename_durably(path_, target_, flags)) return;
   // Network file systems know the plain rename alone: the earlier export steps aside first.
   if (errno != EINVAL || !replace_in_two_steps()) fail("cannot be put in place");
 }
@@ -75,14 +121,14 @@ void ExportDraft::replace_target() {
 bool ExportDraft::replace_in_two_steps() {
   std::error_code ignored;
   const fs::path aside = path_.string() + ".old";
-  if (fs::exists(target_, ignored) && ::rename(target_.c_str(), aside.c_str()) != 0) return false;
-  if (::rename(path_.c_str(), target_.c_str()) != 0) {
+  if (fs::exists(target_, ignored) && !base::rename_durably(target_, aside)) return false;
+  if (!base::rename_durably(path_, target_)) {
     const int problem = errno;
-    ::rename(aside.c_str(), target_.c_str());
+    base::rename_durably(aside, target_);
     errno = problem;
     return false;
   }
-  fs::remove_all(aside, ignored);
+  base::remove_durably(aside);
   return true;
 }
 
@@ -93,6 +139,7 @@ void ExportDraft::fail(const std::string& problem) {
 
 ExportFile::ExportFile(const ExportDraft& draft, const std::string& name)
     : shown_((draft.target() / name).string()) {
+  base::check_file_name(name, draft.target().string());
   const fs::path path = draft.path() / name;
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
@@ -139,9 +186,9 @@ std::string formula_guarded(const std::string& text) {
   return text;
 }
 
-std::string csv_field(const std::string& words) {
-  const std::string text = formula_guarded(words);
-  if (text.size() == words.size() && text.find_first_of(",\"\r\n") == std::string::npos) return text;
+std::string csv_field(const std::string& words, const CsvDialect& dialect) {
+  const std::string text = formula_guarded(words), special = std::string("\"\r\n") + dialect.separator;
+  if (text.size() == words.size() && text.find_first_of(special) == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"') quoted += '"';
@@ -150,32 +197,56 @@ std::string csv_field(const std::string& words) {
   return quoted + '"';
 }
 
+std::string csv_number(std::string text, const CsvDialect& dialect) {
+  std::replace(text.begin(), text.end(), '.', dialect.decimal);
+  return text;
+}
+
+std::string csv_line(const std::vector<std::string>& fields, const CsvDialect& dialect) {
+  std::string line;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    line += (i > 0 ? std::string(1, dialect.separator) : "") + fields[i];
+  return line + "\r\n";
+}
+
+std::string csv_head(const std::vector<std::string>& names, const CsvDialect& dialect) {
+  return (dialect.mark ? "\xEF\xBB\xBF" : "") + csv_line(names, dialect);
+}
+
+CsvDialect excel_dialect() {
+  const locale_t here = ::newlocale(LC_NUMERIC_MASK, "", nullptr);
+  if (!here) {
+    throw base::Error("--excel", "the locale that LC_ALL, LC_NUMERIC or LANG names is not installed",
+                      "install it, or name another: LC_ALL=C.UTF-8 writes commas and decimal points");
+  }
+  const bool comma = std::string(::nl_langinfo_l(RADIXCHAR, here)) == ",";
+  ::freelocale(here);
+  return comma ? CsvDialect{';', ',', true} : CsvDialect{',', '.', true};
+}
+
 std::string number_text(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string csv_value(const Statement& row, int column) {
+std::string csv_value(const Statement& row, int column, const CsvDialect& dialect) {
   if (row.is_null(column)) return {};
-  if (row.is_text(column)) return csv_field(row.text(column));
-  return row.is_real(column) ? number_text(row.real(column)) : row.text(column);
+  if (row.is_text(column)) return csv_field(row.text(column), dialect);
+  return row.is_real(column) ? csv_number(number_text(row.real(column)), dialect) : row.text(column);
 }
 
 std::int64_t write_csv(Connection& database, const std::string& sql, const ExportDraft& draft,
                        const std::string& name) {
   ExportFile file(draft, name);
   Statement row(database, sql);
-  std::string line;
-  for (int i = 0; i < row.columns(); ++i) line += (i ? "," : "") + row.column_name(i);
-  file.write(line + "\r\n");
+  std::vector<std::string> fields;
+  for (int i = 0; i < row.columns(); ++i) fields.push_back(row.column_name(i));
+  file.write(csv_head(fields, draft.dialect()));
   std::int64_t rows = 0;
   for (; row.step(); ++rows) {
-    line.clear();
-    for (int i = 0; i < row.columns(); ++i) {
-      if (i) line += ',';
-      line += csv_value(row, i);
-    }
-    file.write(line += "\r\n");
+    for (int i = 0; i < row.columns(); ++i)
+      fields[static_cast<std::size_t>(i)] = csv_value(row, i, draft.dialect());
+    file.write(csv_line(fields, draft.dialect()));
   }
   file.finish();
   return rows;

@@ -58,6 +58,13 @@ bool is_export(const fs::path& folder) {
   return json.is_object() && json.value("creator", "") == "vip-study";
 }
 
+bool is_our_name(const std::string& name) {
+  return name == description_file || name == "README.md" || name.starts_with("data/study-") ||
+         name.starts_with("materials/setting_");
+}
+
+constexpr ExportKind psych_ds_kind{"psych-ds", is_export, is_our_name};
+
 /// Each column that stands in a file, once; two files may share one. `scored`: the sessions of the export.
 Json variables(Connection& database, std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
@@ -107,13 +114,15 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
   finish_cut_commit(study);
+  open_study(study);  // refuses a file that is not sound before anything is written to it
+  label_everybody(study.path);
   const auto database = open_study(study).database;
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);
   const auto sickness = read_sickness(*database);
   std::vector<SicknessSession> scored;
-  ExportDraft draft({study.path, "psych-ds", people_of(sessions), Readers::AsUmask}, folder, is_export);
+  ExportDraft draft({study.path, psych_ds_kind, people_of(sessions), Readers::AsUmask}, folder);
   std::vector<ExportedFile> files;
   std::set<std::string> named;
   fs::create_directory(draft.path() / "data");

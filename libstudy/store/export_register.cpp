@@ -10,10 +10,12 @@
 
 #include "libstudy/store/beside.hpp"
 #include "libstudy/store/database.hpp"
+#include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/export_rows.hpp"
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/settling.hpp"
 #include "libstudy/store/writer_lock.hpp"
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
@@ -76,6 +78,21 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
   return id;
 }
 
+/// Exports that another one took the place of, and what earlier ones that were never finished left.
+void forget_replaced(const OwnExport& by) {
+  try {
+    std::set<std::string> replaced;
+    for (const OwnExport& other : own_exports_at(by.path)) {
+      std::error_code ignored;
+      if (other.id != by.id && (other.draft.empty() || !fs::exists(other.draft, ignored)))
+        replaced.insert(other.id);
+    }
+    forget_own_exports(replaced);
+  } catch (const base::Error&) {
+    // What is registered of an export that is not there does no harm.
+  }
+}
+
 }  // namespace
 
 std::string export_rows::this_host() {
@@ -106,16 +123,41 @@ void finish_cut_commit(const StudyFile& study) {
   }
 }
 
-RegisteredExport::RegisteredExport(const fs::path& database, const std::string& kind, const fs::path& path,
-                                   const std::set<std::string>& people)
-    : database_(database), path_(without_links(path)), kind_(kind), people_(people) {
-  const auto file = open_register(database_);
+void label_everybody(const fs::path& database) {
+  const auto file = open_register(database);
   Transaction transaction(*file);
-  enter(*file, kind_, path_, people_);
+  give_labels(*file);
+  transaction.commit();
+}
+
+RegisteredExport::RegisteredExport(const fs::path& database, const std::string& kind, const fs::path& path,
+                                   const std::set<std::string>& people, const fs::path& draft)
+    : database_(database),
+      own_{.id = new_export_id(),
+           .host = this_host(),
+           .kind = kind,
+           .database = fs::weakly_canonical(real_file(database)),
+           .path = without_links(path),
+           .draft = {},
+           .sha256 = {},
+           .people = people} {
+  own_.draft = draft.empty() ? fs::path(own_.path.string() + ".tmp" + own_.id) : without_links(draft);
+  const auto file = open_register(database_);
+  keep_own();
+  Transaction transaction(*file);
+  enter(*file, own_.kind, own_.path, own_.people);
   Statement(*file, "INSERT INTO event (utc, kind, detail) VALUES (?, 'export', ?)")
-      .bind_all(base::utc_now(), path_.string())
+      .bind_all(base::utc_now(), own_.path.string())
       .run();
   transaction.commit();
+}
+
+/// Without it the export is made all the same, and a withdrawal names it.
+void RegisteredExport::keep_own() {
+  try {
+    keep_own_export(own_);
+  } catch (const base::Error&) {
+  }
 }
 
 RegisteredExport::~RegisteredExport() {
@@ -124,21 +166,25 @@ RegisteredExport::~RegisteredExport() {
     const auto file = open_register(database_);
     Transaction transaction(*file);
     Statement row(*file, "SELECT export_id FROM export WHERE host = ? AND path = ? AND sha256 = ''");
-    if (row.bind_all(this_host(), path_.string()).step()) {
+    if (row.bind_all(this_host(), own_.path.string()).step()) {
       const std::int64_t id = row.integer(0);
       row.reset();
       strike_out(*file, id);
     }
     transaction.commit();
+    std::error_code ignored;
+    if (!fs::exists(own_.draft, ignored)) forget_own_exports({own_.id});
   } catch (const std::exception&) {
     // The row of an export that is not there does no harm.
   }
 }
 
 void RegisteredExport::will_be(const std::string& sha256) {
+  own_.sha256 = sha256;
+  keep_own();
   const auto file = open_register(database_);
   Transaction transaction(*file);
-  const std::int64_t id = enter(*file, kind_, path_, people_);
+  const std::int64_t id = enter(*file, own_.kind, own_.path, own_.people);
   Statement(*file, "UPDATE export SET sha256 = ? WHERE export_id = ?").bind_all(sha256, id).run();
   transaction.commit();
   named_ = true;
@@ -146,25 +192,28 @@ void RegisteredExport::will_be(const std::string& sha256) {
 
 // A withdrawal either sees the export in its place or is seen here.
 void RegisteredExport::is_in_place() {
+  base::sync_folder_of(own_.path);
   const auto file = open_register(database_);
   Transaction transaction(*file);
   Statement gone(*file, "SELECT participant FROM tombstone WHERE person = ?");
-  for (const std::string& person : people_) {
+  for (const std::string& person : own_.people) {
     if (!gone.bind_all(person).step()) continue;
-    fs::remove_all(path_);
-    throw base::Error(path_.string(), "was deleted again: " + gone.text(0) + " withdrew while it was written",
+    base::remove_durably(own_.path);
+    throw base::Error(own_.path.string(),
+                      "was deleted again: " + gone.text(0) + " withdrew while it was written",
                       "export again");
   }
   Statement member(
       *file, "SELECT person FROM export_person JOIN export USING (export_id) WHERE host = ? AND path = ?");
   std::vector<std::string> former;
-  for (member.bind_all(this_host(), path_.string()); member.step();)
-    if (!people_.contains(member.text(0))) former.push_back(member.text(0));
+  for (member.bind_all(this_host(), own_.path.string()); member.step();)
+    if (!own_.people.contains(member.text(0))) former.push_back(member.text(0));
   Statement strike(*file,
                    "DELETE FROM export_person WHERE person = ? AND export_id = "
                    "(SELECT export_id FROM export WHERE host = ? AND path = ?)");
-  for (const std::string& person : former) strike.bind_all(person, this_host(), path_.string()).run();
+  for (const std::string& person : former) strike.bind_all(person, this_host(), own_.path.string()).run();
   transaction.commit();
+  forget_replaced(own_);
 }
 
 RegisteredFiles::RegisteredFiles(const StudyFile& study) : database_(study.path) {
@@ -175,8 +224,8 @@ RegisteredFiles::RegisteredFiles(const StudyFile& study) : database_(study.path)
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
   std::set<std::string> people = everybody(*open_register(database_));
   people.insert(people_.begin(), people_.end());
-  RegisteredExport record(database_, kind, path, people);
   base::NewFile file(path, base::Readers::Owner);
+  RegisteredExport record(database_, kind, path, people, file.draft());
   file.write(bytes);
   record.will_be(base::sha256_hex(bytes));
   file.put_in_place();
@@ -192,23 +241,23 @@ void RegisteredFiles::make_folder(const fs::path& folder) const {
   if (::mkdir(path.c_str(), 0700) != 0)
     throw base::Error(path.string(), std::string("cannot be made a folder: ") + std::strerror(errno),
                       "choose another folder");
+  base::sync_folder_of(path);
+  try {
+    keep_own_export({.id = new_export_id(),
+                     .host = this_host(),
+                     .kind = export_rows::folder_kind,
+                     .database = fs::weakly_canonical(real_file(database_)),
+                     .path = path,
+                     .draft = {},
+                     .sha256 = {},
+                     .people = {}});
+  } catch (const base::Error&) {  // it stays when it is empty
+  }
   const auto file = open_register(database_);
   Statement(*file,
             "INSERT OR IGNORE INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,'',?,0)")
       .bind_all(export_rows::folder_kind, path.string(), this_host(), base::utc_now())
       .run();
 }
-
-std::string sha256_of_names(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (!entry.is_directory() || entry.is_symlink())
-      names.insert(entry.path().lexically_relative(folder).string());
-  std::string text;
-  for (const std::string& name : names) text += name + '\n';
-  return base::sha256_hex(text);
-}
-
-fs::path draft_of(const fs::path& path) { return path.string() + ".tmp" + std::to_string(::getpid()); }
 
 }  // namespace study

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "libstudy/store/export_register.hpp"
 #include "libstudy/store/export_rows.hpp"
-#include "stats/base/file.hpp"
+#include "stats/base/durable.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -22,31 +25,24 @@ using sqlite::Transaction;
 
 namespace {
 
-constexpr std::size_t largest_file_bytes = std::size_t{1} << 32;
+constexpr std::size_t longest_path = 4096;
 
-/// What a kill left of it, and what another deletion had begun with.
-void remove_drafts(const fs::path& path) {
-  std::error_code none;
-  std::vector<fs::path> drafts;
-  for (const auto& entry : fs::directory_iterator(path.parent_path(), none)) {
-    std::string name = entry.path().filename().string();
-    if (name.ends_with(".old")) name.resize(name.size() - 4);
-    if (base::is_draft_name(name, path.filename().string())) drafts.push_back(entry.path());
+/// What a kill left of exports, or of a deletion that had begun: under names that this installation drew.
+void remove_drafts(const std::vector<OwnExport>& made) {
+  for (const OwnExport& one : made) {
+    if (!base::is_draft_name(one.draft.string(), one.path.string())) continue;
+    base::remove_durably(one.draft);
+    base::remove_durably(one.draft.string() + ".old");
   }
-  for (const fs::path& draft : drafts) fs::remove_all(draft);
 }
 
-/// Aside first: the place never holds a part of it, which nobody would recognise.
-void remove_whole(const fs::path& path) {
-  const fs::path aside = draft_of(path);
-  fs::rename(path, aside);
-  fs::remove_all(aside);
-}
-
-std::string sha256_of(const fs::path& path) {
-  const auto kind = fs::symlink_status(path).type();
-  if (kind == fs::file_type::directory) return sha256_of_names(path);
-  return kind == fs::file_type::regular ? base::sha256_hex(base::read_file(path, largest_file_bytes)) : "";
+/// Aside first: the place never holds a part of it, which would not be recognised.
+void remove_whole(const OwnExport& made) {
+  const bool is_folder = !marker_of(made.kind).empty();
+  if (is_folder && !base::rename_durably(made.path, made.draft))
+    throw base::Error(made.path.string(), std::string("cannot be moved: ") + std::strerror(errno),
+                      "check the rights of its folder");
+  base::remove_durably(is_folder ? made.draft : made.path);
 }
 
 /// A row of `export` that holds somebody who withdrew.
@@ -77,34 +73,82 @@ void mark_tackled(Connection& database, const Leftover& one) {
   Statement(database, "UPDATE export SET tackled = 1 WHERE export_id = ?").bind_all(one.id).run();
 }
 
-/// Why it is not deleted; empty: it is gone.
-std::string remove_leftover(Connection& database, const Leftover& one) {
-  if (one.host != this_host() && !one.host.empty()) {
-    return "is on the computer '" + one.host +
-           "'\n  mend: delete it there, with what was copied from it, or repeat the withdrawal there";
-  }
-  remove_drafts(one.path);
-  if (!fs::exists(fs::symlink_status(one.path))) {
-    const bool was_there = one.host.empty() || !one.sha256.empty();
-    if (one.tackled || !was_there) return "";
-    return "is no longer there\n  mend: where it was moved or copied to, delete it";
-  }
-  if (one.sha256.empty() && !one.host.empty()) return "";  // it was never put in place
-  if (one.sha256.empty() || sha256_of(one.path) != one.sha256)
+bool anyone_withdrew(Connection& database, const OwnExport& made) {
+  Statement stone(database, "SELECT 1 FROM tombstone WHERE person = ?");
+  return std::any_of(made.people.begin(), made.people.end(),
+                     [&](const std::string& person) { return stone.bind_all(person).step(); });
+}
+
+void forget(const std::vector<OwnExport>& made) {
+  std::set<std::string> ids;
+  for (const OwnExport& one : made) ids.insert(one.id);
+  forget_own_exports(ids);
+}
+
+/// Whether this database has a say in what this installation made at a place: somebody of it withdrew from
+/// here, or it was made of this very file.
+bool concerns(Connection& database, const std::vector<OwnExport>& made) {
+  const fs::path here = fs::weakly_canonical(database.path());
+  return std::any_of(made.begin(), made.end(), [&](const OwnExport& one) {
+    return one.database == here || anyone_withdrew(database, one);
+  });
+}
+
+/// Why what stands at its place is not deleted; empty: it is gone, or holds nobody who withdrew.
+std::string remove_standing(Connection& database, const Leftover& one, const std::vector<OwnExport>& made) {
+  if (made.empty())
+    return "was not registered by this installation (" + own_exports_file().string() +
+           "), so that nothing there is deleted\n  mend: look at it; delete it by hand if it is an export of "
+           "this study";
+  const auto here = std::find_if(made.begin(), made.end(), stands_unchanged);
+  if (here == made.end())
     return "is not as it was written: it was changed, or files were added\n  mend: delete it by hand";
+  if (!anyone_withdrew(database, *here)) {
+    if (one.tackled || here->database == fs::weakly_canonical(database.path())) return "";
+    return "is no longer there: another export stands in its place\n  mend: where it was moved or copied to, "
+           "delete it";
+  }
   mark_tackled(database, one);
-  remove_whole(one.path);
+  remove_whole(*here);
+  forget(made);
   return "";
 }
 
+/// Why it is not deleted; empty: it is gone.
+std::string remove_leftover(Connection& database, const Leftover& one) {
+  if (one.host != this_host() && !one.host.empty()) {
+    return "is on the computer '" + base::shortened(one.host) +
+           "'\n  mend: delete it there, with what was copied from it, or repeat the withdrawal there";
+  }
+  const std::vector<OwnExport> made = own_exports_at(one.path);
+  const bool concerned = concerns(database, made);
+  if (concerned) remove_drafts(made);
+  if (fs::exists(fs::symlink_status(one.path))) {
+    const bool never_placed = one.sha256.empty() && !one.host.empty();
+    return never_placed ? "" : remove_standing(database, one, made);
+  }
+  base::sync_folder_of(one.path);
+  if (concerned) forget(made);
+  const bool was_there = one.host.empty() || !one.sha256.empty();
+  if (one.tackled || !was_there) return "";
+  return "is no longer there\n  mend: where it was moved or copied to, delete it";
+}
+
+/// Only those that this installation made.
 void remove_empty_folders(Connection& database) {
-  std::vector<std::pair<std::int64_t, std::string>> folders;
+  std::vector<std::pair<std::int64_t, fs::path>> folders;
   Statement row(database,
                 "SELECT export_id, path FROM export WHERE kind = ? AND host = ? ORDER BY path DESC");
   for (row.bind_all(export_rows::folder_kind, this_host()); row.step();)
     folders.emplace_back(row.integer(0), row.text(1));
-  for (const auto& [id, path] : folders)
-    if (::rmdir(path.c_str()) == 0 || errno == ENOENT) strike_out(database, id);
+  for (const auto& [id, path] : folders) {
+    std::vector<OwnExport> made = own_exports_at(path);
+    std::erase_if(made, [](const OwnExport& one) { return one.kind != export_rows::folder_kind; });
+    if (made.empty() || (::rmdir(path.c_str()) != 0 && errno != ENOENT)) continue;
+    base::sync_folder_of(path);
+    forget(made);
+    strike_out(database, id);
+  }
 }
 
 }  // namespace
@@ -121,7 +165,7 @@ void delete_exports_of_withdrawn(Connection& database, CleanUp& done) {
     try {
       const bool there = fs::exists(one.path);
       problem = remove_leftover(database, one);
-      if (problem.empty() && there) done.cleaned.push_back(one.path);
+      if (there && !fs::exists(one.path)) done.cleaned.push_back(one.path);
     } catch (const std::exception& error) {
       problem = std::string("cannot be deleted: ") + error.what() + "\n  mend: delete it by hand";
     }
@@ -131,7 +175,8 @@ void delete_exports_of_withdrawn(Connection& database, CleanUp& done) {
       ChorePlan(database).rewrite();
     } else {
       mark_tackled(database, one);
-      done.left.push_back("export " + one.path.string() + " (" + one.kind + ") " + problem);
+      done.left.push_back("export " + base::shortened(one.path.string(), longest_path) + " (" +
+                          base::shortened(one.kind) + ") " + problem);
     }
     transaction.commit();
   }

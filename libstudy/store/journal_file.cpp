@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json_depth.hpp"
@@ -60,13 +61,6 @@ std::uintmax_t size_of(int fd, const fs::path& path) {
     throw base::Error(path.string(), "is not a regular file",
                       "move it away: the journal of answers stands there");
   return static_cast<std::uintmax_t>(status.st_size);
-}
-
-/// What was made or renamed in a folder lasts.
-void sync_folder(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.get() >= 0) ::fsync(opened.get());
 }
 
 std::string whole(const fs::path& path, bool& exists) {
@@ -227,7 +221,7 @@ void JournalFile::open(const std::string& head) {
     fail(path_, "cannot be written", reason);
   }
   size_ = head.size();
-  sync_folder(path_);
+  base::sync_folder_of(path_);
 }
 
 void JournalFile::append(const std::string& text, const std::string& head, bool to_disk) {
@@ -284,7 +278,7 @@ void replace_journal(const fs::path& path, const std::string& text) {
   const bool placed = text.empty() ? ::unlink(path.c_str()) == 0 || errno == ENOENT
                                    : ::rename(next.c_str(), path.c_str()) == 0;
   if (!placed) fail(path, "cannot be replaced", errno);
-  sync_folder(path);
+  base::sync_folder_of(path);
 }
 
 }  // namespace study

@@ -46,6 +46,7 @@ const std::vector<Table> followed{
     {"permission_change", {"permission_change_id"}, true, "s.participant, s.uid AS session", of_session},
     {"event", {"event_id"}, false, "s.participant, s.uid AS session", of_session},
     {"tombstone", {"person"}},
+    {"label", {"kind", "owner"}, false},
 };
 
 Json value_of(const Statement& row, int column) {

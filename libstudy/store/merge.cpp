@@ -11,6 +11,7 @@
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -72,7 +73,8 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   for (const SessionCopy& copy : chosen) {
     if (copy.test_data) ++merge.test_sessions;
     const std::string& name = names.at(copy.person);
-    if (name != copy.code) renamed.insert(copy.code + " of station '" + copy.station + "' is " + name);
+    if (name != copy.code)
+      renamed.insert(copy.code + " of station '" + base::shortened(copy.station) + "' is " + name);
   }
   merge.renamed.assign(renamed.begin(), renamed.end());
   for (const auto& [person, stone] : content.tombstones) merge.withdrawn.push_back(names.at(person));
@@ -80,7 +82,7 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   Statement row(result,
                 "SELECT name || ' ' || version FROM protocol WHERE test_data = 0 GROUP BY name, version "
                 "HAVING count(*) > 1 ORDER BY 1");
-  while (row.step()) merge.namesakes.push_back(row.text(0));
+  while (row.step()) merge.namesakes.push_back(base::shortened(row.text(0)));
   merge.balance = read_balance(result);
   merge.station_troubles = merging::station_troubles(content);
   return merge;

@@ -59,6 +59,10 @@ void write_union(Content& content, const std::vector<SessionCopy>& chosen,
 void add_permissions(Content& content, const std::string& uid, sqlite::Connection& target,
                      std::int64_t session);
 
+/// Gives the union its labels (export_labels.hpp): those of the source that stands at the target's path stay,
+/// then those of the others by when somebody was first planned.
+void add_labels(const Content& content, sqlite::Connection& target);
+
 /// Adds the registered exports of a source and whom they hold; of one path, what was written last counts.
 void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 

@@ -230,6 +230,7 @@ void write_union(Content& content, const std::vector<SessionCopy>& chosen,
   all.add_common_events();
   for (const SessionCopy& copy : chosen) all.add_session(copy);
   drop_unallowed_gaze(target);
+  add_labels(content, target);
   for (const auto& source : content.sources) add_exports(*source, target);
   transaction.commit();
 }

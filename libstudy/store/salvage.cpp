@@ -17,6 +17,7 @@
 #include "libstudy/store/salvage_rows.hpp"
 #include "libstudy/store/schema.hpp"
 #include "libstudy/store/writer_lock.hpp"
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
@@ -202,7 +203,8 @@ void leave_no_log(Connection& made) {
 
 /// A link fails where something stands already.
 void put_in_place(const fs::path& made, const fs::path& into) {
-  if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0) return;
+  if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0)
+    return base::sync_folder_of(into);
   throw base::Error(into.string(), std::string("cannot be put in place: ") + std::strerror(errno),
                     "name a new file for --into, on a disk with room");
 }

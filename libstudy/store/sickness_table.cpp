@@ -89,12 +89,14 @@ std::vector<std::string> summary_row(const SicknessSession& session, const std::
   return row;
 }
 
-/// A line of CSV; what is a number needs no guard.
-std::string csv_line(const SicknessTable& table, const std::vector<std::string>& row) {
-  std::string line;
+/// Fields of CSV; what is a number needs no guard.
+std::vector<std::string> csv_fields(const SicknessTable& table, const std::vector<std::string>& row,
+                                    const CsvDialect& dialect) {
+  std::vector<std::string> fields;
   for (std::size_t i = 0; i < row.size(); ++i)
-    line += (i > 0 ? "," : "") + (table.columns[i].type == "TEXT" ? csv_field(row[i]) : row[i]);
-  return line + "\r\n";
+    fields.push_back(table.columns[i].type == "TEXT" ? csv_field(row[i], dialect)
+                                                     : csv_number(row[i], dialect));
+  return fields;
 }
 
 }  // namespace
@@ -142,10 +144,11 @@ std::vector<SicknessTable> sickness_tables(std::span<const SicknessSession> sess
 
 std::int64_t write_sickness(const SicknessTable& table, const ExportDraft& draft, const std::string& name) {
   ExportFile file(draft, name);
-  std::string line;
-  for (const SicknessColumn& column : table.columns) line += (line.empty() ? "" : ",") + column.name;
-  file.write(line + "\r\n");
-  for (const auto& row : table.rows) file.write(csv_line(table, row));
+  std::vector<std::string> names;
+  for (const SicknessColumn& column : table.columns) names.push_back(column.name);
+  file.write(csv_head(names, draft.dialect()));
+  for (const auto& row : table.rows)
+    file.write(csv_line(csv_fields(table, row, draft.dialect()), draft.dialect()));
   file.finish();
   return static_cast<std::int64_t>(table.rows.size());
 }

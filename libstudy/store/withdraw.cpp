@@ -72,6 +72,7 @@ Withdrawal withdraw(Connection& database, const std::string& participant) {
   database.execute("PRAGMA temp_store = MEMORY");
   const auto person = person_of(database, participant);
   if (!person) {
+    { const AnswerJournal compared(database); }
     clean_up(database);  // of others
     throw base::Error(database.path().string(), "knows no participant " + participant,
                       "vip-study status lists the codes");

@@ -2,6 +2,8 @@
 #include <regex>
 #include <set>
 
+#include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/participant_codes.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -163,6 +165,7 @@ std::int64_t Store::add_run(const RunPlan& run) {
                                   .run();
   for (const SessionPlan& plan : run.sessions)
     add_session(run_id, protocol_id, run.protocol, plan, not_before_utc);
+  give_labels(*database_);
   commit(transaction);
   keep_file();
   return run_id;
@@ -208,16 +211,7 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
         (open ? "continue with vip-study resume --db " + path_.string() + ", or give" : std::string("give")) +
             " other codes or another --visit");
   }
-  Statement alike(*database_,
-                  "SELECT participant FROM (SELECT participant FROM session UNION SELECT participant FROM "
-                  "tombstone) WHERE lower(participant) = lower(?1) AND participant <> ?1 AND NOT EXISTS "
-                  "(SELECT 1 FROM session WHERE participant = ?1)");
-  if (alike.bind_all(plan.participant).step()) {
-    throw base::Error(path_.string(),
-                      "participant " + plan.participant + " differs from " + alike.text(0) +
-                          " in upper and lower case alone, and people take them for one",
-                      "write " + alike.text(0) + " if that is who it is, or give another code");
-  }
+  check_new_code(*database_, plan.participant);
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",

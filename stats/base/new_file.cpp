@@ -11,6 +11,7 @@
 #include <cstring>
 #include <utility>
 
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 
 namespace base {
@@ -23,25 +24,17 @@ constexpr const char* mend = "free space, or write to a folder that you may writ
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-/// A rename is sure to stand after a power cut only once the folder was synced. File systems that cannot do
-/// that have nothing to be told, and the file is in place.
-void sync_folder_of(const fs::path& path) {
-  const fs::path folder = folder_of(path);
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  ::fsync(fd);
-  ::close(fd);
-}
-
 }  // namespace
 
-fs::path draft_name(const fs::path& path) {
+std::string random_digits() {
   std::array<unsigned char, 8> random{};
   randombytes_buf(random.data(), random.size());
   std::array<char, 2 * random.size() + 1> text{};
   sodium_bin2hex(text.data(), text.size(), random.data(), random.size());
-  return path.string() + ".tmp" + text.data();
+  return text.data();
 }
+
+fs::path draft_name(const fs::path& path) { return path.string() + ".tmp" + random_digits(); }
 
 bool is_draft_name(const std::string& name, const std::string& target) {
   const std::string start = target + ".tmp";
@@ -144,10 +137,13 @@ void NewFile::put_in_place() {
   const int closing = fd_;
   fd_ = -1;
   if (::close(closing) != 0) fail("cannot be written");
-  if (::rename(draft_.c_str(), path_.c_str()) != 0) fail("cannot be put in place");
+  if (!rename_durably(draft_, path_)) fail("cannot be put in place");
   draft_.clear();
-  made_.clear();
-  sync_folder_of(path_);
+  // A folder that was made for it stands in a folder itself.
+  for (fs::path folder = folder_of(path_); !made_.empty(); folder = folder_of(folder)) {
+    sync_folder_of(folder);
+    if (folder == made_) made_.clear();
+  }
 }
 
 void NewFile::fail(const std::string& step) const {

@@ -10,6 +10,9 @@ namespace base {
 /// Who may read a file: its owner alone (0600), or whoever the umask lets.
 enum class Readers { Owner, AsUmask };
 
+/// 16 random hexadecimal digits, not to be guessed.
+std::string random_digits();
+
 /// `path` + ".tmp" + 16 random hexadecimal digits: beside `path`, and not to be guessed by others who may
 /// write there.
 std::filesystem::path draft_name(const std::filesystem::path& path);
@@ -44,8 +47,11 @@ class NewFile {
 
   void write(std::string_view bytes);
 
-  /// Syncs the file, renames it over `path` and syncs the folder. The rights are 0600 for Readers::Owner,
-  /// else those of the file that stood there, else what the umask leaves.
+  /// Where it stands until it is put in place.
+  const std::filesystem::path& draft() const { return draft_; }
+
+  /// Syncs the file, renames it over `path` and syncs the folder, and those above it that were made. The
+  /// rights are 0600 for Readers::Owner, else those of the file that stood there, else what the umask leaves.
   void put_in_place();
 
  private:

@@ -13,6 +13,7 @@
 #include "libstudy/store/personal.hpp"
 #include "stats/base/new_file.hpp"
 #include "tests/apps/study_test_support.hpp"
+#include "tests/common/killed.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 #include "tests/libstudy/version_1.hpp"
 
@@ -193,23 +194,21 @@ void write_station(const fs::path& path) {
 
 /// An export and a report, both killed before they are in place.
 void leave_drafts(const fs::path& database, const fs::path& folder) {
-  const pid_t child = ::fork();
-  if (child == 0) {
+  ::test::killed([&] {
     Connection reader(database, Open::Read);
     const auto people = study::everybody(reader);
-    const study::ExportDraft draft({database, "csv", people, study::Readers::Owner}, folder / "killed",
-                                   [](const fs::path&) { return false; });
+    const study::ExportKind kind{"csv", [](const fs::path&) { return false; },
+                                 [](const std::string&) { return false; }};
+    const study::ExportDraft draft({database, kind, people, study::Readers::Owner}, folder / "killed");
     study::ExportFile file(draft, "sessions.csv");
     file.write(leaver);
     file.finish();
-    const study::RegisteredExport record(database, "vip-stats report", folder / "killed.html", people);
     base::NewFile page(folder / "killed.html", base::Readers::Owner);
+    const study::RegisteredExport record(database, "vip-stats report", folder / "killed.html", people,
+                                         page.draft());
     page.write(leaver);
-    ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status));
+    ::test::kill_here();
+  });
 }
 
 void write_everything_out(const fs::path& database, const fs::path& folder) {

@@ -34,7 +34,8 @@ Lines lines_of(const std::string& out, const std::string& word) {
 Arguments with_faults(const Arguments& command, const fs::path& folder, const Fault& fault,
                       const fs::path& count) {
   Arguments all{"/usr/bin/env", "OMP_WAIT_POLICY=passive", "OMP_NUM_THREADS=1",
-                "VIP_CACHE_DIR=" + (folder / "cache").string()};
+                "VIP_CACHE_DIR=" + (folder / "cache").string(),
+                "VIP_STATE_DIR=" + (folder / "state").string()};
   if (fault.kind != Kind::Instant && fault.kind != Kind::SmallDisk) {
     all.push_back("LD_PRELOAD=" + (program_folder() / "libfail_calls.so").string());
     all.push_back("ASAN_OPTIONS=verify_asan_link_order=0");

@@ -29,7 +29,7 @@ constexpr const char* secret = "my own words";
 fs::path make_study(const test::TemporaryFolder& folder) {
   const fs::path path = folder / "study.db";
   Store store(path, sqlite::Open::Create);
-  RunPlan run = test::run_plan(test::pairs(), {"P-01", "P_01"});
+  RunPlan run = test::run_plan(test::pairs(), {"P-01", "Q_01"});
   run.sessions[0].refresh_hz = 90;
   store.add_run(run);
   const auto sessions = store.open_runs().at(0).sessions;
@@ -42,6 +42,9 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   store.answer(session.id, pair, attempt, kept, true, 1);
   const KeptAnswer words{"remarks", {test::words(secret), 1}};
   store.answer(session.id, session.units.back(), 0, {&words, 1}, true, 1);
+  // As a version planned them that took such codes.
+  sqlite::Connection(path, sqlite::Open::Write)
+      .execute("UPDATE session SET participant = 'P_01' WHERE participant = 'Q_01'; DELETE FROM label");
   return path;
 }
 
@@ -82,8 +85,8 @@ TEST(ExportBids, FilesAndTheirNamesAreThoseOfTheStandard) {
   const test::TemporaryFolder folder;
   export_bids(make_study(folder), folder / "bids");
   EXPECT_THAT(files_below(folder / "bids"),
-              ElementsAre("README.md", "dataset_description.json", "participants.json", "participants.tsv",
-                          "phenotype/about.json", "phenotype/about.tsv",
+              ElementsAre("README.md", "code/export.sha256", "dataset_description.json", "participants.json",
+                          "participants.tsv", "phenotype/about.json", "phenotype/about.tsv",
                           "sub-P01/ses-pairsv1/beh/sub-P01_ses-pairsv1_task-pairs_events.json",
                           "sub-P01/ses-pairsv1/beh/sub-P01_ses-pairsv1_task-pairs_events.tsv",
                           "sub-P01/sub-P01_sessions.json", "sub-P01/sub-P01_sessions.tsv",

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_bids.hpp"
@@ -15,6 +16,7 @@
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
+#include "tests/common/killed.hpp"
 #include "tests/libstudy/fault_vfs.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -87,16 +89,31 @@ TEST_F(Exports, OfOnePathAreOne) {
 
 // A kill leaves the draft, a row that was written before it, and no target.
 TEST_F(Exports, DraftsOfAKilledExportGoToo) {
-  const fs::path draft = csv.string() + ".tmp4711", old = csv.string() + ".tmp4711.old";
-  export_csv(path, csv);
-  for (const fs::path& left : {draft, old}) fs::copy(csv, left, fs::copy_options::recursive);
-  fs::create_directory(csv.string() + ".tmp_mine");
-  base::write_file_atomically(folder / "report.json.tmp0123456789abcdef", "P01");
-  RegisteredFiles(path).write("vip-stats report", folder / "report.json", "{}");
+  const auto people = everybody(*open_database(path, Open::Read, read_schema_steps()));
+  fs::path draft, page;
+  ::test::killed([&] {
+    const RegisteredExport record(path, "csv", csv, people);
+    fs::create_directory(record.draft());
+    base::write_file_atomically(record.draft() / "sessions.csv", "P01");
+    base::NewFile file(folder / "report.json", base::Readers::Owner);
+    const RegisteredExport report(path, "vip-stats report", folder / "report.json", people, file.draft());
+    file.write("P01");
+    base::write_file_atomically(folder / "drafts", record.draft().string() + '\n' + file.draft().string());
+    ::test::kill_here();
+  });
+  std::istringstream drafts(test::bytes_of(folder / "drafts"));
+  for (fs::path* one : {&draft, &page}) {
+    std::string line;
+    std::getline(drafts, line);
+    *one = line;
+  }
+  ASSERT_TRUE(fs::exists(draft) && fs::exists(page));
+  for (const char* theirs : {"csv.tmp_mine", "csv.tmp0123456789abcdef", "report.json.tmp4711"})
+    fs::create_directory(folder / theirs);
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
-  for (const fs::path& gone : {csv, draft, old, folder / "report.json.tmp0123456789abcdef"})
-    EXPECT_FALSE(fs::exists(gone)) << gone;
-  EXPECT_TRUE(fs::exists(csv.string() + ".tmp_mine"));
+  for (const fs::path& gone : {csv, draft, page}) EXPECT_FALSE(fs::exists(gone)) << gone;
+  for (const char* theirs : {"csv.tmp_mine", "csv.tmp0123456789abcdef", "report.json.tmp4711"})
+    EXPECT_TRUE(fs::exists(folder / theirs)) << theirs;
 }
 
 TEST_F(Exports, AnExportThatNeverCameToItsPlaceIsNotAskedFor) {
@@ -152,10 +169,11 @@ TEST_F(Exports, ADeletionThatWasCutIsFinished) {
     add(code);
     export_csv(path, csv);
     change("UPDATE export SET tackled = 1");
-    if (step > 0) fs::rename(csv, draft_of(csv));
-    if (step > 1) fs::remove(draft_of(csv) / "sessions.csv");
+    const fs::path draft = own_exports_at(csv).at(0).draft;
+    if (step > 0) fs::rename(csv, draft);
+    if (step > 1) fs::remove(draft / "sessions.csv");
     EXPECT_THAT(withdraw(path, code).beside.left, IsEmpty()) << step;
-    EXPECT_FALSE(fs::exists(csv) || fs::exists(draft_of(csv))) << step;
+    EXPECT_FALSE(fs::exists(csv) || fs::exists(draft)) << step;
     EXPECT_EQ(count("export"), 0);
   }
 }
@@ -253,7 +271,7 @@ TEST_F(Exports, ThatFailWriteNothingIntoTheRegister) {
   EXPECT_EQ(count("export"), 0);
 }
 
-TEST_F(Exports, OfEarlierVersionsAreNamed) {
+TEST_F(Exports, OfEarlierVersionsAreNamedUntilTheyAreGone) {
   change(
       "DELETE FROM export_person; DELETE FROM export;"
       "INSERT INTO export VALUES (1, 'unknown', '" +
@@ -261,7 +279,8 @@ TEST_F(Exports, OfEarlierVersionsAreNamed) {
       "', '', '', 't', 0);"
       "INSERT INTO export_person SELECT 1, person FROM session");
   fs::create_directory(csv);
-  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr(csv.string())));
+  for (int times = 0; times < 2; ++times)
+    EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr(csv.string())));
 }
 
 }  // namespace

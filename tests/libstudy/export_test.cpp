@@ -72,7 +72,7 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
     }
     EXPECT_FALSE(info.step()) << table.text(0);
   }
-  EXPECT_EQ(tables, 25);
+  EXPECT_EQ(tables, 26);
 }
 
 TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {
@@ -165,6 +165,29 @@ TEST(ExportCsv, QuotesWhatNeedsIt) {
   EXPECT_THAT(test::bytes_of(folder / "out" / "questions.csv"), HasSubstr(",\"Happy, \"\"or\"\" not?\","));
 }
 
+// As LibreOffice and Excel read a file at a double click where numbers are written 0,5.
+TEST(ExportCsv, ForSpreadsheetsHasTheLocalesMarks) {
+  const test::TemporaryFolder folder;
+  const fs::path database = make_study(folder);
+  export_csv(database, folder / "out", {.words = true, .gaze = false, .dialect = {';', ',', true}});
+  for (const auto& entry : fs::directory_iterator(folder / "out")) {
+    if (entry.path().extension() != ".csv") continue;
+    EXPECT_THAT(test::bytes_of(entry.path()), ::testing::StartsWith("\xEF\xBB\xBF")) << entry.path();
+  }
+  EXPECT_THAT(
+      test::bytes_of(folder / "out" / "responses.csv"),
+      ::testing::StartsWith("\xEF\xBB\xBFresponse_id;unit_id;attempt;question_id;score;response_time_s;"
+                            "answered_utc;input;counts;why_not\r\n1;3;1;2;6;0,5;2"));
+  EXPECT_THAT(
+      test::bytes_of(folder / "out" / "dictionary.csv"),
+      HasSubstr("(all);(all);TEXT;\"written for spreadsheets (--excel): UTF-8 behind a byte-order mark, "
+                "';' between fields, ',' as the decimal mark. R reads it by read.csv2("));
+  EXPECT_EQ(csv_field("a;b", {';', ',', true}), "\"a;b\"");
+  EXPECT_EQ(csv_field("a,b", {';', ',', true}), "a,b");
+  export_csv(database, folder / "out");  // an earlier export all the same
+  EXPECT_THAT(test::bytes_of(folder / "out" / "dictionary.csv"), ::testing::StartsWith("file,column,"));
+}
+
 TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
@@ -180,6 +203,8 @@ TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
     EXPECT_THAT([&] { export_csv(database, folder / target); },
                 ThrowsMessage<base::Error>(HasSubstr("is not an earlier export")));
   }
+  EXPECT_THAT([&] { export_csv(database, folder / "mixed"); },
+              ThrowsMessage<base::Error>(HasSubstr("alone: 'notes.txt' was added")));
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder.path()), {}), files);
   EXPECT_EQ(test::bytes_of(folder / "namesake" / "dictionary.csv"), "other words");
   fs::create_directory(folder / "empty");

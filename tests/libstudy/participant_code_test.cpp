@@ -26,44 +26,62 @@ TEST(ParticipantCode, AreCodesNotNames) {
   }
 }
 
-TEST(ParticipantCode, DiffersFromOthersInMoreThanCase) {
+TEST(ParticipantCode, DiffersFromOthersInMoreThanCasePunctuationAndZeros) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);
-  store.add_run(test::run_plan(test::pilot(), {"P01", "q1"}));
-  for (const char* alike : {"p01", "Q1"}) {
+  store.add_run(test::run_plan(test::pilot(), {"P01", "q1", "007", "X-10"}));
+  for (const char* alike : {"p01", "Q1", "P-01", "P_0-1", "P1", "P001", "Q01", "7", "07", "x10", "X010"}) {
     EXPECT_THAT(
         [&] {
           store.add_run(test::run_plan(test::pilot(), {"P02", alike}));
         },
-        ThrowsMessage<base::Error>(AllOf(HasSubstr("in upper and lower case alone"), HasSubstr("mend: "))));
+        ThrowsMessage<base::Error>(
+            AllOf(HasSubstr("in case, punctuation or leading zeros alone"), HasSubstr("mend: "))))
+        << alike;
   }
   EXPECT_THAT(
       [&] {
         store.add_run(test::run_plan(test::pilot(), {"R1", "r1"}));
       },
-      ThrowsMessage<base::Error>(HasSubstr("in upper and lower case alone")));
-  EXPECT_EQ(store.open_runs().at(0).sessions.size(), 2u) << "nothing of a refused run is kept";
+      ThrowsMessage<base::Error>(HasSubstr("in case, punctuation or leading zeros alone")));
+  EXPECT_EQ(store.open_runs().at(0).sessions.size(), 4u) << "nothing of a refused run is kept";
+  store.add_run(test::run_plan(test::pilot(), {"P10", "P02", "q11", "70", "X-100", "XP01"}));
+}
+
+TEST(ParticipantCode, ReadsAsNoMissingValueInOtherPrograms) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  for (const char* missing : {"NA", "n-a", "N_A", "nan", "NaN", "null", "NULL", "none", "None", "nil"}) {
+    EXPECT_THAT(
+        [&] { store.add_run(test::run_plan(test::pilot(), {missing})); },
+        ThrowsMessage<base::Error>(AllOf(HasSubstr("a missing value"), HasSubstr("mend: give another"))))
+        << missing;
+  }
+  store.add_run(test::run_plan(test::pilot(), {"NA1", "Nina"}));
 }
 
 TEST(ParticipantCode, OldPairsAndOptionsStillGoOn) {
   const test::TemporaryFolder folder;
   {
     Store store(folder / "study.db", Open::Create);
-    store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03"}));
+    store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03", "P04"}));
   }
   sqlite::Connection(folder / "study.db", Open::Write)
       .execute(
           "UPDATE session SET participant = 'p01' WHERE participant = 'P02';"
+          "UPDATE session SET participant = 'NA' WHERE participant = 'P04';"
           "UPDATE session SET participant = '-rf' WHERE participant = 'P03'");
   Store store(folder / "study.db", Open::Write);
   const auto runs = store.open_runs();
-  ASSERT_EQ(runs.at(0).sessions.size(), 3u);
+  ASSERT_EQ(runs.at(0).sessions.size(), 4u);
   for (const OpenSession& session : runs.at(0).sessions) test::finish_pilot(store, session, 5);
   EXPECT_TRUE(store.open_runs().empty());
   // A second visit of one who was there before is no newcomer.
-  RunPlan again = test::run_plan(test::pilot(), {"p01"});
-  again.sessions.at(0).visit = 2;
-  store.add_run(again);
+  for (const char* code : {"p01", "NA"}) {
+    RunPlan again = test::run_plan(test::pilot(), {code});
+    again.sessions.at(0).visit = 2;
+    store.add_run(again);
+  }
 }
 }  // namespace
 }  // namespace study

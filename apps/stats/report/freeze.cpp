@@ -1,6 +1,10 @@
+#include <cerrno>
+#include <cstring>
+
 #include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
@@ -85,9 +89,9 @@ class Draft {
 
   const fs::path& path() const { return path_; }
   void keep() {
-    std::error_code failed;
-    fs::rename(path_, out_, failed);
-    if (failed) throw base::Error(out_.string(), failed.message(), "choose a folder that is not there yet");
+    base::sync_folders(path_);
+    if (!base::rename_durably(path_, out_))
+      throw base::Error(out_.string(), std::strerror(errno), "choose a folder that is not there yet");
   }
 
  private:

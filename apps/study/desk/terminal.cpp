@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "apps/common/streams.hpp"
 #include "apps/study/desk/console_text.hpp"
 
 namespace apps {
@@ -66,7 +67,8 @@ void ConsoleTerminal::read_keys() {
 }
 
 void ConsoleTerminal::write_lines() {
-  const auto lines = console_.take_lines();
+  auto lines = console_.take_lines();
+  for (std::string& line : lines) line = for_terminal(line);
   if (terminal_out_) {
     said_.insert(said_.end(), lines.begin(), lines.end());
     return draw();
@@ -94,6 +96,7 @@ void ConsoleTerminal::draw() {
   ConsoleView view = console_.view(now_ns);
   view.said = said_;
   auto lines = render_console(view, columns_, rows_);
+  for (std::string& line : lines) line = for_terminal(line);  // words of people and protocols
   drawn_.resize(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i] != drawn_[i]) out += "\033[" + std::to_string(i + 1) + ";1H" + lines[i] + "\033[K";

@@ -60,3 +60,12 @@ CREATE VIEW permission AS
           WHERE c.session_id = s.session_id AND c.what = w.what AND c.answers >= a.answers)) AS page,
       EXISTS (SELECT 1 FROM permission_change c WHERE c.session_id = s.session_id AND c.what = w.what) AS changed
     FROM session s CROSS JOIN (SELECT 'gaze' AS what UNION ALL SELECT 'sharing') w);
+
+-- Names of people and protocols in public exports, given once: a label never goes over to somebody else, also not after a withdrawal.
+CREATE TABLE label (
+  kind TEXT NOT NULL CHECK (kind IN ('person', 'protocol')), -- what it names
+  owner TEXT NOT NULL, -- person: as in session; protocol: its sha256
+  label TEXT NOT NULL COLLATE NOCASE, -- letters and digits alone, as BIDS and Psych-DS ask, in files "sub-<label>"
+  PRIMARY KEY (kind, owner),
+  UNIQUE (kind, label)
+) STRICT;
