@@ -16,7 +16,8 @@ void HistoryRun::merge(const Step& step) {
   bool restored = false;
   told_ += "merge of";
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (i == station_ || !(step.choice >> i & 1) || !stations_.has_database(i)) continue;
+    const bool empty = stations_[i].people.empty() && stations_[i].withdrawn.empty();
+    if (i == station_ || !(step.choice >> i & 1) || empty) continue;
     from.push_back(i);
     sources.push_back(stations_.database_of(i));
     restored = restored || stations_[i].restored;
