@@ -91,6 +91,8 @@ std::int64_t settle(Connection& database, JournalFile& file) {
   Comparison found = compare(database, content.kept);
   const bool upgraded = content.schema > 0 && content.schema < schema_of(database);
   if (found.lost > 0 || (found.different > 0 && !upgraded)) throw_ahead(database.path(), found);
+  // A power cut kept a part of what was not yet brought to the disk, so that no commit had begun.
+  if (content.torn) content.pending.clear();
   if (!content.pending.empty()) {
     roll_forward(database, content.pending);
     for (auto& [key, row] : content.pending) content.kept.insert_or_assign(key, std::move(row));
