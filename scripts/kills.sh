@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
 # Kills and full disks in every command that keeps data, and first starts beside each other; after each a check that nothing
-# is lost, doubled, changed or refused. Builds what it needs and ends with counts; exit status 1 when anything was lost.
-# Usage: scripts/kills.sh [KILLS [SEED]]      default 1000 kills; JOBS=n workers side by side, default one for each processor
+# is lost, doubled, changed or refused. Then power cuts in the commands that obey what people decided, under both models of a
+# file system, and random histories of three stations. Builds what it needs and ends with counts; exit status 1 when anything
+# is wrong.
+# Usage: scripts/kills.sh [KILLS [SEED [HISTORIES]]]      default 1000 kills, seed 1, 1000 histories
+#        JOBS=n workers side by side, default one for each processor
 set -euo pipefail
 cd "$(dirname "$0")/.."
-kills=${1:-1000} seed=${2:-1} jobs=${JOBS:-$(nproc)}
+kills=${1:-1000} seed=${2:-1} histories=${3:-1000} jobs=${JOBS:-$(nproc)}
 faults=build/dev/bin/vip-faults
 if [ -z "${VIP_FAULTS:-}" ]; then
   [ -f build/dev/build.ninja ] || cmake --preset dev -DVIP_CUDA=OFF >/dev/null
@@ -15,4 +18,8 @@ fi
 failed=0
 "$faults" kills "$kills" --seed "$seed" --jobs "$jobs" || failed=1
 "$faults" starts 300 --jobs "$jobs" || failed=1
+cuts() { "$faults" crashes --kills "$1" --seed "$seed" --jobs "$jobs" "${@:2}" || failed=1; }
+cuts 500 --command 'consent no' --command 'consent yes'
+cuts 300 --command withdraw --command merge --command 'export --csv' --command 'export --bids' --command 'export --psych-ds'
+"$faults" histories "$histories" --seed "$seed" --jobs "$jobs" || failed=1
 exit $failed

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "apps/common/streams.hpp"
 #include "apps/study/desk/database_place.hpp"
 #include "apps/study/desk/preflight.hpp"
 #include "apps/study/desk/progress.hpp"

@@ -115,6 +115,7 @@ class Reader {
       // What was ready before and is followed by more, without having been kept, failed to be committed.
       content.last_number = std::max(content.last_number, ready->get<std::int64_t>());
       waiting_ = ready->get<std::int64_t>();
+      content.torn = skipped_ > 0;
       content.pending.clear();
       take_batch(content.pending);
       return true;

@@ -19,10 +19,11 @@ using JournalRows = std::map<std::pair<const journal::Table*, std::string>, jour
 /// A journal as read.
 struct JournalContent {
   bool exists = false;
-  std::int64_t schema = 0;             ///< of the database that it was written beside
-  JournalRows kept;                    ///< each row as it was last kept
-  JournalRows pending;                 ///< ready, but not known to be kept
-  bool rewriting = false;              ///< the last that it says: it is about to be written anew
+  std::int64_t schema = 0;  ///< of the database that it was written beside
+  JournalRows kept;         ///< each row as it was last kept
+  JournalRows pending;      ///< ready, but not known to be kept
+  bool torn = false;        ///< a line among the pending ones cannot be read: they never were whole
+  bool rewriting = false;   ///< the last that it says: it is about to be written anew
   std::vector<std::string> forgotten;  ///< persons that withdrew while it was
   std::int64_t last_number = 0;        ///< largest n of "ready"
   std::uintmax_t end = 0;              ///< bytes up to the last line that counts

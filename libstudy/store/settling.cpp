@@ -114,7 +114,8 @@ std::string words_of(const Comparison& found) {
 }
 
 std::set<std::string> finish_what_was_begun(Connection& database, const JournalContent& content) {
-  if (!content.rewriting) take_over(database, content.pending);
+  // A power cut kept a part of a torn batch, which was not yet brought to the disk: no commit had begun.
+  if (!content.rewriting && !content.torn) take_over(database, content.pending);
   if (content.rewriting) finish_withdrawals(database, content.forgotten);
   return delete_refused_gaze(database);
 }
@@ -123,6 +124,7 @@ namespace {
 
 Settled bring_together(Connection& database, JournalFile& file) {
   JournalContent content = read_journal(file.path());
+  if (content.torn) content.pending.clear();
   const bool anew = !content.exists || content.rewriting;
   Comparison found;
   if (!anew) {

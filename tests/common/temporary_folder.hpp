@@ -2,6 +2,7 @@
 /// A folder for the files of one test.
 
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>

@@ -1,5 +1,6 @@
-/// vip-faults: kills and failing calls in every command that keeps data, with a check after each that nothing
-/// is lost, doubled, changed or refused. Exit status 1 when something is.
+/// vip-faults: kills, failing calls and power cuts in every command that keeps data, with a check after each
+/// that nothing is lost, doubled, changed or refused, and that what people decided is obeyed. Exit status 1
+/// when something is wrong.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -10,6 +11,8 @@
 #include <thread>
 
 #include "tests/common/temporary_folder.hpp"
+#include "tests/faults/crashes.hpp"
+#include "tests/faults/history.hpp"
 #include "tests/faults/starts.hpp"
 #include "tests/faults/tries.hpp"
 
@@ -183,10 +186,34 @@ void try_together(const Options& options, const fs::path& folder, Table& table) 
       starts.load(), refused.load(), looks.load());
 }
 
+/// Power cuts in single commands, and histories of many: these call the library in children of their workers.
+void add_library_commands(CLI::App& app, std::function<long()>& run) {
+  auto crashes = std::make_shared<CrashOptions>();
+  CLI::App& cuts = *app.add_subcommand("crashes", "What a power cut may leave of each command, call by call");
+  cuts.add_option("--command", crashes->commands, "This command only; may be repeated");
+  cuts.add_option("--every", crashes->every, "Cut after every so-manieth call only")
+      ->check(CLI::PositiveNumber);
+  cuts.add_option("--states", crashes->seeds, "States by chance after each call, under each model");
+  cuts.add_option("--kills", crashes->kills, "So many kills at random calls instead, each under both models");
+  cuts.add_option("--seed", crashes->seed, "Of the random numbers");
+  cuts.add_option("--jobs", crashes->jobs, "Workers side by side")->check(CLI::Range(1, 256));
+  cuts.callback([&run, crashes] { run = [crashes] { return try_crashes(*crashes); }; });
+  auto histories = std::make_shared<HistoryOptions>();
+  CLI::App& many =
+      *app.add_subcommand("histories", "Random histories of three stations, with faults in between");
+  many.add_option("count", histories->count, "Of histories");
+  many.add_option("--seed", histories->seed, "Of the random numbers");
+  many.add_option("--history", histories->only, "This one alone, counted from 0");
+  many.add_option("--jobs", histories->jobs, "Workers side by side")->check(CLI::Range(1, 256));
+  many.callback([&run, histories] { run = [histories] { return try_histories(*histories); }; });
+}
+
 int main(int argc, char** argv) {
   ::setenv("OMP_WAIT_POLICY", "passive", 1);
-  CLI::App app("Kills and failing calls in every command that keeps data.");
+  CLI::App app("Faults in every command that keeps data.");
   app.require_subcommand(1);
+  std::function<long()> in_library;
+  add_library_commands(app, in_library);
   Options options;
   std::function<void(const Options&, const fs::path&, Table&)> work;
   const auto command = [&](const char* name, const char* says, auto function) {
@@ -207,6 +234,7 @@ int main(int argc, char** argv) {
   for (CLI::App* sub : {each, killed})
     sub->add_option("--flow", options.flows, "This command only; may be repeated");
   CLI11_PARSE(app, argc, argv);
+  if (in_library) return in_library() == 0 ? 0 : 1;
   const ::test::TemporaryFolder folder(::test::memory_folder());
   Table table;
   work(options, folder.path(), table);

@@ -218,6 +218,21 @@ TEST(AnswerJournal, IsHealedWhereverItsLastLinesAreTorn) {
   EXPECT_EQ(test::lines_of(path), truth);
 }
 
+// A power cut may keep later sectors of what was not yet brought to the disk, and lose earlier ones.
+TEST(AnswerJournal, LastRowsOfWhichALineIsLostAreNotTakenOver) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder), file = journal_beside(path);
+  const auto truth = test::lines_of(path);
+  const std::string row =
+      R"({"table":"event","event_id":9999,"session_id":1,"presentation_id":9999,"utc":"now",)"
+      R"("clock_ns":1,"kind":"trial shown","detail":""})";
+  base::write_file_atomically(file, test::bytes_of(file) + std::string(40, '\0') + '\n' + row + '\n' +
+                                        ready_line(read_journal(file).last_number + 1));
+  Store(path, Open::Write);
+  EXPECT_EQ(test::kept_lines(path), truth);
+  EXPECT_EQ(test::lines_of(path), truth);
+}
+
 TEST(AnswerJournal, IsMadeForADatabaseThatHasNone) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);

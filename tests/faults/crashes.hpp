@@ -1,0 +1,82 @@
+#pragma once
+/// The states that a kill or a power cut may leave of a command: each is made, looked at, and gone on from in
+/// two ways, by another command and by the same one. The invariants must hold throughout, and in the end all
+/// must be as without the fault.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "tests/faults/child.hpp"
+#include "tests/faults/commands.hpp"
+#include "tests/faults/crash_states.hpp"
+#include "tests/faults/invariants.hpp"
+
+namespace faults {
+
+/// What is tried.
+struct CrashTry {
+  std::size_t count = 0;  ///< calls that were made
+  Model model = Model::Ext4;
+  Kept kept = Kept::Least;
+  unsigned seed = 0;
+  std::string text() const;
+};
+
+class Crashes {
+ public:
+  /// Prepares the command in `folder`, which is this object's alone, and records its calls.
+  Crashes(const Command& command, const fs::path& folder);
+
+  /// What is wrong without any fault.
+  const Problems& at_first() const { return at_first_; }
+  /// Calls that the command makes, and words between them.
+  std::size_t calls() const { return recorded_.calls.size(); }
+  /// What was done last before a try, for messages.
+  std::string last_call(const CrashTry& one) const;
+  /// Makes the state. False where an earlier one was the same.
+  bool make(const CrashTry& one);
+  /// Goes on from the state that was made last.
+  Problems go_on();
+
+ private:
+  using Gone = std::map<std::string, std::vector<Person>>;
+  Ended run(const std::function<void(const fs::path&)>& work);
+  struct When {
+    std::string name;
+    bool exports = true;  ///< may be made now
+    bool settled = true;  ///< as in check_acknowledged()
+  };
+  void check(const When& when, const Gone& gone, Problems& problems);
+  std::vector<std::string> described(Problems& problems);
+  void try_again(Problems& problems);
+
+  const Command& command_;
+  fs::path now_, peek_;
+  CallLog log_;
+  Tree before_, state_;
+  Ended recorded_;
+  Problems at_first_;
+  std::vector<std::string> wanted_;
+  std::set<std::pair<std::string, int>> acknowledged_before_, acknowledged_;
+  std::unordered_set<std::size_t> seen_;
+};
+
+/// "done <key> <position>" of small_study.hpp.
+void take_acknowledged(const std::vector<Call>& calls, std::size_t count,
+                       std::set<std::pair<std::string, int>>& all);
+
+struct CrashOptions {
+  std::vector<std::string> commands;  ///< empty: all
+  int jobs = 1;
+  long every = 1;  ///< of the calls, so many-th
+  int seeds = 2;   ///< states by chance for each call and model
+  long kills = 0;  ///< 0: every call; else so many, each with one state of each model
+  unsigned seed = 1;
+};
+/// Prints a table, and what failed; returns the number of failures.
+long try_crashes(const CrashOptions& options);
+
+}  // namespace faults

@@ -1,0 +1,53 @@
+#pragma once
+/// One history as it goes on.
+
+#include <string>
+#include <vector>
+
+#include "tests/faults/crash_states.hpp"
+#include "tests/faults/history.hpp"
+#include "tests/faults/history_stations.hpp"
+
+namespace faults {
+
+/// Goes through a history step by step.
+class HistoryRun {
+ public:
+  explicit HistoryRun(const fs::path& folder) : stations_(folder) {}
+
+  Problems take(const Step& step, std::string& told);
+  bool is_over() const { return over_; }
+
+ private:
+  using Work = std::function<void()>;
+
+  /// With the fault; where that stopped it, the station is opened again, and the command is given again where
+  /// `always` or the step says so. True: it is done.
+  bool command(const Step& step, bool always, const Work& work);
+  void session(const Step& step);
+  void consent(const Step& step);
+  void withdraw(const Step& step);
+  void merge(const Step& step);
+  void merge_again(const Step& step, const Tree& before, std::vector<fs::path> sources);
+  void write_export(const Step& step);
+  void back_up();
+  void restore(const Step& step);
+  void salvage(const Step& step);
+
+  void learn();
+  std::string free_code(const std::string& start);
+  void wrong(const std::string& problem) { problems_.push_back(problem); }
+  Station& here() { return stations_[station_]; }
+  fs::path database() const { return stations_.database_of(station_); }
+  /// Somebody whom the station knows; none: empty.
+  std::string somebody(const Step& step);
+  DatabaseFacts facts() { return stations_.facts_of(station_, problems_); }
+
+  Stations stations_;
+  std::size_t station_ = 0;
+  Problems problems_;
+  std::string told_;
+  bool over_ = false;
+};
+
+}  // namespace faults

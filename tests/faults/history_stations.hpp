@@ -1,0 +1,69 @@
+#pragma once
+/// The stations of a history: their folders, their clocks, and what each of them is to know.
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/faults/child.hpp"
+#include "tests/faults/decisions.hpp"
+#include "tests/faults/history.hpp"
+
+namespace faults {
+
+/// What a station is to know.
+struct Station {
+  std::string name;
+  bool records = true;  ///< people take part here; else it is made of merges alone
+  std::int64_t ahead_s = 0;
+  Decisions::Known known;
+  std::set<std::string> people, withdrawn;             ///< Person::key()
+  std::set<std::pair<std::string, int>> acknowledged;  ///< answered here
+  std::set<std::string> exports;                       ///< folders
+  bool restored = false;  ///< an older database was put back: writers refuse until it is salvaged
+};
+
+/// A copy of a database alone, kept elsewhere.
+struct KeptCopy {
+  std::size_t station = 0;
+  fs::path file;
+  std::set<std::string> exports;
+};
+
+class Stations {
+ public:
+  explicit Stations(const fs::path& folder);
+
+  Station& operator[](std::size_t index) { return all_.at(index); }
+  std::size_t size() const { return all_.size(); }
+  const fs::path& root() const { return root_; }
+  fs::path kept(std::size_t number) const;
+  fs::path folder_of(std::size_t station) const { return root_ / all_.at(station).name; }
+  fs::path database_of(std::size_t station) const { return folder_of(station) / "s.db"; }
+  bool has_database(std::size_t station) const;
+
+  Decisions decisions;
+  std::map<std::string, Person> persons;  ///< by Person::key()
+  std::vector<KeptCopy> copies;
+  bool lost_gaze = false;  ///< a salvage made do with a journal, which has no gaze
+
+  /// Runs it in a process of its own by the station's clock, with the fault of `step`; a power cut is over by
+  /// then, and what was acknowledged is noted.
+  Ended perform(const Step& step, std::size_t station, bool with_fault, const std::function<void()>& command);
+  std::vector<Person> people_of(const std::set<std::string>& keys) const;
+  /// Who takes part at this station.
+  std::vector<Person> own_people(std::size_t station) const;
+  DatabaseFacts facts_of(std::size_t station, Problems& problems) const;
+  /// Whether the files of a station agree with what it is to know.
+  Problems check(std::size_t station, bool exports);
+
+ private:
+  void check_decisions(const Station& station, const DatabaseFacts& facts, Problems& problems) const;
+
+  fs::path root_, kept_, peek_;
+  std::vector<Station> all_;
+  CallLog log_;
+};
+
+}  // namespace faults

@@ -1,0 +1,226 @@
+#include "tests/faults/small_study.hpp"
+
+#include <map>
+#include <set>
+
+#include "libstudy/session/interruptions.hpp"
+#include "libstudy/store/chores.hpp"
+#include "libstudy/store/withdraw.hpp"
+#include "stats/base/file.hpp"
+#include "tests/faults/file_calls.hpp"
+#include "tests/libstudy/session_fixture.hpp"
+
+namespace faults {
+
+using namespace study;
+namespace fixture = study::test;
+
+namespace {
+
+constexpr const char* small_protocol = R"(
+format = 2
+name = "small"
+version = "1"
+language = "en"
+participants = 4
+
+[design]
+scene = ["data/scenes/single_dam.toml"]
+method = ["HiRes"]
+n_star = ["16k"]
+timing = "settings"
+mean_fps = [10, 20]
+sd_fps = [0]
+duration_s = 0.3
+order = "shuffle"
+
+[pacing]
+mean = "harmonic"
+fps_min = 4
+fps_max = "none"
+max_interval_ms = 250
+order = "white"
+
+[content]
+mode = "per_frame"
+content_step_s = 0.02
+start_frame = 0
+at_end = "hold"
+
+[[block]]
+kind = "consent"
+id = "consent"
+text = "Read this."
+
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I take part."
+anchors = {0 = "no", 1 = "yes"}
+accept = [1, 1]
+
+[[block.question]]
+id = "gaze_kept"
+kind = "choice"
+text = "May we keep where you look?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block.question]]
+id = "data_shared"
+kind = "choice"
+text = "May we share?"
+anchors = {0 = "no", 1 = "yes"}
+
+[[block]]
+kind = "demographics"
+id = "about"
+
+[[block.question]]
+id = "town"
+kind = "text"
+text = "Where are you from?"
+personal = true
+
+[[block]]
+kind = "stimulus"
+id = "trials"
+steps = ["stimulus", "ask rating"]
+
+[[block.question]]
+id = "rating"
+kind = "scale"
+text = "How was it?"
+scale = [1, 7]
+
+[[block]]
+kind = "question"
+id = "end"
+
+[[block.question]]
+id = "remarks"
+kind = "text"
+text = "Anything else?"
+)";
+
+/// Looks at one point and holds the head at one place.
+class Still final : public GazeSource, public SlotSource {
+ public:
+  Still(double place, const Clock& clock) : place_(place), clock_(clock) {}
+  GazeOrigin origin() const override { return GazeOrigin::Mouse; }
+  void start() override {}
+  std::vector<GazeSample> take() override { return {{clock_.now_ns(), {}, true, GazePoint{place_, place_}}}; }
+  void stop() override {}
+  HeadsetFacts facts() const override {
+    const EyeFacts eye{100, 100, -40, 40, 40, -40};
+    HeadsetFacts facts{"none", "1", "none", {eye, eye}, "rgb", {}, {}, "image", "opaque"};
+    return facts;
+  }
+  void start_slots(bool with_heads) override { heads_ = with_heads; }
+  std::vector<SlotRecord> take_slots() override {
+    SlotRecord slot{clock_.now_ns(), 11, true, {}, 0};
+    if (heads_) slot.head = HeadPose{{place_, 0, 0}, {0, 0, 0, 1}, true, true, true, true};
+    return {slot};
+  }
+  void stop_slots() override {}
+  std::optional<double> ipd_mm() override { return {}; }
+  std::vector<std::string> take_news() override { return {}; }
+
+ private:
+  double place_;
+  const Clock& clock_;
+  bool heads_ = false;
+};
+
+std::uint64_t number_of(const Person& person) {
+  return std::stoull(base::sha256_hex(person.key()).substr(0, 12), nullptr, 16);
+}
+
+void play_session(Store& store, PersonalFile& personal, const Protocol& protocol, const OpenSession& session,
+                  const Person& person, int& units) {
+  fixture::Scripted says;
+  says.says["gaze_kept"] = fixture::score(person.gaze ? 1 : 0);
+  says.says["data_shared"] = fixture::score(person.sharing ? 1 : 0);
+  says.says["town"] = fixture::words("town " + person.mark());
+  says.says["remarks"] = fixture::words("words " + person.mark());
+  fixture::Desk desk(protocol);
+  Still still(person.place(), desk.clock);
+  SessionParts parts = desk.parts(says, store);
+  parts.personal = &personal;
+  parts.gaze = &still;
+  parts.slots = &still;
+  SessionHooks hooks;
+  hooks.begins = [&](const OpenUnit& unit) {
+    if (!unit.trial || unit.trial->position != 0 || !store.allows_gaze(session.id)) return;
+    const ValidatedPoint point{1, 0, 0, 9, 9, person.place(), {}, {}};
+    store.add_validation(session.id, {&point, 1}, true);
+  };
+  hooks.done = [&](const UnitDone& done) {
+    record_words("done " + person.key() + " " + std::to_string(done.unit.position));
+    --units;
+  };
+  hooks.wish = [&] { return units > 0 ? Wish::GoOn : Wish::Stop; };
+  run_session(protocol, session, parts, hooks);
+}
+
+/// Whom the database knows, whatever became of them.
+std::set<std::string> known(const fs::path& database) {
+  std::set<std::string> all;
+  std::error_code none;
+  if (!fs::exists(database, none) || fs::file_size(database, none) == 0) return all;
+  sqlite::Connection file(database, sqlite::Open::Read);
+  if (file.integer("SELECT count(*) FROM sqlite_schema WHERE name = 'tombstone'") == 0) return all;
+  sqlite::Statement row(file,
+                        "SELECT code || '@' || station FROM session UNION "
+                        "SELECT code || '@' || station FROM tombstone");
+  while (row.step()) all.insert(row.text(0));
+  return all;
+}
+
+void play_open(const fs::path& database, Store& store, const Protocol& protocol,
+               const std::vector<Person>& people, int units) {
+  for (const OpenRun& run : store.open_runs())
+    for (const OpenSession& session : run.sessions) settle_interruption(store, protocol, session);
+  PersonalFile personal(database);
+  try {
+    for (const OpenRun& run : store.open_runs()) {
+      for (const OpenSession& session : run.sessions) {
+        for (const Person& person : people) {
+          // After a merge the code may be another one, and the station is not.
+          if (person.station == session.plan.station && session.plan.participant.starts_with(person.code))
+            play_session(store, personal, protocol, session, person, units);
+        }
+      }
+    }
+  } catch (const Stopped&) {
+  }
+}
+
+}  // namespace
+
+std::string Person::mark() const { return "zq" + base::sha256_hex(key() + " mark").substr(0, 14); }
+
+double Person::place() const { return 0.1 + static_cast<double>(number_of(*this) % 800'000'000'007) / 1e12; }
+
+void play(const fs::path& database, const std::vector<Person>& people, int units) {
+  const Protocol protocol = parse_protocol(small_protocol, "small.toml");
+  const auto there = known(database);
+  Store store(database, sqlite::Open::Create);
+  RunPlan run{protocol, "{}", {}};
+  for (const Person& person : people) {
+    if (there.contains(person.key())) continue;
+    run.sessions.push_back(fixture::session_plan(protocol, person.code, number_of(person)));
+    run.sessions.back().station = person.station;
+  }
+  if (!run.sessions.empty()) store.add_run(run);
+  play_open(database, store, protocol, people, units);
+  check_nothing_left(database, store.left_to_clean());
+}
+
+void resume(const fs::path& database, const std::vector<Person>& people) {
+  const Protocol protocol = parse_protocol(small_protocol, "small.toml");
+  Store store(database, sqlite::Open::Write);
+  play_open(database, store, protocol, people, 1000);
+  check_nothing_left(database, store.left_to_clean());
+}
+
+}  // namespace faults

@@ -1,0 +1,70 @@
+#include "tests/faults/workers.hpp"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+namespace faults {
+
+using Say = std::function<void(const std::string&)>;
+
+namespace {
+
+[[noreturn]] void run_worker(int worker, int out, const std::function<void(int, const Say&)>& work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const Say say = [out](const std::string& text) {
+    std::string line = text;
+    for (char& c : line) c = c == '\n' ? ' ' : c;
+    line += '\n';
+    // Whole lines of less than PIPE_BUF do not mix.
+    if (line.size() > 4000) line = line.substr(0, 3999) + '\n';
+    if (::write(out, line.data(), line.size()) < 0) ::_exit(2);
+  };
+  try {
+    work(worker, say);
+  } catch (const std::exception& error) {
+    say("FAILED worker: " + std::string(error.what()));
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+bool spread(int jobs, const std::function<void(int, const Say&)>& work, const Say& take) {
+  int pipe[2];
+  if (::pipe(pipe) != 0) throw std::runtime_error("no pipe can be made");
+  std::fflush(stdout);
+  std::vector<pid_t> children;
+  for (int worker = 0; worker < jobs; ++worker) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::close(pipe[0]);
+      run_worker(worker, pipe[1], work);
+    }
+    children.push_back(child);
+  }
+  ::close(pipe[1]);
+  std::string rest;
+  char part[4096];
+  for (ssize_t n; (n = ::read(pipe[0], part, sizeof part)) > 0;) {
+    rest.append(part, static_cast<std::size_t>(n));
+    for (std::size_t end; (end = rest.find('\n')) != std::string::npos; rest.erase(0, end + 1))
+      take(rest.substr(0, end));
+  }
+  ::close(pipe[0]);
+  bool good = true;
+  for (const pid_t child : children) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    good = good && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  return good;
+}
+
+}  // namespace faults
