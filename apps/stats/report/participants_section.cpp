@@ -84,7 +84,8 @@ std::string descriptives_section(const Field& root) {
     std::string tables;
     for (const Field& question : root["descriptives"].entries()) {
       if (question["task"].words() != key) continue;
-      Table table("Answers to " + words(question["question"]) + ": " + words(question["text"]),
+      const std::string text = words(question["text"]);
+      Table table("Answers to " + words(question["question"]) + (text.empty() ? "" : ": " + text),
                   {"Shown", "Scene", "n*", "<i>n</i>", "Participants", "Mean", "<i>SD</i>", "Median",
                    "Answers: how often"});
       for (const Field& c : question["cells"].entries())
@@ -107,7 +108,8 @@ std::string descriptives_section(const Field& root) {
 std::string not_analysed_section(const Field& root) {
   std::vector<std::string> lines;
   for (const Field& one : root["not_analysed"].entries())
-    lines.push_back("<strong>" + words(one["what"]) + "</strong>: " + words(one["reason"]) + ".");
+    lines.push_back("<strong>" + words(one["what"]) + "</strong> (not analysed): " + words(one["reason"]) +
+                    ".");
   if (lines.empty()) return "";
   return section("not-analysed", "Not analysed",
                  "<div class=\"warning\">" + paragraph("Of this study the shipped analyses do not tell:") +
