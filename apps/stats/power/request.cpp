@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "apps/stats/data/claims.hpp"
+#include "apps/common/claims.hpp"
 #include "apps/stats/data/task_choice.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/nearest.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/stats/data/claims.hpp"
+#include "apps/common/claims.hpp"
 #include "apps/stats/power/effect_levels.hpp"
 #include "stats/base/error.hpp"
 

@@ -1,7 +1,7 @@
 #include "apps/stats/report/bundle_parts.hpp"
 
+#include "apps/common/claims.hpp"
 #include "apps/common/svg.hpp"
-#include "apps/stats/data/claims.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "stats/base/file.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/stats/data/claims.hpp"
+#include "apps/common/claims.hpp"
 #include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"

@@ -1,4 +1,4 @@
-#include "apps/stats/data/claims.hpp"
+#include "apps/common/claims.hpp"
 
 #include <algorithm>
 #include <string>
