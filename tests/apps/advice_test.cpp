@@ -176,8 +176,8 @@ std::vector<std::string> wrong_advice(const Programs& known, const std::string& 
 }
 
 const Programs& known_programs() {
-  static const Programs programs;
-  return programs;
+  static const Programs known;
+  return known;
 }
 
 TEST(AdviceE2e, NamesOptionsThatThereAre) {
