@@ -36,7 +36,9 @@ bool asks_scale(const std::vector<study::Question>& asked, const std::string& id
 /// they may be.
 std::string why_none(const study::Protocol& protocol) {
   const auto asked = asked_questions(protocol);
-  if (!protocol.design.effects.empty()) return "effects are a factor, and H1 to H6 are about methods alone";
+  if (!protocol.design.effects.empty())
+    return "effects are a factor, and H1 to H6 are about methods alone; what each level is worth is "
+           "exploratory";
   if (protocol.design.timing == study::TimingSource::Settings)
     return curve_questions(protocol).empty() ? "no scale is asked about the frame rates"
                                              : "the study estimates a and b of mu = a exp(b delta)";
