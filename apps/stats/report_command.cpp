@@ -82,7 +82,7 @@ void write_report(const ReportCommand& command) {
     files.write("vip-stats report", path, bytes);
   };
   if (!command.csv.empty()) {
-    files.make_folder(command.csv);
+    for (const auto& folder : csv_folders(json, command.csv)) files.make_folder(folder);
     write_csv_folder(json, command.csv, write);
   }
   if (!command.json.empty()) write(command.json, json.dump(2) + "\n");

@@ -138,7 +138,7 @@ void run(const TaskCommand& command) {
   }
   if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
   if (!command.csv.empty()) {
-    files->make_folder(command.csv);
+    for (const auto& folder : csv_folders(results.json, command.csv)) files->make_folder(folder);
     write_csv_folder(results.json, command.csv, write);
   }
   const Json apart = results.json.value("apart", Json::array());

@@ -7,15 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/report_walk.hpp"
+#include "tests/apps/study_test_support.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps::test {
 namespace {
 
 using report_walk::Json;
-using ::test::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -79,6 +80,43 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
     EXPECT_EQ(refused.exit_code, 1) << refused.out;
     EXPECT_THAT(refused.out, HasSubstr("the database holds no protocol that shows"));
   }
+}
+
+TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
+  const TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  const std::string text = file(std::string(VIP_TEST_DIR) + "/apps/own_design.toml");
+  base::write_file_atomically(folder / "first.toml", text);
+  base::write_file_atomically(folder / "mended.toml",
+                              replaced(replaced(text, "\"1.0\"", "\"1.1\""), "Watch the water", "Watch it"));
+  for (const auto& [protocol, people] : {std::pair{"first.toml", "2"}, {"mended.toml", "3"}}) {
+    const auto ran = typed("vip-study run " + at(protocol) + " --db " + at("s.db") + " --participants " +
+                           people + " --observer random");
+    ASSERT_EQ(ran.exit_code, 0) << ran.out;
+  }
+  const auto report = [&](const std::string& more) {
+    return typed("vip-stats report " + at("s.db") + " --json " + at("r.json") + more);
+  };
+  const auto both = report(" --csv " + at("tables") + " --html " + at("r.html"));
+  ASSERT_EQ(both.exit_code, 0) << both.out;
+  Json json = Json::parse(file(folder / "r.json"));
+  EXPECT_EQ(report_walk::sessions_in_flows(json), 5);
+  ASSERT_EQ(json.at("apart").size(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "tables" / "apart_1" / "descriptives.csv"));
+  const auto page = html_reader::read(file(folder / "r.html"));
+  EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());
+  EXPECT_THAT(report_walk::unmarked_numbers(page, json), IsEmpty());
+
+  const std::string sha256 = json.at("apart").at(0).at("study").at("protocols").at(0).at("sha256");
+  const auto one = report(" --protocol " + sha256.substr(0, 8) + " --question strain");
+  ASSERT_EQ(one.exit_code, 0) << one.out;
+  json = Json::parse(file(folder / "r.json"));
+  EXPECT_EQ(json.at("flow").at("own").at("started"), 2);
+  EXPECT_EQ(json.at("descriptives").size(), 1u);
+  const auto none = report(" --protocol 00000000");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.out, HasSubstr("comfort 1.1, SHA-256"));
+  EXPECT_THAT(none.out, HasSubstr("choose another --protocol or --question"));
 }
 
 // The shipped protocol asks for sickness in its trials too.

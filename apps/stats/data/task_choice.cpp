@@ -52,8 +52,9 @@ std::ptrdiff_t answered_sessions(const TaskProtocol& protocol) {
 std::vector<Question> main_questions(const TaskProtocol& protocol, const TaskSelection& selection) {
   std::vector<Question> out;
   for (const Question& question : protocol.questions) {
-    if (is_main_question(protocol, question) &&
-        (selection.question.empty() || question.id == selection.question))
+    const bool chosen = question.id == selection.question;
+    const bool main = is_main_question(protocol, question);
+    if (selection.question.empty() ? main : chosen && (main || kind_of(protocol) == TaskKind::Own))
       out.push_back(question);
   }
   if (out.empty() && protocol.questions.empty() && selection.question.empty()) out.emplace_back();

@@ -227,11 +227,18 @@ void write_document(const Json& results, const std::filesystem::path& folder, co
 
 }  // namespace
 
+std::vector<std::filesystem::path> csv_folders(const Json& results, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> out{folder};
+  for (std::size_t i = 0; i < results.value("apart", Json::array()).size(); ++i)
+    out.push_back(folder / ("apart_" + std::to_string(i + 1)));
+  return out;
+}
+
 void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
+  const auto folders = csv_folders(results, folder);
   write_document(results, folder, write);
-  const Json apart = results.value("apart", Json::array());
-  for (std::size_t i = 0; i < apart.size(); ++i)
-    write_document(apart[i], folder / ("apart_" + std::to_string(i + 1)), write);
+  for (std::size_t i = 1; i < folders.size(); ++i)
+    write_document(results.at("apart").at(i - 1), folders[i], write);
 }
 
 }  // namespace apps
