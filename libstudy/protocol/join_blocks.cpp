@@ -132,7 +132,7 @@ void join_like(const base::TomlTable& table, const Design& design, std::vector<B
   });
   if (model == blocks.end())
     table.fail("like", "= \"" + block.like + "\" is no block of kind stimulus",
-               "write \"" + stimulus_block(blocks) + "\"");
+               "write the id of that block, \"" + stimulus_block(blocks) + "\"");
   const auto place = static_cast<std::size_t>(model - blocks.begin());
   if (block.kind == BlockKind::Repeat && place > index)
     table.fail("like", "names a later block", "put the repeats after what they repeat");
