@@ -70,10 +70,6 @@ CLI::Option* add_plan(CLI::App& command, std::string& plan) {
       "without: the defaults");
 }
 
-CLI::Option* add_protocol_digits(CLI::App& command, std::string& digits) {
-  return command.add_option("--protocol", digits, "First digits of the protocol's SHA-256");
-}
-
 CLI::Option* add_method(CLI::App& command, std::string& method) {
   return command.add_option("--method", method, sim::method_names())->capture_default_str();
 }

@@ -27,9 +27,6 @@ void check_given(const std::string& database);
 /// --plan FILE of vip-stats, with all that a plan holds.
 CLI::Option* add_plan(CLI::App& command, std::string& plan);
 
-/// --protocol DIGITS of vip-stats.
-CLI::Option* add_protocol_digits(CLI::App& command, std::string& digits);
-
 /// --method NAME, --n-star NUMBER and --backend NAME of what runs one fluid, each with its default.
 CLI::Option* add_method(CLI::App& command, std::string& method);
 CLI::Option* add_n_star(CLI::App& command, std::string& n_star);

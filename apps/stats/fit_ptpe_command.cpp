@@ -3,15 +3,16 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/common/options.hpp"
+#include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "apps/stats/ptpe/calibration_history.hpp"
@@ -32,12 +33,12 @@ struct FitCommand {
   std::string database, out, json, svg, truth, plan;
   std::optional<std::string> exclude;  ///< instead of the plan's rule for timing verdicts
   std::optional<std::uint64_t> seed;   ///< instead of the plan's
-  double level = 4;
   double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
   bool force = false;
   bool incomplete = false;
   std::string lacking;  ///< of the database, where it is incomplete
-  TaskSelection selection{TaskKind::Pilot, {}, {}};
+  ChoiceOptions choice;
+  stats::AnalysisPlan rules;  ///< the plan in force
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
@@ -108,11 +109,9 @@ void write_json(const FitCommand& command, nlohmann::ordered_json json) {
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
 
-[[noreturn]] void no_fit(const FitCommand& command, const std::string& reason) {
-  throw base::Error(
-      command.database, "no fit: " + reason,
-      "collect more answers, or choose another --level, --protocol or --exclude; no configuration and "
-      "no figure were written");
+[[noreturn]] void no_fit(const FitCommand& command, const std::string& reason, const std::string& mend) {
+  throw base::Error(command.database, "no fit: " + reason,
+                    mend + "; no configuration and no figure were written");
 }
 
 /// fit.json, and the same for people; with a truth also whether it was recovered.
@@ -169,7 +168,7 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
                                 {"n_participants", fit.participants},
                                 {"n_simulated", fit.data.simulated.size()},
                                 {"test_data", fit.data.test_data},
-                                {"exclude", timing_rule_name(command.selection.plan.exclusions.timing)},
+                                {"exclude", timing_rule_name(command.rules.exclusions.timing)},
                                 {"relative_half_width", fit.relative_half_width()},
                                 {"max_relative_half_width", command.max_width},
                                 {"forced", command.force && command.refused(fit)},
@@ -177,6 +176,46 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   if (!command.lacking.empty()) record["incomplete"] = command.lacking;
   append_calibration(command.out, text, record);
   base::write_file_atomically(command.out, text);
+}
+
+/// Of what people should do about a fit that is none.
+std::string mend_of(const PilotFit& fit) {
+  const auto& scale = fit.data.question;
+  if (!fit.level_within_scale())
+    return fmt::format("choose a --level above {} and below {}, or leave it out", scale.scale_min,
+                       scale.scale_max);
+  return "collect more answers, or choose another --level";
+}
+
+void fit_one(const FitCommand& command, const study::TaskStudy& study, const ChosenTask& chosen,
+             const std::optional<stats::PtpeModel>& truth) {
+  const auto data = collect_task(study, chosen, command.rules.exclusions);
+  const double level = level_of(command.choice.selection(TaskKind::Pilot, command.rules), chosen.question);
+  if (const auto nothing = nothing_counts(data); !nothing.empty()) {
+    write_json(command, failed_fit_json(level, nothing));
+    no_fit(command, nothing, "collect answers, or choose another --protocol or --exclude");
+  }
+  const auto fit = fit_pilot(data, level, command.bootstrap);
+  if (truth) check_comparable(fit, command.truth);
+  report(command, fit, truth);
+  if (!fit.ok()) no_fit(command, fit.reason, mend_of(fit));
+  if (!command.out.empty()) refuse_for_solver(command, fit);
+  if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
+  if (!command.out.empty()) hand_to_solver(command, fit);
+}
+
+bool writes_files(const FitCommand& command) {
+  return !command.out.empty() || !command.json.empty() || !command.svg.empty();
+}
+
+/// Files are of one fit. Without them every protocol and question is fitted by itself.
+stats::Result<std::vector<ChosenTask>> chosen_pilots(const FitCommand& command,
+                                                     const study::TaskStudy& study) {
+  const auto selection = command.choice.selection(TaskKind::Pilot, command.rules);
+  if (!writes_files(command)) return choose_tasks(study, selection);
+  const auto one = choose_task(study, selection);
+  if (!one) return stats::Refusal{one.reason()};
+  return std::vector<ChosenTask>{*one};
 }
 
 void fit_ptpe(FitCommand& command) {
@@ -187,24 +226,32 @@ void fit_ptpe(FitCommand& command) {
                                  {"--svg", command.svg}});
   std::optional<stats::PtpeModel> truth;
   if (!command.truth.empty()) truth = parse_truth(command.truth);
-  if (!command.plan.empty()) command.selection.plan = read_plan(command.plan).plan;
-  command.bootstrap.seed = command.seed.value_or(command.selection.plan.seed);
-  command.bootstrap.confidence = command.selection.plan.confidence;
-  if (command.exclude) command.selection.plan.exclusions.timing = timing_rule_of(*command.exclude);
+  if (!command.plan.empty()) command.rules = read_plan(command.plan).plan;
+  command.bootstrap.seed = command.seed.value_or(command.rules.seed);
+  command.bootstrap.confidence = command.rules.confidence;
+  if (command.exclude) command.rules.exclusions.timing = timing_rule_of(*command.exclude);
   const auto study = study::read_tasks({command.database, command.incomplete});
   command.lacking = study.lacking;
   if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
-  const auto data = select_task(study, command.selection);
-  if (!data) {
-    write_json(command, failed_fit_json(command.level, data.reason()));
-    no_fit(command, data.reason());
+  const auto chosen = chosen_pilots(command, study);
+  if (!chosen) {
+    write_json(command, failed_fit_json(command.choice.level, chosen.reason()));
+    no_fit(command, chosen.reason(),
+           "give a database of a pilot, or choose another --protocol or --question");
   }
-  const auto fit = fit_pilot(*data, command.level, command.bootstrap);
-  report(command, fit, truth);
-  if (!fit.ok()) no_fit(command, fit.reason);
-  if (!command.out.empty()) refuse_for_solver(command, fit);
-  if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
-  if (!command.out.empty()) hand_to_solver(command, fit);
+  std::optional<base::Error> failure;  // of one, after which the others are fitted all the same
+  for (const ChosenTask& one : *chosen) {
+    if (chosen->size() > 1)
+      std::printf("%s %s, question \"%s\":\n", one.protocol.name.c_str(), one.protocol.version.c_str(),
+                  one.question.id.c_str());
+    try {
+      fit_one(command, study, one, truth);
+    } catch (const base::Error& error) {
+      if (chosen->size() > 1) std::printf("  %s\n", error.what());
+      if (!failure) failure = error;
+    }
+  }
+  if (failure) throw *failure;
 }
 
 }  // namespace
@@ -214,7 +261,7 @@ void add_fit_ptpe_command(CLI::App& app) {
   auto* fit = app.add_subcommand("fit-ptpe", "Fit mu = a exp(b delta) to the ratings of a PTPE pilot");
   add_database_argument(*fit, command->database);
   add_incomplete(*fit, command->incomplete);
-  fit->add_option("--level", command->level, "Score of the contour")->capture_default_str();
+  add_choice(*fit, command->choice);
   fit->add_option("--out", command->out,
                   "File for the solver (TOML), written on success only; every one is kept in "
                   "FILE.history.jsonl")
@@ -234,8 +281,6 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option(
       "--truth", command->truth,
       "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
-  add_protocol_digits(*fit, command->selection.protocol);
-  fit->add_option("--question", command->selection.question, "Id of the question, where several are asked");
   fit->add_option(
       "--plan", command->plan,
       "Analysis plan (TOML) with the rules of exclusion; without: the defaults, as for the tasks");
@@ -247,7 +292,6 @@ void add_fit_ptpe_command(CLI::App& app) {
   fit->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's (default: 1)");
   fit->callback([command] {
     check_given(command->database);
-    if (!std::isfinite(command->level)) throw CLI::ValidationError("--level", "is not a number");
     fit_ptpe(*command);
   });
 }

@@ -10,6 +10,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
+#include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/power/power_figure.hpp"
 #include "apps/stats/power/power_text.hpp"
@@ -25,6 +26,7 @@ namespace {
 struct PowerCommand {
   std::string protocol, n, plan, observer, answers = "likert";
   std::string json, csv, svg, cell, out;
+  ChoiceOptions choice;
   std::vector<std::filesystem::path> shards;
   bool list = false;
   PowerRequest request;
@@ -48,8 +50,18 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
     only(option, task1, "Task 1");
   only("--interval-bias", task2, "Task 2");
   for (const char* option : {"--effect", "--world"}) only(option, !pilot, "Task 1 and Task 2");
-  for (const char* option : {"--precision-a", "--precision-b", "--observer"})
+  for (const char* option : {"--precision-a", "--precision-b", "--observer", "--question", "--level"})
     only(option, pilot, "the pilot");
+  const auto& design = request.protocol.design;
+  if (task2 && design.groups > 1 && design.effects.empty() &&
+      request.plan.plan.repeated_pairs == stats::RepeatedPairs::Refuse)
+    refuse(
+        "protocol " + request.protocol.name,
+        "shows each pair to a participant in " + std::to_string(design.groups) +
+            " scenes, and the plan refuses tests of a pair with several answers of one person: no test would "
+            "ever hold",
+        "write more_than_one_trial = \"warn\" into a plan and give it with --plan, or groups = 1 into the "
+        "protocol");
   if (task2 && request.effect && !(*request.effect > 0 && *request.effect < 1))
     refuse("--effect", "is a preference in Task 2, above 0 and below 1", "write --effect 0.7");
 }
@@ -61,6 +73,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   request.protocol = study::read_protocol(base::find_input(command.protocol));
   request.file = command.protocol;
   const PowerKind kind = power_kind(request.protocol);
+  request.question = command.choice.question;
+  request.level = command.choice.level;
   check_kind(request, kind, options);
   request.n = command.n.empty() ? std::vector{request.protocol.participants} : parse_participants(command.n);
   // Half a minute or so on two cores, however many numbers of participants there are.
@@ -180,6 +194,7 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
                  "effect, null, margin or paper; may be repeated. Without: all that apply")
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
   sub.add_option("--observer", command.observer, "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1");
+  add_question_choice(sub, command.choice);
   sub.add_option("--precision-a", request.precision_a, "Pilot: wished half width of a's interval, frames/s")
       ->check(number_in(1e-6, 1000));
   sub.add_option("--precision-b", request.precision_b, "Pilot: wished half width of b's interval, s/frame")

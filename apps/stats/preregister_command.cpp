@@ -27,6 +27,7 @@ void preregister(const PreregisterCommand& command) {
   if (command.seed) request.plan.seed = *command.seed;
   if (!command.power.empty()) request.power = command.power;
   const std::string hash = report::freeze_bundle(request, command.out);
+  for (const auto& one : report::untested_claims(request)) std::printf("not tested: %s\n", one.c_str());
   std::printf("%s  %s\nDeposit this hash where its date can be proved, before the first participant.\n",
               hash.c_str(), command.out.c_str());
 }

@@ -1,7 +1,7 @@
 /// vip-stats report: a study's results as one page, with the same numbers as JSON and CSV.
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/report/preregistration.hpp"
@@ -27,12 +28,25 @@ namespace {
 struct ReportCommand {
   std::string database, html, json, csv, plan, bundle, sweep;
   bool incomplete = false;
+  ChoiceOptions choice;
 
   study::StudyFile file() const { return {database, incomplete}; }
 };
 
+constexpr std::array all_tasks{TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2, TaskKind::Own};
+
+void add_preregistration(Json& json, const report::Bundle& bundle,
+                         const std::vector<study::ProtocolRow>& protocols) {
+  json["preregistration"] = report::compare_with_bundle(bundle, protocols, json);
+  if (!json.contains("apart")) return;
+  for (Json& one : json["apart"])
+    one["preregistration"] = report::compare_with_bundle(bundle, protocols, one);
+}
+
 Json document(const ReportCommand& command) {
-  ResultsRequest request{command.database, {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", {}};
+  ResultsRequest request{command.database, {all_tasks.begin(), all_tasks.end()}, command.choice.protocol, {}};
+  request.question = command.choice.question;
+  request.level = command.choice.level;
   if (!command.sweep.empty()) {
     request.sweep = std::make_shared<const SweepTables>(read_sweep_tables(command.sweep));
     request.sweep_file = std::filesystem::path(command.sweep).filename().string();
@@ -46,17 +60,19 @@ Json document(const ReportCommand& command) {
   }
   const auto study = study::read_tasks(command.file());
   Results results = make_results(study, request);
-  // A task that the study never had stays absent; one without results says why.
-  for (const auto& missing : results.missing) {
-    const bool planned = std::any_of(study.protocols.begin(), study.protocols.end(),
-                                     [&](const auto& one) { return kind_of(one) == missing.task; });
-    if (planned) results.json[task_name(missing.task)] = json_refused(missing.reason);
+  if (results.json.at("flow").empty()) {
+    std::string ids;
+    for (const auto& one : study.protocols)
+      ids +=
+          (ids.empty() ? "" : "; ") + one.name + " " + one.version + ", SHA-256 " + one.sha256.substr(0, 12);
+    throw base::Error(command.database,
+                      ids.empty() ? "holds no protocol" : "holds nothing of what was chosen, but " + ids,
+                      ids.empty() ? "run a session first; nothing was written"
+                                  : "choose another --protocol or --question; nothing was written");
   }
   Json sickness = sickness_json(study::read_sickness(command.file()), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
-  if (bundle)
-    results.json["preregistration"] =
-        report::compare_with_bundle(*bundle, study::read_status(command.file()).protocols, results.json);
+  if (bundle) add_preregistration(results.json, *bundle, study::read_status(command.file()).protocols);
   return results.json;
 }
 
@@ -64,15 +80,12 @@ void write_report(const ReportCommand& command) {
   check_apart(command.database, {{"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}});
   const study::RegisteredFiles files(command.file());
   const Json json = document(command);
-  if (!json.contains("pilot") && !json.contains("task1") && !json.contains("task2"))
-    throw base::Error(command.database, "holds no answers of a pilot, of Task 1 or of Task 2",
-                      "collect answers first; nothing was written");
   const std::string page = command.html.empty() ? "" : report::results_page(json);
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
     files.write("vip-stats report", path, bytes);
   };
   if (!command.csv.empty()) {
-    files.make_folder(command.csv);
+    for (const auto& folder : csv_folders(json, command.csv)) files.make_folder(folder);
     write_csv_folder(json, command.csv, write);
   }
   if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
@@ -103,6 +116,7 @@ void add_report_command(CLI::App& app) {
       "--sweep", command->sweep,
       "Sweep file of vip-bench accuracy: cost and error of each method's setting stand beside what "
       "people said");
+  add_choice(*sub, command->choice);
   auto* plan = add_plan(*sub, command->plan);
   sub->add_option("--preregistered", command->bundle,
                   "Folder of vip-stats preregister: its plan is used, and the page says what differs from it")

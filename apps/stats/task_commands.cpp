@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
@@ -20,8 +21,9 @@ namespace {
 
 struct TaskCommand {
   TaskKind task = TaskKind::Task1;
-  std::string database, json, csv, plan, protocol;
+  std::string database, json, csv, plan;
   bool incomplete = false;
+  ChoiceOptions choice;
 };
 
 std::string number_text(const Json& value, int decimals) {
@@ -83,6 +85,13 @@ void print_hypotheses(const Json& json) {
   }
 }
 
+/// A database may hold several protocols of a task; each is analysed by itself.
+void print_name(const Json& json) {
+  const Json& protocol = json.at("study").at("protocols").at(0);
+  std::printf("protocol %s %s, SHA-256 %.12s\n", word(protocol.at("name")).c_str(),
+              word(protocol.at("version")).c_str(), word(protocol.at("sha256")).c_str());
+}
+
 void print_results(const Json& json, TaskKind task) {
   if (json.at("study").contains("incomplete"))
     std::printf("incomplete: %s\n", word(json.at("study").at("incomplete")).c_str());
@@ -91,6 +100,8 @@ void print_results(const Json& json, TaskKind task) {
               flow.at("analysed").get<int>(), flow.at("trials_analysed").get<int>(),
               flow.at("trials_answered").get<int>(), json.at("exclusions").size());
   for (const auto& note : json.at("study").at("notes")) std::printf("note: %s\n", word(note).c_str());
+  for (const auto& one : json.at("not_analysed"))
+    std::printf("not analysed: %s: %s\n", word(one.at("what")).c_str(), word(one.at("reason")).c_str());
   const Json& part = json.at(task_name(task));
   task == TaskKind::Task1 ? print_cells(part) : print_pairs(part);
   print_hypotheses(json);
@@ -112,7 +123,9 @@ void run(const TaskCommand& command) {
   if (!command.json.empty() &&
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
-  ResultsRequest request{command.database, {command.task}, command.protocol, {}};
+  ResultsRequest request{command.database, {command.task}, command.choice.protocol, {}};
+  request.question = command.choice.question;
+  request.level = command.choice.level;
   request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = read_plan(command.plan);
   // Before the data are read; without a file nothing is to be registered.
@@ -124,15 +137,23 @@ void run(const TaskCommand& command) {
   };
   const Results results = study_results(request);
   if (!results.missing.empty()) {
-    throw base::Error(command.database, results.missing.front().reason,
-                      "collect answers, or choose another --protocol or --plan; nothing was written");
+    throw base::Error(
+        command.database, results.missing.front().reason,
+        "collect answers, or choose another --protocol, --question or --plan; nothing was written");
   }
   if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
   if (!command.csv.empty()) {
-    files->make_folder(command.csv);
+    for (const auto& folder : csv_folders(results.json, command.csv)) files->make_folder(folder);
     write_csv_folder(results.json, command.csv, write);
   }
+  const Json apart = results.json.value("apart", Json::array());
+  if (!apart.empty()) print_name(results.json);
   print_results(results.json, command.task);
+  for (const auto& one : apart) {
+    std::printf("\n");
+    print_name(one);
+    print_results(one, command.task);
+  }
 }
 
 void add_command(CLI::App& app, TaskKind task, const char* what) {
@@ -144,7 +165,7 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   add_plan(*sub, command->plan);
-  add_protocol_digits(*sub, command->protocol);
+  add_choice(*sub, command->choice);
   sub->footer(
       "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
       "registered in the database, which must be writable for that: when one of them withdraws, the files "

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "apps/common/claims.hpp"
 #include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/check_report.hpp"
 
@@ -96,6 +97,17 @@ void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) 
   }
 }
 
+/// What vip-stats will tell of the study beside the answers by cell.
+nlohmann::ordered_json analyses_json(const study::Protocol& protocol) {
+  auto tested = nlohmann::ordered_json::array(), fitted = tested, not_tested = tested;
+  const auto shown = hypotheses_of(protocol, {});
+  for (const auto& one : shown.claims) tested.push_back(one.id);
+  for (const auto& question : curve_questions(protocol))
+    fitted.push_back({{"question", question.id}, {"level", study::fitted_level(question)}});
+  for (const auto& [id, reason] : shown.left_out) not_tested.push_back({{"id", id}, {"reason", reason}});
+  return {{"tested", tested}, {"fitted", fitted}, {"not_tested", not_tested}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json report_json(const CheckReport& report) {
@@ -121,6 +133,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
                               {"trials", one.trials},
                               {"seconds", {one.seconds.least, one.seconds.most}}});
   }
+  json["analyses"] = analyses_json(protocol);
   const Balance& balance = report.balance;
   json["balance"] = {{"participants", balance.planned},
                      {"sequences", balance.sequences},

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/common/claims.hpp"
 #include "apps/study/bakes/bake_plan.hpp"
 #include "libsim/scene/scene.hpp"
 #include "stats/base/file.hpp"
@@ -29,6 +30,19 @@ double longest_ms(const RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
+/// What vip-stats will tell of the study. It describes the answers of any protocol.
+void print_analyses(const study::Protocol& protocol) {
+  const auto shown = hypotheses_of(protocol, {});
+  std::string ids;
+  for (const auto& one : shown.claims) ids += (ids.empty() ? "" : ", ") + one.id;
+  if (!ids.empty()) std::printf("tested: %s\n", ids.c_str());
+  for (const auto& question : curve_questions(protocol))
+    std::printf("fitted: the curve of question %s, at level %g of %d to %d\n", question.id.c_str(),
+                study::fitted_level(question), question.scale_min, question.scale_max);
+  for (const auto& [id, reason] : shown.left_out)
+    std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
+}
+
 void print_session(const CheckReport& report) {
   const auto& protocol = report.protocol;
   std::printf("%s %s, language %s, sha256 %.12s\n\n%-14s %-13s %13s  %s\n", protocol.name.c_str(),
@@ -49,6 +63,7 @@ void print_session(const CheckReport& report) {
   std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
               protocol.design.cells.front().setting.duration_s);
   std::printf("balance: %s\n", describe_balance(protocol, report.balance).c_str());
+  print_analyses(protocol);
 }
 
 void print_settings(const CheckReport& report, const RefreshCheck& check) {

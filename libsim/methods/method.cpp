@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "stats/base/error.hpp"
+#include "stats/base/nearest.hpp"
 
 namespace sim {
 
@@ -36,7 +37,9 @@ MethodKind parse_method(std::string_view name) {
   for (const auto& method : all_methods()) {
     if (word == lower(method.name)) return method.kind;
   }
-  throw base::Error("method \"" + std::string(name) + "\"", "is not known", "use " + method_names());
+  std::vector<std::string> known;
+  for (const auto& method : all_methods()) known.emplace_back(method.name);
+  throw base::Error("method \"" + std::string(name) + "\"", "is not known", base::use_one_of(name, known));
 }
 
 std::string method_name(MethodKind method) { return traits_of(method).name; }

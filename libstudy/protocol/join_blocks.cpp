@@ -3,6 +3,7 @@
 #include <set>
 
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/nearest.hpp"
 
 namespace study {
 
@@ -71,8 +72,12 @@ void check_ask(const base::TomlTable& table, std::size_t step, const std::string
                const std::map<std::string, Asked>& questions) {
   const auto found = questions.find(id);
   if (found == questions.end()) {
+    std::vector<std::string> known;
+    for (const auto& [one, asked] : questions) known.push_back(one);
+    const std::string meant = base::nearest_word(id, known);
     table.fail_at("steps", step, "asks \"" + id + "\", which is no question",
-                  "add [[block.question]] with this id, or a block of kind fms for \"fms\"");
+                  (meant.empty() ? "" : "ask \"" + meant + "\" if it is meant, or ") +
+                      std::string("add [[block.question]] with this id, or a block of kind fms for \"fms\""));
   }
   const BlockKind kind = found->second.block->kind;
   if (kind != BlockKind::Stimulus && kind != BlockKind::Question && !is_scale_of_its_own(kind)) {
@@ -111,6 +116,13 @@ void check_count(const base::TomlTable& table, const Block& block, const Design&
              "use at most " + std::to_string(trials));
 }
 
+/// Id of the one block that shows the design.
+std::string stimulus_block(const std::vector<Block>& blocks) {
+  return std::find_if(blocks.begin(), blocks.end(),
+                      [](const Block& block) { return block.kind == BlockKind::Stimulus; })
+      ->id;
+}
+
 /// Practice, repeats and catches: like which block?
 void join_like(const base::TomlTable& table, const Design& design, std::vector<Block>& blocks,
                std::size_t index) {
@@ -119,7 +131,8 @@ void join_like(const base::TomlTable& table, const Design& design, std::vector<B
     return other.id == block.like && other.kind == BlockKind::Stimulus;
   });
   if (model == blocks.end())
-    table.fail("like", "= \"" + block.like + "\" is no block of kind stimulus", "write the id of one");
+    table.fail("like", "= \"" + block.like + "\" is no block of kind stimulus",
+               "write the id of that block, \"" + stimulus_block(blocks) + "\"");
   const auto place = static_cast<std::size_t>(model - blocks.begin());
   if (block.kind == BlockKind::Repeat && place > index)
     table.fail("like", "names a later block", "put the repeats after what they repeat");

@@ -89,7 +89,9 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.fixation = root.choice_or("gaze", "free", {"free", "fixation"}) == "fixation";
   protocol.needs_gaze = root.boolean_or("needs_gaze", false);
   protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
-  protocol.design = read_design(root.table("design"));
+  const auto design = root.table("design");
+  if (use == ProtocolUse::New) check_design_names(design);
+  protocol.design = read_design(design);
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
   protocol.content = read_content(root.table("content"));
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));

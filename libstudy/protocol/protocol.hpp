@@ -53,7 +53,8 @@ struct Protocol {
 /// Every question of the protocol with its block's index, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
-/// Earlier versions asked gaze_question and sharing_question in any way: what they stored is still read.
+/// Earlier versions took any name of a method and any id of a question, and asked gaze_question and
+/// sharing_question in any way: what they stored is still read.
 enum class ProtocolUse { New, Stored };
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range

@@ -32,11 +32,15 @@ struct Question {
   /// An answer outside [accept_min, accept_max] ends the session before anything is shown: no consent, or a
   /// screening question that rules the person out.
   std::optional<std::pair<int, int>> accept;
-  std::optional<int> stop_at;  ///< this score or more offers a rest, then the exit (Fms)
-  std::optional<int> expect;   ///< the answer that attention gives (Catch)
+  std::optional<int> stop_at;   ///< this score or more offers a rest, then the exit (Fms)
+  std::optional<int> expect;    ///< the answer that attention gives (Catch)
+  std::optional<double> level;  ///< Scale: score at which a pilot's curve is fitted; none: the scale's middle
 
   bool operator==(const Question&) const = default;
 };
+
+/// Score of a scale at which a pilot's curve is fitted: its level, else its middle.
+double fitted_level(const Question& question);
 
 /// The 16 symptoms of the Simulator Sickness Questionnaire, each 0 (none) to 3 (severe), in the order of
 /// Kennedy, Lane, Berbaum and Lilienthal 1993; ids ssq_1 .. ssq_16.

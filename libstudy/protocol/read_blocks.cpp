@@ -146,7 +146,10 @@ std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design
     root.fail("block", "has " + std::to_string(trials) + " blocks of kind stimulus",
               "write exactly one, which shows the design");
   }
-  if (use == ProtocolUse::New) check_obeyed_questions(tables, blocks);
+  if (use == ProtocolUse::New) {
+    check_question_ids(tables, blocks);
+    check_obeyed_questions(tables, blocks);
+  }
   join_blocks(tables, design, blocks);
   return blocks;
 }

@@ -5,6 +5,7 @@
 
 #include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/nearest.hpp"
 
 namespace study {
 
@@ -61,7 +62,8 @@ void check_level(const base::TomlTable& row, std::string_view key, const std::st
                  const std::vector<std::string>& levels) {
   if (std::find(levels.begin(), levels.end(), word) == levels.end()) {
     row.fail(key, "= " + base::toml_quoted(word) + " names no cell",
-             "use a value that design." + std::string(key) + " lists, or remove this row");
+             base::use_one_of(word, levels) + " as design." + std::string(key) +
+                 " lists them, or remove this row");
   }
 }
 

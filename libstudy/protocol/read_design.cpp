@@ -3,6 +3,7 @@
 #include <set>
 
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/nearest.hpp"
 
 namespace study {
 
@@ -119,12 +120,13 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
     table.fail("order", "= \"constrained\" cannot be kept by pairs",
                "use shuffle, latin or williams, or remove pairs");
   }
+  static const std::vector<std::string> factors{"method", "effects", "mean_fps", "sd_fps"};
   design.never_adjacent = distinct_words(table, "never_adjacent");
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
     const std::string& factor = design.never_adjacent[i];
-    if (factor != "method" && factor != "effects" && factor != "mean_fps" && factor != "sd_fps") {
+    if (std::find(factors.begin(), factors.end(), factor) == factors.end()) {
       table.fail_at("never_adjacent", i, "= " + base::toml_quoted(factor) + " is no factor",
-                    "use method, effects, mean_fps or sd_fps");
+                    base::use_one_of(factor, factors));
     }
     if (factor == "effects" && design.effects.empty()) {
       table.fail_at("never_adjacent", i, "= \"effects\" is no factor of this design",

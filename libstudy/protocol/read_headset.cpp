@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/nearest.hpp"
 
 namespace study {
 
@@ -15,6 +16,11 @@ HeadsetRules read_headset(const base::TomlTable& table) {
   rules.hold = hold == "state" ? Hold::State : hold == "head_locked" ? Hold::HeadLocked : Hold::Image;
   const auto acknowledged =
       table.has("acknowledge") ? distinct_words(table, "acknowledge") : std::vector<std::string>();
+  for (std::size_t i = 0; i < acknowledged.size(); ++i) {
+    if (acknowledged[i] == "head_locked") continue;
+    table.fail_at("acknowledge", i, "= " + base::toml_quoted(acknowledged[i]) + " is nothing to acknowledge",
+                  base::use_one_of(acknowledged[i], {"head_locked"}));
+  }
   const bool knows = std::find(acknowledged.begin(), acknowledged.end(), "head_locked") != acknowledged.end();
   if (rules.hold == Hold::HeadLocked && !knows) {
     table.fail("hold", "= \"head_locked\" moves the world with the head, which makes people sick",

@@ -67,6 +67,14 @@ void read_scores(const base::TomlTable& table, Question& question) {
     table.fail("scale", "has more than 101 scores", "use kind = \"number\"");
   if (question.kind == AnswerKind::Scale)
     question.anchors = read_anchors(table, question.scale_min, question.scale_max);
+  if (question.kind == AnswerKind::Scale && table.has("level")) {
+    question.level = table.number("level");
+    if (!(*question.level > question.scale_min && *question.level < question.scale_max)) {
+      table.fail("level", "= " + shown(*question.level) + " does not lie within the scale",
+                 "use a score above " + std::to_string(question.scale_min) + " and below " +
+                     std::to_string(question.scale_max) + ", or remove it for the middle");
+    }
+  }
 }
 
 /// A score that can be given as an answer.
@@ -180,6 +188,10 @@ std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kin
   std::vector<Question> out;
   for (const auto& table : block.tables("question")) out.push_back(read_question(table, kind, language));
   return out;
+}
+
+double fitted_level(const Question& question) {
+  return question.level.value_or((question.scale_min + question.scale_max) / 2.0);
 }
 
 std::vector<Question> ssq_questions(const std::string& language) {

@@ -43,6 +43,10 @@ std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
 /// The questions that the program obeys are asked so that it can. tables: those that the blocks were read
 /// from.
 void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
+/// Methods are those of method_names(), and n_star holds numbers of particles.
+void check_design_names(const base::TomlTable& design);
+/// No id is a misspelling of one of known_question_ids() that the protocol lacks.
+void check_question_ids(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
 /// The questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);

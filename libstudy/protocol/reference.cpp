@@ -266,6 +266,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "needed by scale and number: [lowest, highest], whole; a scale has 101 scores at most"},
       {"block.question", "anchors", "table", "", "none",
        "words by score, ascending; needed by choice, from 0 to 100"},
+      {"block.question", "level", "number", "within the scale", "the scale's middle",
+       "scale: the score at which the curve of a pilot's frame rates is fitted: by fit-ptpe, report and "
+       "power, "
+       "and named in the preregistered plan; refused for other kinds"},
       {"block.question", "personal", "true or false", "", "false",
        "the answer goes to the file of personal data alone; only on pages"},
       {"block.question", "required", "true or false", "", "true; false for text",

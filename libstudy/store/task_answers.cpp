@@ -50,7 +50,7 @@ constexpr const char* showing_sql =
 constexpr const char* answers_sql =
     "SELECT q.code, r.score FROM judgement j JOIN question q USING (question_id) "
     "LEFT JOIN response r USING (response_id) "
-    "WHERE j.unit_id = ? AND q.kind IN ('scale', 'choice') AND q.personal = 0 ORDER BY j.place";
+    "WHERE j.unit_id = ? AND q.kind IN ('scale', 'choice', 'number') AND q.personal = 0 ORDER BY j.place";
 
 constexpr const char* catches_sql =
     "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block AND k.protocol_id = ?2 "
@@ -206,8 +206,9 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
     for (const TrialStep& step : block.steps) asked.insert(step.asks.begin(), step.asks.end());
   }
   for (const auto& [block, question] : all_questions(protocol)) {
-    const bool judged = question->kind == AnswerKind::Scale || question->kind == AnswerKind::Choice;
-    if (judged && asked.contains(question->id) && known.insert(question->id).second) out.push_back(*question);
+    if (question->kind != AnswerKind::Text && asked.contains(question->id) &&
+        known.insert(question->id).second)
+      out.push_back(*question);
   }
   return out;
 }

@@ -47,7 +47,7 @@ struct TaskTrial {
   TaskShowing first;  ///< first or only one
   std::optional<TaskShowing> second;
   std::optional<std::string> excluded;  ///< the experimenter's reason, or interrupted_reason
-  std::vector<TaskAnswer> answers;      ///< on scales and choices, in the order of the page
+  std::vector<TaskAnswer> answers;      ///< but words, in the order of the page
   /// Of a repeat: position of the trial with the same stimuli in the same order.
   std::optional<int> repeats;
 };
@@ -93,7 +93,7 @@ struct TaskProtocol {
   /// In the order of the file. Where effects are a factor, a method is one with a level of effects: "Ours,
   /// foam" (treatment_name()).
   std::vector<std::string> scenes, methods, n_stars;
-  std::vector<Question> questions;  ///< on scales and choices, asked about trials
+  std::vector<Question> questions;  ///< asked about trials, but those for words
   std::vector<TaskSession> sessions;
   double content_step_s = 1.0 / 60;
   std::vector<EffectSet> effects = {};  ///< levels of the factor; empty: effects are none

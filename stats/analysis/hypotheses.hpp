@@ -107,6 +107,18 @@ std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
+/// Hypotheses about methods that a study shows, and why each other one is not tested.
+struct ShownClaims {
+  struct LeftOut {
+    std::string id;      ///< "H1"
+    std::string reason;  ///< "the study does not show FovFluid"
+  };
+  std::vector<Hypothesis> claims;
+  std::vector<LeftOut> left_out;
+};
+/// A hypothesis of which any test names a method that is not among `methods` is left out.
+ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::string>& methods);
+
 /// Holm over the claims H1 to H6 themselves, those that are absent or not testable as p = 1: shown beside the
 /// decisions, which keep to alpha for each claim.
 void correct_over_claims(std::span<Hypothesis> claims);

@@ -146,6 +146,28 @@ Hypothesis finish(Family family) {
   return out;
 }
 
+ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::string>& methods) {
+  ShownClaims out;
+  for (Hypothesis& one : all) {
+    std::vector<std::string> missing_methods;
+    for (const HypothesisTest& test : one.tests) {
+      for (const std::string& method : {test.a, test.b}) {
+        const bool shown = std::find(methods.begin(), methods.end(), method) != methods.end();
+        const bool listed =
+            std::find(missing_methods.begin(), missing_methods.end(), method) != missing_methods.end();
+        if (!shown && !listed) missing_methods.push_back(method);
+      }
+    }
+    if (missing_methods.empty()) {
+      out.claims.push_back(std::move(one));
+    } else {
+      out.left_out.push_back(
+          {one.id, fmt::format("the study does not show {}", fmt::join(missing_methods, " and "))});
+    }
+  }
+  return out;
+}
+
 void correct_over_claims(std::span<Hypothesis> claims) {
   constexpr std::size_t h1_to_h6 = 6;
   std::vector<double> p;

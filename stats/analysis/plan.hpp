@@ -2,7 +2,9 @@
 /// What is fixed before the data are seen: margins, level, exclusion rules, seed. Preregistration freezes it.
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 
 namespace stats {
 
@@ -67,6 +69,8 @@ struct AnalysisPlan {
   RepeatedPairs repeated_pairs = RepeatedPairs::Refuse;
   int resamples = 10000;  ///< of BCa intervals
   std::uint64_t seed = 1;
+  /// Scores at which a pilot's curve is fitted, by id of the question; of others the protocol says it.
+  std::map<std::string, double> levels = {};
 };
 
 }  // namespace stats

@@ -34,7 +34,8 @@ void test_pair(PairPreference& pair, const AnalysisPlan& plan) {
   if (pair.max_per_participant <= 1) return;
   pair.warning =
       "one participant answered this pair " + std::to_string(pair.max_per_participant) +
-      " times: answers of one person are not independent, and the binomial test then rejects too often";
+      " times, as in several scenes: answers of one person are not independent, and the binomial test then "
+      "rejects too often";
   if (plan.repeated_pairs == RepeatedPairs::Refuse) pair.test = Refusal{pair.warning};
 }
 

@@ -6,6 +6,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/nearest.hpp"
 #include "stats/base/toml_state.hpp"
 #include "stats/base/toml_text.hpp"
 
@@ -52,12 +53,9 @@ std::string TomlTable::string(std::string_view key) const {
 std::string TomlTable::choice(std::string_view key, const std::vector<std::string>& allowed) const {
   state_->note(key, "text", {}, allowed);
   const std::string value = string(key);
-  std::string list;
-  for (const auto& word : allowed) {
-    if (word == value) return value;
-    list += (list.empty() ? "\"" : ", \"") + word + "\"";
-  }
-  state_->fail(state_->find(key), key, "= \"" + value + "\" is not a known choice", "use one of " + list);
+  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return value;
+  state_->fail(state_->find(key), key, "= \"" + value + "\" is not a known choice",
+               use_one_of(value, allowed));
 }
 
 std::vector<double> TomlTable::numbers(std::string_view key, std::size_t size, Range range) const {

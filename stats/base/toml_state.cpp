@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "stats/base/error.hpp"
+#include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 
 namespace base {
@@ -12,10 +13,12 @@ namespace {
 
 constexpr std::size_t longest_problem = 400;  // bytes: it may quote a value of any length
 
-std::string names_of(const std::map<std::string, AskedKey, std::less<>>& asked) {
-  std::string out;
-  for (const auto& [name, what] : asked) out += (out.empty() ? "" : ", ") + name;
-  return out;
+/// "known keys here: a, b", and behind it the one that is nearest to `key`.
+std::string known_keys(std::string_view key, const std::map<std::string, AskedKey, std::less<>>& asked) {
+  std::vector<std::string> names;
+  for (const auto& [name, what] : asked) names.push_back(name);
+  const std::string nearest = nearest_word(key, names);
+  return "known keys here: " + joined(names) + (nearest.empty() ? "" : "; the nearest is " + nearest);
 }
 
 /// "block[3].question[0]" without its indices.
@@ -122,7 +125,7 @@ std::shared_ptr<TomlTable::State> TomlTable::State::child(const toml::table& nod
 void TomlTable::State::finish() const {
   for (const auto& [key, node] : *table) {
     if (asked.count(std::string(key.str()))) continue;
-    fail(&node, key.str(), "is not a known key", "known keys here: " + names_of(asked));
+    fail(&node, key.str(), "is not a known key", known_keys(key.str(), asked));
   }
   for (const auto& state : children) state->finish();
 }

@@ -1,5 +1,6 @@
 /// vip-stats power: the simulation against closed forms, its error rates, and what it refuses.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -285,6 +286,48 @@ TEST(PowerPilot, PrecisionGrowsWithPeople) {
   EXPECT_GT(many.reached->value, few.reached->value);
   ASSERT_TRUE(power.n_for_a);
   EXPECT_EQ(*power.n_for_a, 24);
+}
+
+// As fit-ptpe, report and the preregistered plan have it.
+TEST(PowerPilot, TheCurveIsAtTheLevelOfThePlanOrTheProtocol) {
+  auto request = request_for("protocols/ptpe_pilot.toml", {8}, 20);
+  EXPECT_EQ(apps::rated_level(request), 4);
+  request.plan.plan.levels["satisfaction"] = 5;
+  EXPECT_EQ(apps::rated_level(request), 5);
+  request.level = 4.5;
+  EXPECT_EQ(apps::rated_level(request), 4.5);
+  const auto power = apps::simulate_pilot_power(request);
+  ASSERT_TRUE(power.curve[0].a);
+  EXPECT_NEAR(power.curve[0].a->mean.value, 23.68, 2) << "the observer's curve runs at the level fitted";
+  request.level = 7;
+  EXPECT_THROW(apps::rated_level(request), base::Error);
+  request.question = "satisfacton";
+  EXPECT_THAT([&] { apps::rated_question(request); },
+              ::testing::ThrowsMessage<base::Error>(::testing::HasSubstr("the nearest is \"satisfaction\"")));
+}
+
+TEST(PowerTasks, ClaimsAboutMethodsThatAreNotShownHaveNoPower) {
+  const auto showing = [](const std::set<std::string>& methods) {
+    auto protocol = study::read_protocol(base::resource("protocols/task2.toml"));
+    std::erase_if(protocol.design.cells,
+                  [&](const study::Cell& cell) { return !methods.contains(cell.stimulus.method); });
+    return protocol;
+  };
+  auto request = task2({"null"}, 20);
+  request.protocol = showing({"Ours", "FovFluid", "Ours-TSp"});
+  const auto worlds = apps::simulate_task_power(request);
+  for (const auto& hypothesis : worlds.at(0).hypotheses) {
+    for (const auto& test : hypothesis.tests) {
+      EXPECT_NE(test.a, "HiRes") << hypothesis.id;
+      EXPECT_NE(test.b, "HiRes") << hypothesis.id;
+    }
+  }
+  EXPECT_FALSE(worlds.at(0).hypotheses.empty());
+  EXPECT_THAT(
+      [&] {
+        apps::power_kind(showing({"LoRes", "HiRes"}));
+      },
+      ::testing::ThrowsMessage<base::Error>(::testing::HasSubstr("tests none of H1 to H6")));
 }
 
 TEST(PowerFiles, HoldTheSameFigures) {

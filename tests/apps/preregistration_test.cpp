@@ -12,8 +12,10 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/apps/simulated_pilot.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps {
@@ -102,6 +104,41 @@ TEST(Preregistration, FixesAllSixHypothesesWithTheirMargins) {
   for (const auto& test : bundle.hypotheses.at(1).at("tests"))
     margins.insert(test.at("margin").get<double>());
   EXPECT_EQ(margins, (std::set<double>{0.25, 0.4}));
+}
+
+TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
+  const TemporaryFolder folder;
+  const auto freeze = [&](const std::string& level, const char* name) {
+    std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
+    const std::string scale = "scale = [1, 7]\n";
+    text.insert(text.find(scale) + scale.size(), level);
+    base::write_file_atomically(folder / "pilot.toml", text);
+    report::BundleRequest request;
+    request.protocols = {folder / "pilot.toml"};
+    report::freeze_bundle(request, folder / name);
+    return report::read_bundle(folder / name).plan.plan.levels;
+  };
+  EXPECT_EQ(freeze("", "middle"), (std::map<std::string, double>{{"satisfaction", 4}}));
+  EXPECT_EQ(freeze("level = 4.5\n", "named"), (std::map<std::string, double>{{"satisfaction", 4.5}}));
+  EXPECT_THAT(base::read_file(folder / "named" / "PREREGISTRATION.txt", 1 << 20),
+              HasSubstr("the curve of question satisfaction is fitted at level 4.5 of its scale, 1 to 7"));
+
+  // Fitted at another level, the page says so.
+  const auto bundle = report::read_bundle(folder / "named");
+  auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 6, 7);
+  pilot.sha256 = bundle.protocols.begin()->first;
+  study::ProtocolRow row;
+  row.name = "ptpe_pilot";
+  row.sha256 = pilot.sha256;
+  ResultsRequest request{"study.db", {TaskKind::Pilot}, "", bundle.plan};
+  const auto differences = [&] {
+    return report::compare_with_bundle(bundle, {row}, make_results({{pilot}, 0}, request).json)
+        .at("differences")
+        .dump();
+  };
+  EXPECT_THAT(differences(), Not(HasSubstr("level")));
+  request.level = 4;
+  EXPECT_THAT(differences(), HasSubstr("preregistered at level 4.5, fitted at 4"));
 }
 
 TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {

@@ -14,6 +14,7 @@
 #include "stats/base/file.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_walk.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace apps {
@@ -50,51 +51,6 @@ bool holds(const std::string& html, const std::string& words) {
 
 html_reader::Page page_of(const OrderedJson& json) { return html_reader::read(report::results_page(json)); }
 
-/// Digits behind the point.
-int decimals(const std::string& text) {
-  const auto point = text.find('.');
-  if (point == std::string::npos) return 0;
-  int n = 0;
-  for (auto i = point + 1; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]));) ++i, ++n;
-  return n;
-}
-
-/// Whether what is printed is the value, rounded to the digits printed.
-bool says(std::string text, const OrderedJson& value, bool percent) {
-  if (value.is_boolean()) return text == (value.get<bool>() ? "yes" : "no");
-  if (value.is_string()) {
-    const auto word = value.get<std::string>();
-    return text == word || (word == "Inf" && text == "\u221e") || (word == "-Inf" && text == "\u2212\u221e");
-  }
-  if (!value.is_number()) return false;
-  double number = value.get<double>();
-  if (text == "< .001") return number < 0.001;
-  if (text == "> .999") return number > 0.999;
-  if (percent) {
-    if (!text.ends_with(" %")) return false;
-    text.resize(text.size() - 2);
-    number *= 100;
-  }
-  if (text.starts_with("\u2212")) text = "-" + text.substr(std::string("\u2212").size());
-  char* end = nullptr;
-  const double printed = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0') return false;
-  return std::abs(printed - number) <= 0.5 * std::pow(10.0, -decimals(text)) * (1 + 1e-9);
-}
-
-/// Fields of the page that do not say what the JSON says.
-std::vector<std::string> wrong_fields(const html_reader::Page& page, const OrderedJson& json) {
-  std::vector<std::string> wrong;
-  for (const auto& text : page.texts) {
-    const auto field = text.attribute("data-field");
-    if (field.empty()) continue;
-    const OrderedJson::json_pointer pointer(field);
-    if (!json.contains(pointer) || !says(text.words, json.at(pointer), !text.attribute("data-unit").empty()))
-      wrong.push_back(field + ": " + text.words);
-  }
-  return wrong;
-}
-
 std::size_t count_fields(const html_reader::Page& page) {
   std::size_t n = 0;
   for (const auto& text : page.texts) n += !text.attribute("data-field").empty();
@@ -105,7 +61,7 @@ TEST(ReportPage, EveryMarkedNumberStandsInTheJson) {
   for (const auto* json : {&example(), &made()}) {
     const auto page = page_of(*json);
     EXPECT_GT(count_fields(page), 2000u);
-    EXPECT_THAT(wrong_fields(page, *json), ::testing::IsEmpty());
+    EXPECT_THAT(report_walk::wrong_fields(page, *json), ::testing::IsEmpty());
   }
 }
 
@@ -113,42 +69,18 @@ TEST(ReportPage, AWrongNumberWouldBeSeen) {
   auto changed = made();
   const auto page = page_of(changed);
   changed["task1"]["comparisons"][3]["p"] = 0.5 + changed["task1"]["comparisons"][3]["p"].get<double>() / 3;
-  EXPECT_FALSE(wrong_fields(page, changed).empty());
-  EXPECT_TRUE(says(".029", 0.0291, false));
-  EXPECT_FALSE(says(".029", 0.0296, false));
-  EXPECT_FALSE(says("< .001", 0.002, false));
-  EXPECT_TRUE(says("\u22120.46", -0.4649, false));
-  EXPECT_FALSE(says("0.46", -0.46, false));
-  EXPECT_FALSE(says("0.46", OrderedJson(), false));
+  EXPECT_FALSE(report_walk::wrong_fields(page, changed).empty());
+  EXPECT_TRUE(report_walk::says(".029", 0.0291, false));
+  EXPECT_FALSE(report_walk::says(".029", 0.0296, false));
+  EXPECT_FALSE(report_walk::says("< .001", 0.002, false));
+  EXPECT_TRUE(report_walk::says("\u22120.46", -0.4649, false));
+  EXPECT_FALSE(report_walk::says("0.46", -0.46, false));
+  EXPECT_FALSE(report_walk::says("0.46", OrderedJson(), false));
 }
 
 TEST(ReportPage, NoOtherNumberIsPrinted) {
-  // Names and definitions; everything else with a digit has its place in the JSON.
-  const std::vector<std::string> fixed{"Task 1", "Task 2",  "Fig. 6",   "Fig. 9",    "Fig. 10",
-                                       "(1993)", "< .05",   "< .01",    "below .05", ".05 after Holm",
-                                       "< .001", "SHA-256", "H1 to H6", "H1 to H3", "p95, ms"};
-  for (const auto* json : {&example(), &made()}) {
-    std::vector<std::string> known = fixed;
-    for (const auto& protocol : json->at("study").at("protocols")) {
-      // Sessions are counted by these words of theirs, which are the results' own.
-      for (const char* by : {"displays", "angles", "mixed_pictures"})
-        for (const auto& [words, sessions] : protocol.at(by).items()) known.push_back(words);
-    }
-    for (const auto& text : page_of(*json).texts) {
-      if (!text.attribute("data-field").empty() || text.within("style") || text.within("svg")) continue;
-      if (text.within("title") || text.attribute("class") == "ordinal") continue;
-      if (!text.attribute("data-count").empty()) {
-        EXPECT_EQ(text.words,
-                  std::to_string(json->at(OrderedJson::json_pointer(text.attribute("data-count"))).size()));
-        continue;
-      }
-      std::string rest = text.words;
-      for (const auto& words : known)
-        for (auto at = rest.find(words); at != std::string::npos; at = rest.find(words))
-          rest.erase(at, words.size());
-      EXPECT_EQ(rest.find_first_of("0123456789"), std::string::npos) << text.words;
-    }
-  }
+  for (const auto* json : {&example(), &made()})
+    EXPECT_THAT(report_walk::unmarked_numbers(page_of(*json), *json), ::testing::IsEmpty());
 }
 
 TEST(ReportPage, FiguresPrintNumbersOfTheJsonAndAxesOnly) {
@@ -257,7 +189,7 @@ TEST(ReportPage, ShowsWhyWhatIsNotGivenIsNotGiven) {
        {"never compared", "one answer only", "all ranks tie", "all differences are equal",
         "fewer than two participants", "no contour at this level"})
     EXPECT_TRUE(holds(html, reason));
-  EXPECT_THAT(wrong_fields(html_reader::read(html), json), ::testing::IsEmpty());
+  EXPECT_THAT(report_walk::wrong_fields(html_reader::read(html), json), ::testing::IsEmpty());
 }
 
 TEST(ReportPage, ATaskWithoutResultsSaysSo) {

@@ -108,7 +108,20 @@ inline std::vector<Case> head_and_methods() {
 inline std::vector<Case> participants_and_timing() {
   const Change nothing_excluded = set("/exclusions", Json::array()),
                no_timing = set("/timing", Json::array());
+  const Change no_answers = set("/descriptives", Json::array());
+  const Change all_analysed = set("/not_analysed", Json::array()),
+               h1_is_not = set("/not_analysed", {{{"task", "task1"}, {"what", "H1"}, {"reason", "so"}}});
   return {
+      {"The database holds # sessions of # participants; # withdrew, of whom nothing is kept.",
+       set("/roster", nullptr)},
+      {"# Everybody in the database", set("/roster/protocols", Json::array())},
+      {"Of this study the shipped analyses do not tell:", all_analysed, h1_is_not},
+      {"# (not analysed): #.", all_analysed, h1_is_not},
+      {"Every answer to a trial that is analysed, whatever else is computed from it.", no_answers},
+      {"A cell is what was shown in one scene at one n[*]; n counts answers.", no_answers},
+      {"# Answers to #*", no_answers},
+      {"No answer to # is analysed.", set("/descriptives", Json::array()),
+       in_each("/descriptives", "cells", Json::array())},
       {"# What became of those who began: Pilot.", set("/flow/pilot", nullptr)},
       {"# What became of those who began: Task [12].", set("/flow", Json::object())},
       {"Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
@@ -283,11 +296,12 @@ inline std::vector<Case> bundle_and_provenance() {
       {"Preregistered Hypotheses of Task 2: *", set("/preregistration/tasks/task2", false),
        all({with, set("/preregistration/tasks/task2", true)})},
       {"Exploratory All else: tables and tests of Pilot, tables and tests of Task 1, tables and tests of "
-       "Task 2, "
+       "Task 2, answers by cell, "
        "ordinal models, the Bradley-Terry model and sensitivity.",
        set("/task1/ordinal", Json::array())},
       {"Exploratory All else: *",
-       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/sensitivity", Json::array())})},
+       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/sensitivity", Json::array()),
+            set("/descriptives", Json::array())})},
       {"# Where the numbers come from",
        [](Json& json) {
          json = {{"schema", "none"}};

@@ -275,6 +275,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   plan.exclusions.min_repeat_agreement = 0.6;
   plan.repeated_pairs = stats::RepeatedPairs::Warn;
   plan.seed = 77;
+  plan.levels = {{"satisfaction", 4}, {"smoothness", 1.5}};
   base::write_file_atomically(folder / "plan.toml", format_plan(plan, {std::string(64, '1')}));
   const auto read = read_plan(folder / "plan.toml");
   EXPECT_EQ(format_plan(read.plan, read.protocols), format_plan(plan, {std::string(64, '1')}));
@@ -285,6 +286,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   EXPECT_EQ(read.plan.exclusions.timing, stats::TimingRule::Degraded);
   EXPECT_FALSE(read.plan.exclusions.max_repeat_difference.has_value());
   EXPECT_EQ(read.plan.repeated_pairs, stats::RepeatedPairs::Warn);
+  EXPECT_EQ(read.plan.levels, plan.levels);
   EXPECT_EQ(read.source, "plan.toml");
   EXPECT_EQ(read.sha256.size(), 64u);
 }

@@ -380,4 +380,45 @@ TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
   EXPECT_EQ(study::parse_protocol(text, "p.toml", study::ProtocolUse::Stored).blocks.size(), 4u);
 }
 
+// What nothing knows would be run, and found out after the study.
+INSTANTIATE_TEST_SUITE_P(
+    Names, MalformedProtocol,
+    testing::Values(Malformed{task1, "\"Ours\", \"Ours-TSp\"", "\"ours\", \"Ours-TSp\"", "|\"ours\"",
+                              "is no method", "the nearest is \"Ours\""},
+                    Malformed{pilot, "method = [\"HiRes\"]", "method = [\"Bogus\"]", "|\"Bogus\"",
+                              "is no method", "use one of \"LoRes\""},
+                    Malformed{pilot, "n_star = [\"32k\"]", "n_star = [\"32K!\"]", "|\"32K!\"",
+                              "is no number of particles", "\"32k\""},
+                    Malformed{pilot, "order = \"shuffle\"", "order = \"shufle\"", "= |\"shufle\"",
+                              "is not a known choice", "the nearest is \"shuffle\""},
+                    Malformed{pilot, "participants = 16", "participants = 16\naccept_aproximate = true",
+                              "accept_aproximate = |true", "is not a known key",
+                              "the nearest is accept_approximate"},
+                    Malformed{pilot, "\"ask satisfaction\"", "\"ask satisfacton\"", "|\"ask satisfacton\"",
+                              "which is no question", "ask \"satisfaction\" if it is meant"},
+                    Malformed{task1, "ask realism", "ask realsm", "|\"ask realsm", "which is no question",
+                              "ask \"realism\" if it is meant"},
+                    Malformed{pilot, "scale = [1, 7]", "scale = [1, 7]\nlevel = 7", "level = |7",
+                              "does not lie within the scale", "above 1 and below 7"}));
+
+// An analysis that looks for a question would not find it.
+TEST(ProtocolNames, AnIdThatIsNearlyOneThatAnalysesLookForIsRefused) {
+  const auto of = [](const char* name) {
+    return base::read_file(base::resource("protocols/" + std::string(name) + ".toml"), 1 << 20);
+  };
+  const auto renamed = [](std::string text, const std::string& from, const std::string& to) {
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    return text;
+  };
+  EXPECT_THAT(error_of(renamed(of("task1"), "realism", "realsim")),
+              HasSubstr("write \"realism\" if it is meant"));
+  EXPECT_THAT(error_of(renamed(of("task1_lab"), "data_shared", "data_share")), HasSubstr("\"data_shared\""));
+  // An id of its own that is like one that is there too is another question.
+  EXPECT_EQ(error_of(renamed(of("task1"), "dizziness", "dizzy")), "(no error)");
+  // What was stored before names were checked is still read.
+  EXPECT_NO_THROW(study::parse_protocol(replaced(of("ptpe_pilot"), "[\"HiRes\"]", "[\"Bogus\"]"), "p.toml",
+                                        study::ProtocolUse::Stored));
+}
+
 }  // namespace

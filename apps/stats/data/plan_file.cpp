@@ -101,7 +101,20 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
     plan.margin_sickness = margins.number_or("sickness", plan.margin_sickness, base::positive);
   }
   if (root.has("exclusions")) read_exclusions(root.table("exclusions"), plan.exclusions);
+  if (root.has("levels")) {
+    const auto levels = root.table("levels");
+    for (const auto& question : levels.keys()) plan.levels[question] = levels.number(question);
+  }
   return plan;
+}
+
+std::string format_levels(const std::map<std::string, double>& levels) {
+  std::string out = levels.empty()
+                        ? ""
+                        : "\n[levels]                        # scores at which a pilot's curve is fitted, by "
+                          "question\n";
+  for (const auto& [question, level] : levels) out += question + " = " + base::shortest(level) + "\n";
+  return out;
 }
 
 }  // namespace
@@ -158,7 +171,8 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "   # share of repeated pairs answered alike\nstraight_lining_answers = " +
          std::to_string(rules.straight_lining_answers) +
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
-         base::shortest(rules.min_answered) + "                # share of a visit's trials\n";
+         base::shortest(rules.min_answered) + "                # share of a visit's trials\n" +
+         format_levels(plan.levels);
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {
@@ -169,25 +183,27 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
         return std::find(in_force.protocols.begin(), in_force.protocols.end(), sha256) !=
                in_force.protocols.end();
       });
-  return {{"source", in_force.source},
-          {"sha256", in_force.sha256.empty() ? Json() : Json(in_force.sha256)},
-          {"preregistered", registered},
-          {"alpha", plan.alpha},
-          {"decision", decision_names[static_cast<std::size_t>(plan.decision)]},
-          {"directional", directional_json(plan.directional)},
-          {"tests", tests_names[static_cast<std::size_t>(plan.tests)]},
-          {"confidence", plan.confidence},
-          {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
-          {"exclusions",
-           {{"timing", timing_rule_name(rules.timing)},
-            {"min_catch_correct", number_or_null(rules.min_catch_correct)},
-            {"max_repeat_difference", number_or_null(rules.max_repeat_difference)},
-            {"min_repeat_agreement", number_or_null(rules.min_repeat_agreement)},
-            {"straight_lining_answers", rules.straight_lining_answers},
-            {"min_answered", rules.min_answered}}},
-          {"more_than_one_trial", repeated_names[static_cast<std::size_t>(plan.repeated_pairs)]},
-          {"resamples", plan.resamples},
-          {"seed", plan.seed}};
+  Json json{{"source", in_force.source},
+            {"sha256", in_force.sha256.empty() ? Json() : Json(in_force.sha256)},
+            {"preregistered", registered},
+            {"alpha", plan.alpha},
+            {"decision", decision_names[static_cast<std::size_t>(plan.decision)]},
+            {"directional", directional_json(plan.directional)},
+            {"tests", tests_names[static_cast<std::size_t>(plan.tests)]},
+            {"confidence", plan.confidence},
+            {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
+            {"exclusions",
+             {{"timing", timing_rule_name(rules.timing)},
+              {"min_catch_correct", number_or_null(rules.min_catch_correct)},
+              {"max_repeat_difference", number_or_null(rules.max_repeat_difference)},
+              {"min_repeat_agreement", number_or_null(rules.min_repeat_agreement)},
+              {"straight_lining_answers", rules.straight_lining_answers},
+              {"min_answered", rules.min_answered}}},
+            {"more_than_one_trial", repeated_names[static_cast<std::size_t>(plan.repeated_pairs)]},
+            {"resamples", plan.resamples},
+            {"seed", plan.seed}};
+  if (!plan.levels.empty()) json["levels"] = plan.levels;
+  return json;
 }
 
 }  // namespace apps

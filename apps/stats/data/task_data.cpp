@@ -96,11 +96,26 @@ class Collector {
     answered_.insert(session.participant);
     ++data_.flow.trials_answered;
     ++(excluded ? data_.flow.trials_excluded : data_.flow.trials_analysed);
+    if (analysed) add_answered(session, trial);
     return analysed && add_answer(session, trial, record.answer);
+  }
+
+  void add_answered(const TaskSession& session, const TaskTrial& trial) {
+    AnsweredTrial answered;
+    answered.participant = session.participant;
+    answered.first = trial.first.what;
+    answered.first_nominal = trial.first.nominal;
+    if (trial.second) {
+      answered.second = trial.second->what;
+      answered.second_nominal = trial.second->nominal;
+    }
+    answered.answers = trial.answers;
+    data_.answered.push_back(std::move(answered));
   }
 
   bool add_answer(const TaskSession& session, const TaskTrial& trial, double answer) {
     if (data_.task == TaskKind::Task1) return add_report(session, trial);
+    if (data_.task == TaskKind::Own) return person(session) >= 0;
     if (answer != answer) return false;
     data_.task == TaskKind::Task2 ? add_choice(session, trial, answer) : add_rating(session, trial, answer);
     return true;
@@ -196,21 +211,24 @@ std::string TaskData::gaze_problem() const {
          "), and what the methods refine depends on it";
 }
 
-stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection) {
-  const auto chosen = choose_protocol(study, selection);
-  if (!chosen) return stats::Refusal{chosen.reason()};
-  const auto question = main_question(chosen->protocol, selection);
-  if (!question) return stats::Refusal{question.reason()};
+TaskData collect_task(const study::TaskStudy& study, const ChosenTask& chosen,
+                      const stats::ExclusionRules& rules) {
   TaskData data;
-  data.task = selection.task;
-  data.protocol = chosen->protocol;
-  data.set_aside = chosen->set_aside;
-  data.question = *question;
+  data.task = kind_of(chosen.protocol);
+  data.protocol = chosen.protocol;
+  data.set_aside = chosen.set_aside;
+  data.question = chosen.question;
   for (const std::string& scene : data.protocol.scenes) data.scenes.push_back(scene_name(scene));
   data.flow.withdrawn = study.withdrawn;
-  Collector(data).collect(selection.plan.exclusions);
+  Collector(data).collect(rules);
   if (data.task == TaskKind::Task1) add_planned(data);
   return data;
+}
+
+stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection) {
+  const auto chosen = choose_task(study, selection);
+  if (!chosen) return stats::Refusal{chosen.reason()};
+  return collect_task(study, *chosen, selection.plan.exclusions);
 }
 
 std::string nothing_counts(const TaskData& data) {

@@ -35,6 +35,15 @@ struct TimedShowing {
   bool analysed = false;  ///< its trial is: answered, not excluded, no repeat
 };
 
+/// A trial that is analysed, with all that was answered about it.
+struct AnsweredTrial {
+  std::string participant;  ///< code
+  study::StimulusSpec first;
+  std::optional<study::StimulusSpec> second;
+  study::FpsSetting first_nominal, second_nominal;
+  std::vector<study::TaskAnswer> answers;
+};
+
 /// Task 1: one page.
 struct Report {
   int participant = 0, visit = 1, position = 0;
@@ -59,11 +68,12 @@ struct TaskData {
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;
+  std::vector<AnsweredTrial> answered;
   std::vector<Report> reports;              ///< Task 1: answered pages
   std::vector<Report> unanswered;           ///< Task 1: planned for these participants, no answer counts
   std::vector<stats::PairChoice> choices;   ///< Task 2
   std::vector<stats::PilotRating> ratings;  ///< pilot
-  study::Question question;                 ///< the main one: realism, preference, the pilot's scale
+  study::Question question;                 ///< ChosenTask::question
   /// Repeated showings: answers of the original and of the repeat, by question (Task 2: 1 / 2).
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
@@ -71,8 +81,11 @@ struct TaskData {
   std::string gaze_problem() const;
 };
 
-/// Refused with the reason: no protocol or question of this task, several and none chosen. Whether any answer
-/// counts is not asked.
+/// Of what was chosen. Whether any answer counts is not asked.
+TaskData collect_task(const study::TaskStudy& study, const ChosenTask& chosen,
+                      const stats::ExclusionRules& rules);
+/// Of the only protocol and question that the selection asks for. Refused with the reason: there is none, or
+/// there are several.
 stats::Result<TaskData> collect_task(const study::TaskStudy& study, const TaskSelection& selection);
 
 /// Why there is nothing to analyse; empty = there is.

@@ -142,18 +142,18 @@ std::vector<RealisedSetting> realised_settings(const study::Protocol& protocol) 
 
 std::vector<stats::PilotRating> answer_pilot(std::span<const ShownTrial> trials,
                                              std::span<const RealisedSetting> settings,
-                                             const study::PtpeObserverParameters& observer, double scale_min,
-                                             double scale_max, std::uint64_t key) {
+                                             const study::PtpeObserverParameters& observer,
+                                             const RatedScale& scale, std::uint64_t key) {
   std::vector<stats::PilotRating> out;
   out.reserve(trials.size());
   for (const auto& trial : trials) {
     const auto& seen = settings[static_cast<std::size_t>(trial.first)];
     const Draws draws(key, trial.participant);
     const double tau = stats::ptpe_tolerance({observer.a, observer.b}, seen.harmonic, seen.sd);
-    const double latent = (scale_min + scale_max) / 2 + observer.slope * tau +
-                          observer.participant_sd * draws.person(0) + observer.noise * draws.normal(trial, 0);
+    const double latent = scale.level + observer.slope * tau + observer.participant_sd * draws.person(0) +
+                          observer.noise * draws.normal(trial, 0);
     out.push_back({trial.participant, seen.mu, seen.delta, seen.harmonic, seen.arithmetic, seen.sd,
-                   std::clamp(std::round(latent), scale_min, scale_max)});
+                   std::clamp(std::round(latent), 1.0 * scale.min, 1.0 * scale.max)});
   }
   return out;
 }

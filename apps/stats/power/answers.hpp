@@ -48,10 +48,16 @@ struct RealisedSetting {
 /// Each cell's schedule compiled once: its moments do not depend on its order.
 std::vector<RealisedSetting> realised_settings(const study::Protocol& protocol);
 
-/// Ratings on a scale of 1 to 7 by the parametric observer (libstudy/observer/ptpe_observer.hpp).
+/// Scores that may be given, and the one whose mean the observer's curve is the contour of.
+struct RatedScale {
+  int min = 1, max = 7;
+  double level = 4;
+};
+
+/// Ratings by the parametric observer (libstudy/observer/ptpe_observer.hpp).
 std::vector<stats::PilotRating> answer_pilot(std::span<const ShownTrial> trials,
                                              std::span<const RealisedSetting> settings,
-                                             const study::PtpeObserverParameters& observer, double scale_min,
-                                             double scale_max, std::uint64_t key);
+                                             const study::PtpeObserverParameters& observer,
+                                             const RatedScale& scale, std::uint64_t key);
 
 }  // namespace apps

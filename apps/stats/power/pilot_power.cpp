@@ -6,25 +6,13 @@
 
 #include "apps/stats/power/answers.hpp"
 #include "libstudy/base/random.hpp"
-#include "stats/base/error.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 
 namespace apps {
 
 namespace {
 
-const study::Question& rating_of(const study::Protocol& protocol) {
-  for (const auto& block : protocol.blocks) {
-    if (block.kind != study::BlockKind::Stimulus) continue;
-    for (const auto& question : block.questions) {
-      if (question.kind == study::AnswerKind::Scale) return question;
-    }
-  }
-  throw base::Error("protocol " + protocol.name, "asks no score about its settings",
-                    "add a question of kind \"scale\" to its block of kind \"stimulus\"");
-}
-
-/// `level`: the scale's midpoint, where the observer's curve runs.
+/// `level`: where the observer's curve runs.
 PilotOutcome estimate(std::span<const stats::PilotRating> ratings, double level,
                       const PowerRequest& request) {
   PilotOutcome out;
@@ -122,8 +110,8 @@ void find_n(PilotPower& power, const PowerRequest& request) {
 }  // namespace
 
 PilotOutcomes simulate_pilots(const PowerRequest& request, StudyRange studies) {
-  const auto& question = rating_of(request.protocol);
-  const double level = 0.5 * (question.scale_min + question.scale_max);
+  const auto question = rated_question(request);
+  const double level = rated_level(request);
   const auto settings = realised_settings(request.protocol);
   const std::uint64_t own =
       study::random_key(request.protocol.sha256 + "\npower " + std::to_string(request.seed));
@@ -131,8 +119,8 @@ PilotOutcomes simulate_pilots(const PowerRequest& request, StudyRange studies) {
   for_each_study(studies, "pilots", [&](int study) {
     const std::uint64_t key = study::counter_random(own, static_cast<std::uint64_t>(study));
     const auto trials = planned_trials(request.protocol, key, request.n.back());
-    const auto ratings =
-        answer_pilot(trials, settings, request.observer, question.scale_min, question.scale_max, key);
+    const auto ratings = answer_pilot(trials, settings, request.observer,
+                                      {question.scale_min, question.scale_max, level}, key);
     for (std::size_t i = 0; i < request.n.size(); ++i) {
       const auto end = std::partition_point(
           ratings.begin(), ratings.end(),

@@ -50,6 +50,8 @@ Json settings_json(const PowerRequest& request, PowerKind kind) {
                        {"slope", truth.slope},
                        {"noise", truth.noise},
                        {"participant_sd", truth.participant_sd}};
+    out["question"] = rated_question(request).id;
+    out["level"] = rated_level(request);
     out["precision_a"] = json_number(request.precision_a);
     out["precision_b"] = json_number(request.precision_b);
   }

@@ -104,7 +104,9 @@ void print_coefficient(const Json& json, const std::string& name, const char* un
 
 void print_precision(const Json& json) {
   const auto columns = columns_to_print(json);
-  std::printf("\n");
+  std::printf("question \"%s\", the curve at level %g of its scale\n\n",
+              json.at("settings").at("question").get<std::string>().c_str(),
+              json.at("settings").at("level").get<double>());
   print_head(json, columns);
   print_row("pilots with an interval", json.at("precision").at("curve"), "interval", columns);
   print_coefficient(json, "a", "frames/s", columns);

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <charconv>
 
+#include "apps/common/claims.hpp"
+#include "apps/stats/data/task_choice.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/nearest.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -29,6 +33,19 @@ bool asks(const study::Protocol& protocol, const std::string& id) {
                      [&](const auto& question) { return question.second->id == id; });
 }
 
+/// Worlds are about H1 to H6, or about levels of effects. A power of claims that cannot be tested is none.
+void check_claims(const study::Protocol& protocol) {
+  if (!protocol.design.effects.empty()) return;
+  const auto shown = hypotheses_of(protocol, {});
+  if (!shown.claims.empty()) return;
+  std::string why;
+  for (const auto& [id, reason] : shown.left_out) why += (why.empty() ? "" : "; ") + id + ": " + reason;
+  throw base::Error("protocol " + protocol.name,
+                    "tests none of H1 to H6, of which power knows the tests (" + why + ")",
+                    "simulate it: vip-study run with --observer for several numbers of participants, then "
+                    "vip-stats report, which describes the answers of any protocol");
+}
+
 }  // namespace
 
 const char* power_kind_name(PowerKind kind) {
@@ -51,7 +68,10 @@ PowerKind power_kind(const study::Protocol& protocol) {
                       "simulate it: vip-study run with --observer ptpe:effects=... for several numbers of "
                       "participants, then vip-stats report");
   }
-  if (protocol.design.pairs) return PowerKind::Task2;
+  if (protocol.design.pairs) {
+    check_claims(protocol);
+    return PowerKind::Task2;
+  }
   if (protocol.design.timing == study::TimingSource::Settings) return PowerKind::Pilot;
   for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"}) {
     if (!asks(protocol, id)) {
@@ -60,7 +80,34 @@ PowerKind power_kind(const study::Protocol& protocol) {
                         "cybersickness) and Task 2 (pairs)");
     }
   }
+  check_claims(protocol);
   return PowerKind::Task1;
+}
+
+study::Question rated_question(const PowerRequest& request) {
+  const auto questions = curve_questions(request.protocol);
+  if (questions.empty()) {
+    throw base::Error("protocol " + request.protocol.name, "asks no score about its settings",
+                      "add a question of kind \"scale\" to its block of kind \"stimulus\"");
+  }
+  std::vector<std::string> ids;
+  for (const auto& one : questions) {
+    if (request.question.empty() || one.id == request.question) return one;
+    ids.push_back(one.id);
+  }
+  throw base::Error("--question " + request.question,
+                    "is no scale that the trials of " + request.protocol.name + " ask",
+                    base::use_one_of(request.question, ids));
+}
+
+double rated_level(const PowerRequest& request) {
+  const auto question = rated_question(request);
+  const double level = level_of({TaskKind::Pilot, {}, request.plan.plan, {}, request.level}, question);
+  if (level > question.scale_min && level < question.scale_max) return level;
+  throw base::Error("level " + base::shortest(level),
+                    "does not lie within the scale of \"" + question.id + "\"",
+                    "choose a --level above " + std::to_string(question.scale_min) + " and below " +
+                        std::to_string(question.scale_max) + ", or leave it out");
 }
 
 std::vector<int> parse_participants(const std::string& text) {

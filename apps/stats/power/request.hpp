@@ -45,8 +45,15 @@ struct PowerRequest {
   double interval_bias = 0;  ///< Task 2: log odds in favour of the second interval
 
   study::PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
-  std::optional<double> precision_a, precision_b;       ///< wished half widths: frames/s, s/frame
+  std::string question = {};         ///< Pilot: id of the scale; empty: the first that the trials ask
+  std::optional<double> level = {};  ///< Pilot: where the observer's curve runs; none: that of level_of()
+  std::optional<double> precision_a, precision_b;  ///< wished half widths: frames/s, s/frame
 };
+
+/// The scale that a simulated pilot is rated on, and the level at which its curve is fitted. base::Error when
+/// the trials ask none, or not the one wished, or the level lies outside.
+study::Question rated_question(const PowerRequest& request);
+double rated_level(const PowerRequest& request);
 
 /// "10:60", "10:60:5" or "26" as numbers of participants, from 2 to 2,000. base::Error otherwise.
 std::vector<int> parse_participants(const std::string& text);

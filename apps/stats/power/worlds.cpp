@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/common/claims.hpp"
 #include "apps/stats/power/effect_levels.hpp"
 #include "stats/base/error.hpp"
 
@@ -176,12 +177,29 @@ World task2_world(const PowerRequest& request, const ShownFactors& factors, cons
 
 }  // namespace
 
+namespace {
+
+/// Without hypotheses about methods that the protocol does not show.
+void keep_shown(World& world, const PowerRequest& request) {
+  const auto shown = hypotheses_of(request.protocol, request.plan.plan).claims;
+  for (Scenario& scenario : world.scenarios) {
+    std::erase_if(scenario.hypotheses, [&](const std::string& id) {
+      return std::none_of(shown.begin(), shown.end(), [&](const auto& one) { return one.id == id; });
+    });
+  }
+  std::erase_if(world.scenarios, [](const Scenario& one) { return one.hypotheses.empty(); });
+}
+
+}  // namespace
+
 std::vector<World> make_worlds(const PowerRequest& request, const ShownFactors& factors) {
   std::vector<World> out;
   for (const auto& id : request.worlds)
     out.push_back(!factors.effects.empty()        ? effect_world(request, factors, id)
                   : request.protocol.design.pairs ? task2_world(request, factors, id)
                                                   : task1_world(request, factors, id));
+  if (factors.effects.empty())
+    for (World& world : out) keep_shown(world, request);
   return out;
 }
 

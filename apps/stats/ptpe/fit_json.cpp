@@ -76,6 +76,7 @@ Json data_json(const TaskData& data) {
   }
   for (const auto& one : data.exclusions) rules[one.rule] += one.answers;
   return {{"protocol", {{"name", data.protocol.name}, {"sha256", data.protocol.sha256}}},
+          {"question", data.question.id},
           {"test_data", data.test_data},
           {"simulated_participants", data.simulated.size()},
           {"used", {{"by_verdict", verdicts}, {"by_grade", grades}}},
@@ -95,8 +96,8 @@ void add_provenance(Json& json) {
 
 }  // namespace
 
-Json failed_fit_json(double level, const std::string& reason) {
-  Json json{{"format", 1}, {"status", "failed"}, {"reason", reason}, {"level", level}};
+Json failed_fit_json(std::optional<double> level, const std::string& reason) {
+  Json json{{"format", 1}, {"status", "failed"}, {"reason", reason}, {"level", json_number(level)}};
   add_estimate(json, {stats::Refusal{reason}, stats::Refusal{reason}});
   json["n_participants"] = 0;
   json["n_ratings"] = 0;
@@ -125,7 +126,7 @@ Json fit_json(const PilotFit& fit) {
   json["scale_min"] = fit.data.question.scale_min;
   json["scale_max"] = fit.data.question.scale_max;
   if (fit.ok()) json["relative_half_width"] = fit.relative_half_width();
-  json["level5"] = direct_json(fit.harmonic.at(5.0).direct);
+  if (fit.harmonic.contains(5.0)) json["level5"] = direct_json(fit.harmonic.at(5.0).direct);
   json["estimators"] = estimators_json(fit);
   json["lack_of_fit"] = lack_of_fit_json(fit.chosen().direct);
   json["bands"] = bands_json(fit);

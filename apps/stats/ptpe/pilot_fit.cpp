@@ -129,10 +129,14 @@ void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const Pilo
   }
 }
 
+bool within_scale(double level, const study::Question& question) {
+  return level > question.scale_min && level < question.scale_max;
+}
+
 /// What the solver's file cannot take is no usable fit.
 std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
   if (table.ratings() == 0) return "no answered trial is left to analyse";
-  if (!(fit.level > data.question.scale_min && fit.level < data.question.scale_max)) {
+  if (!within_scale(fit.level, data.question)) {
     return "the level does not lie within the rating scale, " + std::to_string(data.question.scale_min) +
            " to " + std::to_string(data.question.scale_max);
   }
@@ -159,6 +163,8 @@ LevelFit fit_level(const TaskData& data, const stats::PilotTable& table, PilotMe
 
 }  // namespace
 
+bool PilotFit::level_within_scale() const { return within_scale(level, data.question); }
+
 MainEstimate PilotFit::main() const {
   const auto& direct = chosen().direct;
   if (!direct.fit) return {stats::Refusal{direct.fit.reason()}, stats::Refusal{direct.fit.reason()}};
@@ -184,7 +190,9 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   fit.grid = table.grid(PilotMean::Harmonic);
   for (std::size_t cell = 0; cell < fit.grid.nodes.size(); ++cell) fit.scores.push_back(table.scores(cell));
   fit.deltas = fit.grid.delta;
-  const std::set<double> levels{4.0, 5.0, level};
+  std::set<double> levels{level};
+  for (const double usual : {4.0, 5.0})
+    if (within_scale(usual, data.question)) levels.insert(usual);
   Progress progress("resampling participants",
                     4 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
   std::size_t done = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ struct MainEstimate {
   stats::Result<MainSpread> spread;
 };
 
-/// The estimates at the level wished and at 4.0 and 5.0, with the harmonic and with the arithmetic realised
-/// mean. The ordinal one is made with the harmonic mean only.
+/// The estimates at the level wished, and at 4.0 and 5.0 where the scale holds them, with the harmonic and
+/// with the arithmetic realised mean. The ordinal one is made with the harmonic mean only.
 struct PilotFit {
   TaskData data;
   double level = 4;
@@ -60,6 +61,7 @@ struct PilotFit {
   std::vector<stats::PilotDoubt> doubts;  ///< why the fit there is must not steer a solver
 
   bool ok() const { return reason.empty(); }
+  bool level_within_scale() const;
   const LevelFit& chosen() const { return harmonic.at(level); }
   /// The direct estimate: level wished, harmonic mean, as the solver's own mu.
   MainEstimate main() const;
@@ -72,7 +74,7 @@ struct PilotFit {
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap);
 
 /// The same for a database without usable data: only the reason is known.
-nlohmann::ordered_json failed_fit_json(double level, const std::string& reason);
+nlohmann::ordered_json failed_fit_json(std::optional<double> level, const std::string& reason);
 /// Every number of the fit, for fit.json. No NaN: what is undefined is null with its reason beside it.
 nlohmann::ordered_json fit_json(const PilotFit& fit);
 /// For the solver; the fit is ok().

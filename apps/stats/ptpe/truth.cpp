@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libstudy/observer/ptpe_observer.hpp"
+#include "stats/base/error.hpp"
 
 namespace apps {
 
@@ -24,6 +25,17 @@ std::string line(const char* name, const std::array<double, 2>& interval, bool h
 stats::PtpeModel parse_truth(const std::string& observer) {
   const auto parameters = study::parse_ptpe_observer(observer);
   return {parameters.a, parameters.b};
+}
+
+void check_comparable(const PilotFit& fit, const std::string& observer) {
+  const auto& scale = fit.data.question;
+  const double middle = (scale.scale_min + scale.scale_max) / 2.0;
+  if (fit.level == middle) return;
+  throw base::Error("--truth " + observer,
+                    fmt::format("is the observer's curve at the middle of the scale, {:g}, and the fit is at "
+                                "level {:g}",
+                                middle, fit.level),
+                    fmt::format("write --level {:g}, or leave --truth out", middle));
 }
 
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth) {

@@ -18,6 +18,9 @@ struct Recovery {
 /// a and b of an observer, spelt as for vip-study run: "ptpe:a=24,b=0.02". base::Error otherwise.
 stats::PtpeModel parse_truth(const std::string& observer);
 
+/// base::Error where the fit's level is not the middle of the scale, at which an observer's curve runs.
+void check_comparable(const PilotFit& fit, const std::string& observer);
+
 /// `fit` is ok().
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 

@@ -1,7 +1,6 @@
 #include "apps/stats/report/bundle_parts.hpp"
 
-#include <algorithm>
-
+#include "apps/common/claims.hpp"
 #include "apps/common/svg.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "stats/base/file.hpp"
@@ -11,10 +10,6 @@ namespace apps::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void add_once(std::vector<std::string>& list, const std::string& item) {
-  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
-}
 
 std::string hypothesis_text(const Json& hypothesis) {
   std::string out = hypothesis.at("id").get<std::string>() + " (" + hypothesis.at("kind").get<std::string>() +
@@ -29,49 +24,18 @@ std::string hypothesis_text(const Json& hypothesis) {
   return out;
 }
 
-std::string no_hypotheses(const std::vector<study::Protocol>& protocols) {
-  const bool pilots = std::all_of(protocols.begin(), protocols.end(), [](const study::Protocol& one) {
-    return one.design.timing == study::TimingSource::Settings;
-  });
-  return pilots ? "None: the study estimates a and b of mu = a exp(b delta).\n"
-                : "None: effects are a factor; H1 to H6 are about methods alone. What each level is worth is "
-                  "exploratory.\n";
+/// A line for each curve.
+std::string curves_text(const study::Protocol& protocol, const stats::AnalysisPlan& plan) {
+  std::string out;
+  for (const auto& question : curve_questions(protocol)) {
+    out += "- " + protocol.name + ": the curve of question " + question.id + " is fitted at level " +
+           svg::number(plan.levels.at(question.id), 3) + " of its scale, " +
+           std::to_string(question.scale_min) + " to " + std::to_string(question.scale_max) + "\n";
+  }
+  return out;
 }
 
 }  // namespace
-
-std::vector<stats::Hypothesis> hypotheses_of(const study::Protocol& protocol,
-                                             const stats::AnalysisPlan& plan) {
-  // The paper's claims are about methods alone.
-  if (protocol.design.timing == study::TimingSource::Settings || !protocol.design.effects.empty()) return {};
-  std::vector<std::string> methods, n_stars;
-  for (const auto& cell : protocol.design.cells) {
-    add_once(methods, cell.stimulus.method);
-    add_once(n_stars, cell.stimulus.n_star);
-  }
-  if (!protocol.design.pairs) {
-    stats::ScoreScale realism, sickness;
-    realism.code = "realism";
-    realism.margin = plan.margin_realism;
-    sickness.code = "sickness";
-    sickness.margin = plan.margin_sickness;
-    sickness.max = 3;
-    sickness.min = 0;
-    sickness.higher_is_better = false;
-    return stats::task1_hypotheses({realism, {}, 0, n_stars, methods}, {sickness, {}, 0, n_stars, methods},
-                                   plan, "");
-  }
-  std::vector<stats::PairPreference> pairs;
-  for (int a = 0; a < static_cast<int>(methods.size()); ++a) {
-    for (int b = a + 1; b < static_cast<int>(methods.size()); ++b) {
-      pairs.emplace_back();
-      pairs.back().a = a;
-      pairs.back().b = b;
-      pairs.back().test = stats::Refusal{"no data"};
-    }
-  }
-  return stats::task2_hypotheses(pairs, methods, plan, "");
-}
 
 Json fixed_part(const Json& hypothesis) {
   Json out, tests = Json::array();
@@ -87,7 +51,8 @@ Json fixed_part(const Json& hypothesis) {
 }
 
 std::string bundle_text(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
-                        const Json& hypotheses, bool with_power, const std::string& frozen_utc) {
+                        const Json& hypotheses, const std::vector<std::string>& untested, bool with_power,
+                        const std::string& frozen_utc) {
   std::string out =
       "Preregistration, frozen " + frozen_utc + " with ViP-Lab " + base::version() + "\n\nProtocols\n";
   for (const auto& protocol : protocols)
@@ -96,7 +61,11 @@ std::string bundle_text(const std::vector<study::Protocol>& protocols, const sta
            "\n";
   out += "\nHypotheses\n";
   for (const Json& hypothesis : hypotheses) out += hypothesis_text(hypothesis);
-  if (hypotheses.empty()) out += no_hypotheses(protocols);
+  if (hypotheses.empty()) out += "None.\n";
+  for (const std::string& one : untested) out += "- Not tested: " + one + ".\n";
+  std::string curves;
+  for (const auto& protocol : protocols) curves += curves_text(protocol, plan);
+  if (!curves.empty()) out += "\nCurves\n" + curves;
   std::vector<std::string> hashes;
   for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
   out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" + format_plan(plan, hashes);

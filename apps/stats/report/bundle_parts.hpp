@@ -10,18 +10,13 @@
 
 namespace apps::report {
 
-/// H1 to H3 for a protocol that shows methods one by one, H4 to H6 for pairs; none for a pilot of frame
-/// rates.
-std::vector<stats::Hypothesis> hypotheses_of(const study::Protocol& protocol,
-                                             const stats::AnalysisPlan& plan);
-
 /// What preregistration fixes of a hypothesis: no estimate, no p. Takes "hypotheses" of the results just as
 /// well as hypothesis_json(), so that both sides of a comparison pass through here.
 nlohmann::ordered_json fixed_part(const nlohmann::ordered_json& hypothesis);
 
-/// For people, to be deposited with the hash.
+/// For people, to be deposited with the hash. `untested`: "H1: the study does not show FovFluid".
 std::string bundle_text(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
-                        const nlohmann::ordered_json& hypotheses, bool with_power,
-                        const std::string& frozen_utc);
+                        const nlohmann::ordered_json& hypotheses, const std::vector<std::string>& untested,
+                        bool with_power, const std::string& frozen_utc);
 
 }  // namespace apps::report

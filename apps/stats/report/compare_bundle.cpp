@@ -179,6 +179,19 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
+/// Whether a pilot's curve was fitted at the level that the bundle's plan names; adds what differs.
+bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
+  const Json pilot = results.value("pilot", Json());
+  if (!pilot.is_object() || !pilot.contains("question") || !pilot.at("level").is_number()) return true;
+  const std::string question = pilot.at("question");
+  const auto planned = bundle.plan.plan.levels.find(question);
+  if (planned == bundle.plan.plan.levels.end() || planned->second == pilot.at("level").get<double>())
+    return true;
+  differences.push_back("the curve of question " + question + ": preregistered at level " +
+                        Json(planned->second).dump() + ", fitted at " + pilot.at("level").dump());
+  return false;
+}
+
 /// Whether the bundle is older than the first answer of a part, by the clocks of both; an entry of "times".
 Json time_json(const std::string& frozen, const Json& used) {
   const std::string title = used.at("title");
@@ -233,7 +246,8 @@ Json compare_with_bundle(const Bundle& bundle, const std::vector<study::Protocol
                                   [&](const auto& protocol) { return protocol.sha256 == sha256; });
     const bool protocol_holds =
         row != protocols.end() && same_protocol(bundle, *row, task == "pilot", differences);
-    const bool hypotheses_hold = same_hypotheses(bundle, task, results, differences);
+    const bool hypotheses_hold = same_hypotheses(bundle, task, results, differences) &&
+                                 (task != "pilot" || same_level(bundle, results, differences));
     const Json time = time_json(frozen, used);
     const bool late = time.at("frozen_before") == false;
     const bool covered = protocol_holds || task != "pilot";

@@ -1,6 +1,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "apps/common/claims.hpp"
 #include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
@@ -8,6 +9,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps::report {
 
@@ -32,6 +34,37 @@ std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) 
   return out;
 }
 
+std::vector<std::string> untested_of(const std::vector<study::Protocol>& protocols,
+                                     const stats::AnalysisPlan& plan) {
+  std::vector<std::string> out;
+  for (const auto& protocol : protocols) {
+    for (const auto& [id, reason] : hypotheses_of(protocol, plan).left_out)
+      out.push_back(id + " of " + protocol.name + ": " + reason);
+  }
+  return out;
+}
+
+/// The plan with the level of each curve: its own, else the protocol's.
+stats::AnalysisPlan with_levels(stats::AnalysisPlan plan, const std::vector<study::Protocol>& protocols) {
+  const auto given = plan.levels;
+  std::map<std::string, std::string> named_by;
+  for (const auto& protocol : protocols) {
+    for (const auto& question : curve_questions(protocol)) {
+      if (given.contains(question.id)) continue;
+      const double level = study::fitted_level(question);
+      const auto [found, added] = plan.levels.emplace(question.id, level);
+      const auto other = named_by.emplace(question.id, protocol.name).first;
+      if (added || other->second == protocol.name || found->second == level) continue;
+      throw base::Error(protocol.place,
+                        "asks \"" + question.id + "\" with the level " + base::shortest(level) +
+                            ", protocol " + other->second + " with the level " +
+                            base::shortest(found->second),
+                        "give the two questions ids of their own, or the same level");
+    }
+  }
+  return plan;
+}
+
 Files contents(const BundleRequest& request) {
   const auto protocols = read_protocols(request.protocols);
   const std::string now = base::utc_now();
@@ -46,11 +79,12 @@ Files contents(const BundleRequest& request) {
                       {"version", protocol.version},
                       {"sha256", protocol.sha256},
                       {"file", name}});
-    for (const auto& hypothesis : hypotheses_of(protocol, request.plan))
+    for (const auto& hypothesis : hypotheses_of(protocol, request.plan).claims)
       hypotheses.push_back(fixed_part(hypothesis_json(hypothesis)));
   }
+  const auto plan = with_levels(request.plan, protocols);
   files["hypotheses.json"] = hypotheses.dump(2) + "\n";
-  files["plan.toml"] = format_plan(request.plan, hashes);
+  files["plan.toml"] = format_plan(plan, hashes);
   if (request.power) {
     files["power.json"] = base::read_file(*request.power, largest_file);
     if (!Json::accept(files["power.json"]))
@@ -65,7 +99,7 @@ Files contents(const BundleRequest& request) {
                             .dump(2) +
                         "\n";
   files["PREREGISTRATION.txt"] =
-      bundle_text(protocols, request.plan, hypotheses, request.power.has_value(), now);
+      bundle_text(protocols, plan, hypotheses, untested_of(protocols, plan), request.power.has_value(), now);
   return files;
 }
 
@@ -99,6 +133,10 @@ class Draft {
 };
 
 }  // namespace
+
+std::vector<std::string> untested_claims(const BundleRequest& request) {
+  return untested_of(read_protocols(request.protocols), request.plan);
+}
 
 std::string freeze_bundle(const BundleRequest& request, const fs::path& given) {
   const fs::path out = given.has_filename() ? given : given.parent_path();

@@ -29,15 +29,17 @@ std::string enumerated(const std::vector<std::string>& names) {
   return out;
 }
 
-std::string head_section(const Field& root) {
-  const Field study = root["study"];
-  std::string names;
-  for (const Field& protocol : study["protocols"].entries())
-    names += (names.empty() ? "" : ", ") + words(protocol["name"]);
-  std::string out = "<h1>Results of " +
-                    (study["database"].words().empty() ? "a study" : words(study["database"])) + "</h1>\n" +
-                    paragraph((names.empty() ? "" : "Protocols: " + names + ". ") +
-                              (root["date_utc"].there() ? "Computed " + words(root["date_utc"]) + "." : ""));
+std::vector<Field> documents(const Field& root) {
+  std::vector<Field> out{root};
+  for (const Field& one : root["apart"].entries()) out.push_back(one);
+  return out;
+}
+
+namespace {
+
+/// What a reader must know before any number: that it is of no people.
+std::string banners(const Field& study) {
+  std::string out;
   if (study["incomplete"].there())
     out += "<p class=\"warning\"><strong>Incomplete.</strong> " + words(study["incomplete"]) +
            ": the database lacks them, and so do these results.</p>\n";
@@ -52,6 +54,24 @@ std::string head_section(const Field& root) {
            "</strong> (" + joined(study["observers"]) + "). All answers of " + enumerated(simulated) +
            " come from a model: they say nothing about people.</p>\n";
   return out;
+}
+
+}  // namespace
+
+std::string head_section(const Field& root) {
+  const Field study = root["study"];
+  std::string names, warnings;
+  for (const Field& document : documents(root)) {
+    for (const Field& protocol : document["study"]["protocols"].entries())
+      names += (names.empty() ? "" : ", ") + words(protocol["name"]) +
+               (document.pointer().empty() ? "" : " " + words(protocol["version"]));
+    warnings += banners(document["study"]);
+  }
+  return "<h1>Results of " + (study["database"].words().empty() ? "a study" : words(study["database"])) +
+         "</h1>\n" +
+         paragraph((names.empty() ? "" : "Protocols: " + names + ". ") +
+                   (root["date_utc"].there() ? "Computed " + words(root["date_utc"]) + "." : "")) +
+         warnings;
 }
 
 }  // namespace apps::report

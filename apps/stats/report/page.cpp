@@ -16,9 +16,11 @@ struct Section {
 
 constexpr Section sections[] = {
     {"decisions", "Decisions", decisions_section},
+    {"not-analysed", "Not analysed", not_analysed_section},
     {"methods", "Methods", methods_section},
     {"participants", "Participants and exclusions", participants_section},
     {"timing", "Timing", timing_section},
+    {"descriptives", "Answers by cell", descriptives_section},
     {"pilot", "Pilot", pilot_section},
     {"task1", "Task 1", task1_section},
     {"task2", "Task 2", task2_section},
@@ -40,6 +42,50 @@ std::string numbered(std::string body, const std::string& tag, const std::string
   return body;
 }
 
+/// Every id of the page and every reference to one with `prefix` before it, so that parts of the same form
+/// stand on one page. Quotes are no part of a text (svg::escaped).
+std::string with_prefix(std::string html, const std::string& prefix) {
+  for (const std::string mark : {" id=\"", "href=\"#", "url(#", "aria-labelledby=\""}) {
+    for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
+      at += mark.size();
+      html.insert(at, prefix);
+      if (mark.front() != 'a') continue;
+      for (auto end = html.find('"', at), space = html.find(' ', at); space < end;
+           end = html.find('"', at), space = html.find(' ', space + 1))
+        html.insert(space + 1, prefix);
+    }
+  }
+  return html;
+}
+
+struct Rendered {
+  std::string contents, body;
+};
+
+/// The sections that the results have. `name` parts those of a document that stands apart from the others.
+Rendered rendered(const Field& results, const std::string& prefix, const std::string& name) {
+  Rendered out;
+  for (const Section& part : sections) {
+    std::string html = part.render(results);
+    if (html.empty()) continue;
+    html = with_prefix(std::move(html), prefix);
+    if (!name.empty()) html.insert(html.find("</h2>"), ": " + name);
+    out.contents += "<li><a href=\"#" + prefix + part.id + "\">" + part.title +
+                    (name.empty() ? "" : ": " + name) + "</a></li>\n";
+    out.body += html;
+  }
+  return out;
+}
+
+/// "apart 1, Task 1, task1 1.1" or "apart 1, Pilot, ptpe_pilot_lab 1.0, question smoothness".
+std::string name_of(const Field& results) {
+  const Field protocol = results["study"]["protocols"][0];
+  std::string out = words(results["section"]) + ", " + words(protocol["title"]) + ", " +
+                    words(protocol["name"]) + " " + words(protocol["version"]);
+  if (results["pilot"]["question"].there()) out += ", question " + words(results["pilot"]["question"]);
+  return out;
+}
+
 }  // namespace
 
 std::string results_page(const Json& results) {
@@ -48,11 +94,13 @@ std::string results_page(const Json& results) {
     throw base::Error("results", "schema is \"" + root["schema"].words() + "\", not \"vip-results/1\"",
                       "compute the results anew with this version of vip-stats");
   std::string contents, body;
-  for (const Section& part : sections) {
-    const std::string rendered = part.render(root);
-    if (rendered.empty()) continue;
-    contents += "<li><a href=\"#" + std::string(part.id) + "\">" + part.title + "</a></li>\n";
-    body += rendered;
+  std::size_t apart = 0;
+  for (const Field& document : documents(root)) {
+    const bool first = document.pointer().empty();
+    const auto part = first ? rendered(document, "", "")
+                            : rendered(document, "apart-" + std::to_string(++apart) + "-", name_of(document));
+    contents += part.contents;
+    body += part.body;
   }
   body = numbered(numbered(std::move(body), "<caption>", "Table"), "<figcaption>", "Figure");
   return whole_page("Results of " + root["study"]["database"].words(),

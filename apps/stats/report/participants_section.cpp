@@ -46,10 +46,78 @@ bool any_unjudged(const Field& timing) {
   return false;
 }
 
+/// Every session of the database, by protocol, and where it is analysed.
+std::string roster(const Field& roster) {
+  if (!roster.there()) return "";
+  Table table("Everybody in the database", {"Protocol", "Version", "SHA-256", "Participants", "Sessions",
+                                            "Simulated", "Test data", "Section"});
+  for (const Field& one : roster["protocols"].entries()) {
+    std::string sections;
+    for (const Field& place : one["sections"].entries())
+      sections += (sections.empty() ? "" : ", ") + words(place);
+    table.row({words(one["name"]), words(one["version"]),
+               "<span class=\"hash\">" + words(one["sha256"]) + "</span>", count(one["participants"]),
+               count(one["sessions"]), count(one["simulated"]), count(one["test_data"]),
+               sections.empty() ? "none: set aside, or not chosen" : sections});
+  }
+  return paragraph("The database holds " + count(roster["sessions"]) + " sessions of " +
+                   count(roster["participants"]) + " participants; " + count(roster["withdrawn"]) +
+                   " withdrew, of whom nothing is kept.") +
+         (table.empty() ? "" : table.html());
+}
+
+std::string distribution(const Field& cell) {
+  std::string out;
+  for (const Field& one : cell["distribution"].entries()) {
+    const Field answer = one["answer"];
+    out += (out.empty() ? "" : ", ") + (answer.is_number() ? count(answer) : words(answer)) + ": " +
+           count(one["count"]);
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string participants_section(const Field& root) {
+std::string descriptives_section(const Field& root) {
   std::string body;
+  for (const auto& [key, title] : all_parts) {
+    std::string tables;
+    for (const Field& question : root["descriptives"].entries()) {
+      if (question["task"].words() != key) continue;
+      const std::string text = words(question["text"]);
+      Table table("Answers to " + words(question["question"]) + (text.empty() ? "" : ": " + text),
+                  {"Shown", "Scene", "n*", "<i>n</i>", "Participants", "Mean", "<i>SD</i>", "Median",
+                   "Answers: how often"});
+      for (const Field& c : question["cells"].entries())
+        table.row({words(c["shown"]), words(c["scene"]), words(c["n_star"]), count(c["n"]),
+                   count(c["participants"]), fixed(c["mean"], 2), fixed(c["sd"], 2), fixed(c["median"], 1),
+                   distribution(c)});
+      tables += table.empty() ? "<p class=\"refused\">No answer to " + words(question["question"]) +
+                                    " is analysed.</p>\n"
+                              : table.html();
+    }
+    if (!tables.empty()) body += subsection(title, tables);
+  }
+  if (body.empty()) return "";
+  return section("descriptives", "Answers by cell",
+                 paragraph("Every answer to a trial that is analysed, whatever else is computed from it. A "
+                           "cell is what was shown in one scene at one n*; <i>n</i> counts answers.") +
+                     body);
+}
+
+std::string not_analysed_section(const Field& root) {
+  std::vector<std::string> lines;
+  for (const Field& one : root["not_analysed"].entries())
+    lines.push_back("<strong>" + words(one["what"]) + "</strong> (not analysed): " + words(one["reason"]) +
+                    ".");
+  if (lines.empty()) return "";
+  return section("not-analysed", "Not analysed",
+                 "<div class=\"warning\">" + paragraph("Of this study the shipped analyses do not tell:") +
+                     list(lines) + "</div>\n");
+}
+
+std::string participants_section(const Field& root) {
+  std::string body = roster(root["roster"]);
   for (const auto& [key, title] : all_parts) {
     const Field flow = root["flow"][key];
     if (flow.there())

@@ -30,6 +30,7 @@ std::string everything_else(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)
     if (root[key].there()) parts.push_back(std::string("tables and tests of ") + title);
+  if (!root["descriptives"].entries().empty()) parts.push_back("answers by cell");
   if (!root["task1"]["ordinal"].entries().empty()) parts.push_back("ordinal models");
   if (root["task2"]["bradley_terry"].there()) parts.push_back("the Bradley-Terry model");
   if (!root["sensitivity"].entries().empty()) parts.push_back("sensitivity");

@@ -14,8 +14,11 @@ struct Part {
   const char* key;
   const char* title;
 };
-inline constexpr std::array<Part, 3> all_parts{
-    {{"pilot", "Pilot"}, {"task1", "Task 1"}, {"task2", "Task 2"}}};
+inline constexpr std::array<Part, 4> all_parts{
+    {{"pilot", "Pilot"}, {"task1", "Task 1"}, {"task2", "Task 2"}, {"own", "Own design"}}};
+
+/// The results, and behind them those that are apart: another protocol of a task, or another question.
+std::vector<Field> documents(const Field& root);
 
 /// "Pilot, Task 1 and Task 2"; "" of none.
 std::string enumerated(const std::vector<std::string>& names);
@@ -26,9 +29,13 @@ bool preregistered(const Field& root, const std::string& task);
 
 std::string head_section(const Field& root);
 std::string decisions_section(const Field& root);
+/// What the shipped analyses do not tell of the study, and why.
+std::string not_analysed_section(const Field& root);
 std::string methods_section(const Field& root);
 std::string participants_section(const Field& root);
 std::string timing_section(const Field& root);
+/// Answers of each question in each cell, of any protocol.
+std::string descriptives_section(const Field& root);
 /// What frames cost and what error they carried, beside what people said.
 std::string costs_section(const Field& root);
 std::string pilot_section(const Field& root);

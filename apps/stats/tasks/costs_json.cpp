@@ -190,7 +190,9 @@ void add_said(Json& json, const TaskData& data, const Shown& shown) {
   json["answers"] = shown.said.count;
   json["said"] = shown.said.json();
   if (shown.said.count > 0) return;
-  json["said_reason"] = data.task == TaskKind::Task2 && data.protocol.n_stars.size() > 1
+  json["said_reason"] = data.task == TaskKind::Own
+                            ? "the answers of this design are described by question and cell"
+                        : data.task == TaskKind::Task2 && data.protocol.n_stars.size() > 1
                             ? "pairs of several n_* are not told apart"
                             : "no answer counts";
 }

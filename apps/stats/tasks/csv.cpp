@@ -177,11 +177,18 @@ std::string csv_text(const Json& list, const std::vector<std::string>& if_empty)
   return out;
 }
 
-void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
+namespace {
+
+void write_document(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
   std::vector<std::pair<std::string, Json>> lists{
       {"timing", results.at("timing")},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
+  const Json descriptives = entries_of(results.value("descriptives", Json::array()), "cells");
+  lists.emplace_back("descriptives", descriptives);
+  lists.emplace_back("descriptives_answers", entries_of(descriptives, "distribution"));
+  if (results.contains("roster")) lists.emplace_back("roster", results.at("roster").at("protocols"));
+  lists.emplace_back("not_analysed", results.value("not_analysed", Json::array()));
   Json costs = results.value("costs", Json::array());
   lists.emplace_back("costs_sweep", sweep_lines(costs));
   for (Json& one : costs) one.erase("sweep");
@@ -216,6 +223,22 @@ void write_csv_folder(const Json& results, const std::filesystem::path& folder, 
   for (const auto& [name, list] : lists) {
     if (!list.empty()) write(folder / (name + ".csv"), csv_text(list));
   }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> csv_folders(const Json& results, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> out{folder};
+  for (std::size_t i = 0; i < results.value("apart", Json::array()).size(); ++i)
+    out.push_back(folder / ("apart_" + std::to_string(i + 1)));
+  return out;
+}
+
+void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
+  const auto folders = csv_folders(results, folder);
+  write_document(results, folder, write);
+  for (std::size_t i = 1; i < folders.size(); ++i)
+    write_document(results.at("apart").at(i - 1), folders[i], write);
 }
 
 }  // namespace apps

@@ -16,8 +16,12 @@ namespace apps {
 /// that any line has, in the order of first appearance; `if_empty` are those of an empty list.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
-/// Writes every list of the results into a folder, which is there: task1_cells.csv and the like. Lists that
-/// are empty or absent make no file; exclusions.csv is always there.
+/// The folders that write_csv_folder() fills, the given one first: "apart_1" within it and so on are of what
+/// stands apart.
+std::vector<std::filesystem::path> csv_folders(const Json& results, const std::filesystem::path& folder);
+
+/// Writes every list of the results into csv_folders(), which are there: task1_cells.csv and the like. Lists
+/// that are empty or absent make no file; exclusions.csv is always there.
 using WriteFile = std::function<void(const std::filesystem::path&, const std::string& bytes)>;
 void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write);
 

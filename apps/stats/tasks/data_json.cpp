@@ -44,6 +44,14 @@ Json protocol_json(const TaskData& data) {
       {"overlay", data.protocol.paint_temperature ? Json("temperature") : Json()}};
 }
 
+/// The pilot shows one method, which refines nothing by gaze. Another design may show none that does.
+bool refines(const TaskData& data) {
+  if (data.task != TaskKind::Own) return data.task != TaskKind::Pilot;
+  return std::any_of(data.protocol.methods.begin(), data.protocol.methods.end(), [](const std::string& one) {
+    return !one.starts_with("LoRes") && !one.starts_with("HiRes");
+  });
+}
+
 std::vector<std::string> notes_of(const TaskData& data) {
   const std::string task = std::string(task_title(data.task)) + ": ";
   std::vector<std::string> notes;
@@ -59,10 +67,9 @@ std::vector<std::string> notes_of(const TaskData& data) {
   if (data.flow.simulated_left_out > 0)
     notes.push_back(task + counted(static_cast<std::size_t>(data.flow.simulated_left_out), "session") +
                     " of simulated observers left out beside those of people.");
-  // The pilot shows one method, which refines nothing by gaze.
-  const std::string gaze = data.task == TaskKind::Pilot ? "" : data.gaze_problem();
+  const std::string gaze = refines(data) ? data.gaze_problem() : "";
   if (!gaze.empty()) notes.push_back(task + gaze + ".");
-  if (!data.protocol.effects.empty() && data.task != TaskKind::Pilot)
+  if (!data.protocol.effects.empty() && (data.task == TaskKind::Task1 || data.task == TaskKind::Task2))
     notes.push_back(task + "effects are a factor, so that " +
                     (data.task == TaskKind::Task1 ? "H1 to H3" : "H4 to H6") +
                     ", which are about methods alone, are not tested.");
@@ -145,7 +152,7 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
     for (const auto& [station, n] : data->stations) stations[station] += n;
     for (const auto& [display, n] : data->displays) displays[display] += n;
     test_data = test_data && data->test_data;
-    tracked = tracked && (data->task == TaskKind::Pilot || data->gaze_problem().empty());
+    tracked = tracked && (!refines(*data) || data->gaze_problem().empty());
     protocols.push_back(protocol_json(*data));
     for (const std::string& note : notes_of(*data)) notes.push_back(note);
   }
@@ -184,6 +191,38 @@ Json flow_json(const TaskFlow& flow) {
           {"trials_analysed", flow.trials_analysed},
           {"practice", flow.practice},
           {"repeat", flow.repeat}};
+}
+
+Json roster_json(const study::TaskStudy& study, const std::multimap<std::string, std::string>& sections) {
+  std::set<std::string> everyone;
+  std::size_t sessions = 0;
+  Json protocols = Json::array();
+  for (const study::TaskProtocol& protocol : study.protocols) {
+    std::set<std::string> people;
+    int simulated = 0, test_data = 0;
+    for (const study::TaskSession& session : protocol.sessions) {
+      people.insert(session.participant);
+      simulated += session.observer.empty() ? 0 : 1;
+      test_data += session.test_data ? 1 : 0;
+    }
+    everyone.insert(people.begin(), people.end());
+    sessions += protocol.sessions.size();
+    Json places = Json::array();
+    for (auto [at, end] = sections.equal_range(protocol.sha256); at != end; ++at)
+      places.push_back(at->second);
+    protocols.push_back({{"name", protocol.name},
+                         {"version", protocol.version},
+                         {"sha256", protocol.sha256},
+                         {"participants", people.size()},
+                         {"sessions", protocol.sessions.size()},
+                         {"simulated", simulated},
+                         {"test_data", test_data},
+                         {"sections", places}});
+  }
+  return {{"participants", everyone.size()},
+          {"sessions", sessions},
+          {"withdrawn", study.withdrawn},
+          {"protocols", protocols}};
 }
 
 Json exclusions_json(const TaskData& data) {

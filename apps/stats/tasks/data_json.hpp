@@ -1,6 +1,7 @@
 #pragma once
 /// What was analysed and what was not (docs/results.md: study, flow, exclusions, timing).
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace apps {
 /// "study" of one or two tasks; `database`: name to show.
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
 Json flow_json(const TaskFlow& flow);
+/// "roster": every session of the database, by protocol. `sections`: where a protocol is analysed, by
+/// SHA-256.
+Json roster_json(const study::TaskStudy& study, const std::multimap<std::string, std::string>& sections);
 /// Lists.
 Json exclusions_json(const TaskData& data);
 Json timing_json(const TaskData& data);

@@ -3,6 +3,7 @@
 #include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/tasks/costs_json.hpp"
 #include "apps/stats/tasks/data_json.hpp"
+#include "apps/stats/tasks/descriptives_json.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"
 #include "apps/stats/tasks/task1_json.hpp"
@@ -14,58 +15,100 @@ namespace apps {
 
 namespace {
 
-/// The pilot's level for the solver, the middle of the paper's scale.
-constexpr double pilot_level = 4;
-
-/// One task's parts of the document.
+/// One analysis: parts of the document.
 struct TaskPart {
   TaskData data;
-  Json results;  ///< refused when no answer counts
-  std::vector<stats::Hypothesis> hypotheses;
+  std::vector<std::string> described;  ///< ids of the questions whose answers are described
+  Json results = {};                   ///< refused when no answer counts
+  std::vector<stats::Hypothesis> hypotheses = {};
+  std::vector<stats::ShownClaims::LeftOut> not_analysed = {};
   Json sensitivity = Json::array();
 };
 
+/// Of a design that no shipped analysis is about.
+std::string why_not_analysed(const TaskData& data) {
+  const auto& protocol = data.protocol;
+  const std::string lacks = protocol.pairs && protocol.methods.size() > 1
+                                ? "asks no choice between the two of a pair"
+                            : protocol.pairs   ? "shows pairs of one method"
+                            : protocol.pilot() ? "asks no question on a scale"
+                                               : "asks no question 'realism' on a scale";
+  return "protocol " + protocol.name + " " + lacks + ": no shipped analysis is about it";
+}
+
 /// What stands under the task's own name, and its hypotheses. Refused with the reason.
-stats::Result<Json> results_of(TaskPart& part, const stats::AnalysisPlan& plan) {
+stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
+  const stats::AnalysisPlan& plan = request.plan.plan;
+  if (data.task == TaskKind::Own) part.not_analysed.push_back({"own design", why_not_analysed(data)});
   if (const std::string nothing = nothing_counts(data); !nothing.empty()) return stats::Refusal{nothing};
+  if (data.task == TaskKind::Own) return stats::Refusal{why_not_analysed(data)};
   if (data.task == TaskKind::Pilot) {
     stats::BootstrapOptions bootstrap;
     bootstrap.seed = plan.seed;
     bootstrap.confidence = plan.confidence;
-    return fit_json(fit_pilot(data, pilot_level, bootstrap));
+    return fit_json(
+        fit_pilot(data, level_of({data.task, {}, plan, {}, request.level}, data.question), bootstrap));
   }
   if (data.task == TaskKind::Task1) {
     const auto results = analyse_task1(data, plan);
-    if (!results) return stats::Refusal{results.reason()};
+    if (!results) {
+      part.not_analysed.push_back({"H1 to H3", results.reason()});
+      return stats::Refusal{results.reason()};
+    }
     part.hypotheses = results->hypotheses;
+    part.not_analysed = results->left_out;
     return task1_json(data, *results, plan);
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
   // The paper's claims are about methods alone.
-  if (data.protocol.effects.empty())
-    part.hypotheses =
-        stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem());
+  if (data.protocol.effects.empty()) {
+    auto claims = stats::claims_about(
+        stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem()),
+        data.protocol.methods);
+    part.hypotheses = std::move(claims.claims);
+    part.not_analysed = std::move(claims.left_out);
+  }
   return task2_json(data, analysis, plan);
 }
 
-/// Refused without a protocol that is analysed; without an answer that counts, who left and why still stands.
-stats::Result<TaskPart> analyse(const study::TaskStudy& study, const TaskSelection& selection,
-                                std::vector<MissingTask>& missing) {
-  const auto data = collect_task(study, selection);
-  if (!data) return stats::Refusal{data.reason()};
-  TaskPart part{*data, {}, {}};
-  const auto results = results_of(part, selection.plan);
+/// Each question is described once: with its own analysis, or with the first of its protocol.
+std::vector<std::string> described_questions(const ChosenTask& chosen, const std::string& only) {
+  std::vector<std::string> out;
+  for (const study::Question& question : chosen.protocol.questions) {
+    const bool own = question.id == chosen.question.id;
+    const bool others =
+        chosen.first_of_protocol && only.empty() &&
+        (kind_of(chosen.protocol) == TaskKind::Own || !is_main_question(chosen.protocol, question));
+    if (own || others) out.push_back(question.id);
+  }
+  return out;
+}
+
+/// Without an answer that counts, who left and why still stands.
+TaskPart analyse(const study::TaskStudy& study, const ChosenTask& chosen, const ResultsRequest& request,
+                 std::vector<MissingTask>& missing) {
+  const TaskSelection selection{kind_of(chosen.protocol), request.protocol, request.plan.plan};
+  TaskPart part{.data = collect_task(study, chosen, selection.plan.exclusions),
+                .described = described_questions(chosen, request.question)};
+  const auto results = results_of(part, request);
   part.results = results ? *results : json_refused(results.reason());
   if (!results) missing.push_back({selection.task, results.reason()});
   if (results && !part.hypotheses.empty())
-    part.sensitivity = sensitivity_json(study, selection, *data, part.hypotheses);
+    part.sensitivity = sensitivity_json(study, selection, part.data, part.hypotheses);
   return part;
 }
 
 void append(Json& list, const Json& more) {
   for (const auto& one : more) list.push_back(one);
+}
+
+Json not_analysed_json(const TaskPart& part) {
+  Json list = Json::array();
+  for (const auto& [what, reason] : part.not_analysed)
+    list.push_back({{"task", task_name(part.data.task)}, {"what", what}, {"reason", reason}});
+  return list;
 }
 
 Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts) {
@@ -85,11 +128,15 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
             {"timing", Json::array()},
             {"costs", Json::array()}};
   if (request.sweep) json["sweep"] = sweep_json(request.sweep_file, *request.sweep);
+  json["descriptives"] = Json::array();
+  json["not_analysed"] = Json::array();
   for (const TaskPart& part : parts) {
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));
     append(json["timing"], timing_json(part.data));
     append(json["costs"], costs_json(part.data, request.sweep.get()));
+    append(json["descriptives"], descriptives_json(part.data, part.described));
+    append(json["not_analysed"], not_analysed_json(part));
   }
   for (const TaskPart& part : parts) json[task_name(part.data.task)] = part.results;
   json["hypotheses"] = Json::array();
@@ -104,6 +151,18 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
   return json;
 }
 
+/// Of the document at this place in "apart".
+std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
+
+/// Where each protocol is analysed, by SHA-256.
+std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
+                                                    const std::vector<TaskPart>& others) {
+  std::multimap<std::string, std::string> out;
+  for (const TaskPart& part : first) out.emplace(part.data.protocol.sha256, task_name(part.data.task));
+  for (std::size_t i = 0; i < others.size(); ++i) out.emplace(others[i].data.protocol.sha256, apart_name(i));
+  return out;
+}
+
 }  // namespace
 
 Results study_results(const ResultsRequest& request) {
@@ -112,17 +171,32 @@ Results study_results(const ResultsRequest& request) {
 
 Results make_results(const study::TaskStudy& study, const ResultsRequest& request) {
   Results out;
-  std::vector<TaskPart> parts;
+  std::vector<TaskPart> first, others;
   for (const TaskKind task : request.tasks) {
-    const auto part = analyse(study, {task, request.protocol, request.plan.plan}, out.missing);
-    if (part) {
-      parts.push_back(*part);
-    } else {
-      out.missing.push_back({task, part.reason()});
+    const auto chosen = choose_tasks(study, {task, request.protocol, request.plan.plan, request.question});
+    if (!chosen) {
+      out.missing.push_back({task, chosen.reason()});
+      continue;
+    }
+    for (const ChosenTask& one : *chosen)
+      (&one == &chosen->front() ? first : others).push_back(analyse(study, one, request, out.missing));
+  }
+  out.json = assemble(request, first);
+  out.json["roster"] = roster_json(study, sections_of(first, others));
+  if (!others.empty()) out.json["apart"] = Json::array();
+  for (TaskPart& part : others) {
+    std::vector<TaskPart> alone;
+    alone.push_back(std::move(part));
+    Json document = assemble(request, alone);
+    document["section"] = apart_name(out.json["apart"].size());
+    out.json["apart"].push_back(std::move(document));
+  }
+  if (!study.lacking.empty()) {
+    out.json["study"]["incomplete"] = study.lacking;
+    if (!others.empty()) {
+      for (Json& document : out.json["apart"]) document["study"]["incomplete"] = study.lacking;
     }
   }
-  out.json = assemble(request, parts);
-  if (!study.lacking.empty()) out.json["study"]["incomplete"] = study.lacking;
   return out;
 }
 

@@ -17,11 +17,13 @@ namespace apps {
 struct ResultsRequest {
   std::filesystem::path database;
   std::vector<TaskKind> tasks;  ///< those without a protocol in the database are left out
-  std::string protocol;  ///< leading digits of a SHA-256, of one task; empty when one protocol fits each task
+  std::string protocol;         ///< leading digits of a SHA-256; empty: all
   PlanInForce plan;
   std::shared_ptr<const SweepTables> sweep = {};  ///< none = not asked
   std::string sweep_file = {};                    ///< its name to show
   bool incomplete = false;                        ///< go on where the journal holds more than the database
+  std::string question = {};                      ///< its id; empty: all
+  std::optional<double> level = {};               ///< of a pilot's curve; none: that of level_of()
 };
 
 /// A task of the request that has no results.
@@ -31,6 +33,8 @@ struct MissingTask {
 };
 
 struct Results {
+  /// The first analysis of each task. What else the request asks for, another protocol of a task or another
+  /// question, is in "apart": a list of documents of the same form, each with one analysis.
   Json json;
   std::vector<MissingTask> missing;
 };

@@ -16,8 +16,10 @@ using Verdicts = std::vector<stats::Hypothesis>;
 stats::Result<Verdicts> verdicts(const TaskData& data, const stats::AnalysisPlan& plan) {
   if (data.task == TaskKind::Task1) return task1_verdicts(data, plan);
   const auto methods = static_cast<int>(data.protocol.methods.size());
-  return stats::task2_hypotheses(stats::count_preferences(data.choices, methods, plan), data.protocol.methods,
-                                 plan, data.gaze_problem());
+  return stats::claims_about(stats::task2_hypotheses(stats::count_preferences(data.choices, methods, plan),
+                                                     data.protocol.methods, plan, data.gaze_problem()),
+                             data.protocol.methods)
+      .claims;
 }
 
 Json changed(const Verdicts& planned, const Verdicts& other) {
@@ -105,6 +107,7 @@ Json sensitivity_json(const study::TaskStudy& study, const TaskSelection& select
 
   TaskSelection other = selection;
   other.protocol = data.protocol.sha256;
+  other.question = data.question.id;
   other.plan.exclusions = {.timing = stats::TimingRule::None,
                            .min_catch_correct = {},
                            .max_repeat_difference = {},

@@ -77,9 +77,8 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-stats::Result<std::vector<stats::Hypothesis>> verdicts(const std::vector<stats::ScoreTable>& tables,
-                                                       const TaskData& data,
-                                                       const stats::AnalysisPlan& plan) {
+stats::Result<stats::ShownClaims> verdicts(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
+                                           const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
   const auto* sickness = find_table(tables, "sickness");
   if (!realism || !sickness) {
@@ -87,7 +86,8 @@ stats::Result<std::vector<stats::Hypothesis>> verdicts(const std::vector<stats::
                           " does not ask for realism and the four items of cybersickness (disorientation, "
                           "unrealism, dizziness, confusion)"};
   }
-  return stats::task1_hypotheses(*realism, *sickness, plan, data.gaze_problem());
+  return stats::claims_about(stats::task1_hypotheses(*realism, *sickness, plan, data.gaze_problem()),
+                             data.protocol.methods);
 }
 
 }  // namespace
@@ -116,7 +116,9 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
 
 stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
                                                              const stats::AnalysisPlan& plan) {
-  return verdicts(score_tables(data, plan), data, plan);
+  const auto claims = verdicts(score_tables(data, plan), data, plan);
+  if (!claims) return stats::Refusal{claims.reason()};
+  return claims->claims;
 }
 
 stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
@@ -126,7 +128,8 @@ stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::Ana
   if (data.protocol.effects.empty()) {
     const auto hypotheses = verdicts(out.tables, data, plan);
     if (!hypotheses) return stats::Refusal{hypotheses.reason()};
-    out.hypotheses = *hypotheses;
+    out.hypotheses = hypotheses->claims;
+    out.left_out = hypotheses->left_out;
     stats::add_tipping_points(out.hypotheses, out.tables);
   }
   for (const auto& table : out.tables) out.analyses.push_back(stats::analyse_scores(table, plan));

@@ -1,0 +1,18 @@
+#pragma once
+/// What the shipped analyses can tell of a protocol, before there are data.
+
+#include <vector>
+
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace apps {
+
+/// H1 to H3 for a protocol that shows methods one by one and asks for realism and cybersickness, H4 to H6 for
+/// one that lets people choose of pairs, as far as it shows their methods; and why others are not tested.
+stats::ShownClaims hypotheses_of(const study::Protocol& protocol, const stats::AnalysisPlan& plan);
+
+/// Questions that the trials ask on a scale under several frame rates: each has a curve.
+std::vector<study::Question> curve_questions(const study::Protocol& protocol);
+
+}  // namespace apps

@@ -1,0 +1,26 @@
+#include "apps/stats/choice_options.hpp"
+
+#include "apps/common/options.hpp"
+
+namespace apps {
+
+CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options) {
+  return command.add_option("--protocol", options.protocol,
+                            "First digits of a protocol's SHA-256; without: every protocol by itself");
+}
+
+void add_question_choice(CLI::App& command, ChoiceOptions& options) {
+  command.add_option("--question", options.question, "Id of a question; without: every question by itself");
+  command
+      .add_option("--level", options.level,
+                  "Pilot: score at which the curve is fitted; without: that of the plan, else of the "
+                  "protocol, else the scale's middle")
+      ->check(number_in(-1e6, 1e6));
+}
+
+void add_choice(CLI::App& command, ChoiceOptions& options) {
+  add_protocol_choice(command, options);
+  add_question_choice(command, options);
+}
+
+}  // namespace apps

@@ -1,0 +1,215 @@
+/// What error texts and notes of the programs advise: every command and option that they name is there.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+
+namespace apps::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsEmpty;
+using Words = std::set<std::string>;
+
+const fs::path root = fs::path(VIP_TEST_DIR).parent_path();
+const std::vector<std::string> programs{"vip-study", "vip-stats", "vip-bench", "vip-view"};
+
+/// What the source prints: its literals, of which those side by side are one.
+std::vector<std::string> literals_of(const std::string& source) {
+  std::vector<std::string> out;
+  bool joins = false;  // nothing but white space since the last literal
+  for (std::size_t at = 0; at < source.size(); ++at) {
+    if (source.compare(at, 2, "//") == 0) {
+      at = std::min(source.find('\n', at), source.size());
+    } else if (source.compare(at, 3, "'\"'") == 0) {
+      at += 2;
+      joins = false;
+    } else if (source.compare(at, 3, "R\"(") == 0) {
+      const std::size_t end = std::min(source.find(")\"", at), source.size());
+      out.push_back(source.substr(at + 3, end - at - 3));
+      at = end + 1;
+      joins = false;
+    } else if (source[at] == '"') {
+      std::string text;
+      for (++at; at < source.size() && source[at] != '"'; ++at) {
+        if (source[at] == '\\') ++at;
+        text += source[at];
+      }
+      if (joins) out.back() += text;
+      if (!joins) out.push_back(text);
+      joins = true;
+    } else if (!std::isspace(static_cast<unsigned char>(source[at]))) {
+      joins = false;
+    }
+  }
+  return out;
+}
+
+/// "bench --help" and so on: options by "vip-bench table1", and "vip-view" itself.
+class Programs {
+ public:
+  Programs() {
+    for (const auto& program : programs) {
+      const std::string help = help_of(program);
+      options_[program] = options_in(help);
+      for (const auto& command : commands_in(help)) {
+        const std::string whole = program + " " + command;
+        const std::string text = help_of(whole);
+        options_[whole] = options_in(text);
+        for (const auto& inner : commands_in(text))
+          options_[whole + " " + inner] = options_in(help_of(whole + " " + inner));
+      }
+    }
+  }
+
+  bool has(const std::string& command) const { return options_.contains(command); }
+  bool has(const std::string& command, const std::string& option) const {
+    return options_.at(command).contains(option);
+  }
+  std::vector<std::string> commands_of(const std::string& program) const {
+    std::vector<std::string> out;
+    for (const auto& [command, options] : options_)
+      if (command == program || command.starts_with(program + " ")) out.push_back(command);
+    return out;
+  }
+
+ private:
+  static std::string help_of(const std::string& command) {
+    const Ended help = run_shell(VIP_BIN_DIR "/" + command + " --help");
+    EXPECT_EQ(help.exit_code, 0) << command << "\n" << help.out;
+    return help.out;
+  }
+  static Words options_in(const std::string& help) {
+    static const std::regex option(R"(--[a-z][a-z0-9-]*)");
+    return {std::sregex_token_iterator(help.begin(), help.end(), option), std::sregex_token_iterator()};
+  }
+  static Words commands_in(const std::string& help) {
+    static const std::regex entry(R"((?:^|\n)  ([a-z][a-z0-9-]*) )");
+    const auto from = help.find("Subcommands:");
+    if (from == std::string::npos) return {};
+    const std::string list = help.substr(from);
+    return {std::sregex_token_iterator(list.begin(), list.end(), entry, 1), std::sregex_token_iterator()};
+  }
+
+  std::map<std::string, Words> options_;
+};
+
+/// Commands that print what stands in a source. Advice that several commands print must hold for each of
+/// them; of other sources it must hold for one of the program's.
+struct Place {
+  std::string path;  ///< beginning, from the project's root
+  std::vector<std::string> commands;
+};
+const std::vector<Place> shared_places{
+    {"apps/stats/data/task_",
+     {"vip-stats report", "vip-stats fit-ptpe", "vip-stats task1", "vip-stats task2"}},
+    {"apps/stats/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
+    {"apps/stats/ptpe/", {"vip-stats fit-ptpe"}},
+    {"apps/stats/power", {"vip-stats power"}},
+    {"apps/stats/fit_ptpe_command", {"vip-stats fit-ptpe"}},
+    {"apps/stats/report_command", {"vip-stats report"}},
+    {"apps/stats/task_commands", {"vip-stats task1", "vip-stats task2"}},
+    {"apps/stats/report/freeze", {"vip-stats preregister"}},
+    {"apps/study/merge_command", {"vip-study merge"}},
+    {"apps/study/export_command", {"vip-study export"}},
+    {"apps/study/consent_command", {"vip-study consent"}}};
+
+/// Of a program that is none of ours: nvidia-smi.
+const Words of_others{"--query-gpu", "--format"};
+
+std::vector<std::string> own_programs(const std::string& path) {
+  for (const auto& program : programs)
+    if (path.starts_with("apps/" + program.substr(4) + "/")) return {program};
+  return programs;
+}
+
+/// What is wrong with the advice of one text; empty: nothing.
+std::vector<std::string> wrong_advice(const Programs& known, const std::string& path,
+                                      const std::string& text) {
+  static const std::regex named(
+      R"((vip-(?:study|stats|bench|view))((?: [a-z][a-z0-9-]*)?)|(--[a-z][a-z0-9-]*[a-z0-9]))");
+  std::vector<std::string> wrong;
+  std::string command;  // named last in this sentence
+  std::size_t end = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), named), none; at != none; ++at) {
+    const auto& match = *at;
+    const auto place = static_cast<std::size_t>(match.position());
+    if (text.substr(end, place - end).find_first_of(";:,()") != std::string::npos) command.clear();
+    end = place + static_cast<std::size_t>(match.length());
+    const std::string program = match[1], option = match[3];
+    if (!program.empty()) {
+      const std::string whole = program + match[2].str();
+      command = known.has(whole) ? whole : program;
+      continue;
+    }
+    if (of_others.contains(option)) continue;
+    if (!command.empty() && known.commands_of(command).size() == 1) {
+      if (!known.has(command, option))
+        wrong.push_back(path + ": " + command + " has no " + option + ": " + text);
+      continue;
+    }
+    const auto shared = std::find_if(shared_places.begin(), shared_places.end(),
+                                     [&](const Place& one) { return path.starts_with(one.path); });
+    if (command.empty() && shared != shared_places.end()) {
+      for (const auto& one : shared->commands)
+        if (!known.has(one, option)) wrong.push_back(path + ": " + one + " has no " + option + ": " + text);
+      continue;
+    }
+    const auto of = command.empty() ? own_programs(path) : std::vector<std::string>{command};
+    const bool any = std::any_of(of.begin(), of.end(), [&](const std::string& one) {
+      const auto commands = known.commands_of(one);
+      return std::any_of(commands.begin(), commands.end(),
+                         [&](const std::string& each) { return known.has(each, option); });
+    });
+    if (!any) wrong.push_back(path + ": no command has " + option + ": " + text);
+  }
+  return wrong;
+}
+
+const Programs& known_programs() {
+  static const Programs known;
+  return known;
+}
+
+TEST(AdviceE2e, NamesOptionsThatThereAre) {
+  std::vector<std::string> wrong;
+  std::size_t texts = 0;
+  for (const char* folder : {"apps", "libstudy", "libsim", "stats"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string kind = entry.path().extension();
+      if (kind != ".cpp" && kind != ".hpp") continue;
+      for (const auto& text : literals_of(base::read_file(entry.path(), 1 << 20))) {
+        if (text.find("--") == std::string::npos && text.find("vip-") == std::string::npos) continue;
+        ++texts;
+        const auto some = wrong_advice(known_programs(), fs::relative(entry.path(), root).string(), text);
+        wrong.insert(wrong.end(), some.begin(), some.end());
+      }
+    }
+  }
+  EXPECT_GT(texts, 200u);
+  EXPECT_THAT(wrong, IsEmpty());
+}
+
+TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
+  const auto wrong = [](const char* path, const char* text) {
+    return wrong_advice(known_programs(), path, text).size();
+  };
+  EXPECT_EQ(wrong("apps/stats/data/task_choice.cpp", "choose one with --protocol"), 0u);
+  EXPECT_EQ(wrong("apps/stats/data/task_choice.cpp", "choose one with --exclude"), 3u);
+  EXPECT_EQ(wrong("apps/study/run_command.cpp", "use --no-such-option"), 1u);
+  EXPECT_EQ(wrong("stats/base/file.cpp", "use vip-study export --fmt"), 1u);
+  EXPECT_EQ(literals_of("f(\"use --no\" // a comment\n \"-such\", x, \"b\")"),
+            (std::vector<std::string>{"use --no-such", "b"}));
+}
+
+}  // namespace
+}  // namespace apps::test

@@ -1,0 +1,239 @@
+/// The report of studies that are not one protocol of each of the paper's tasks: other designs, several
+/// versions of a protocol, several questions.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/csv.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_walk.hpp"
+#include "tests/apps/simulated_pilot.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::vector<TaskKind> all_tasks{TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2, TaskKind::Own};
+
+PlanInForce quick_plan() {
+  PlanInForce plan;
+  plan.plan.resamples = 200;
+  return plan;
+}
+
+Json results_of(const study::TaskStudy& study, const std::string& question = "") {
+  ResultsRequest request{"study.db", all_tasks, "", quick_plan()};
+  request.question = question;
+  return make_results(study, request).json;
+}
+
+/// Two methods in three scenes, each rated on two scales of 1 to 4.
+study::TaskProtocol comfort(int participants) {
+  study::TaskProtocol out{"comfort",
+                          "1.0",
+                          std::string(64, '4'),
+                          false,
+                          participants,
+                          made_study::scenes,
+                          {"LoRes", "HiRes"},
+                          {"1k"},
+                          {},
+                          {}};
+  out.questions = {made_study::scale("comfort", 1, 4), made_study::scale("strain", 1, 4)};
+  out.questions[0].text = "How comfortable was it, of 4?";
+  for (int person = 0; person < participants; ++person) {
+    auto visit = made_study::session(made_study::code(person), "none");
+    visit.observer = "random";
+    for (int position = 0; position < 6; ++position) {
+      study::TaskTrial trial;
+      trial.position = position;
+      trial.kind = "stimulus";
+      trial.first = made_study::showing(made_study::scenes[static_cast<std::size_t>(position / 2)],
+                                        position % 2 ? "HiRes" : "LoRes", "1k");
+      trial.answers = {{"comfort", position % 2 ? 3 : 1 + person % 2}, {"strain", 2}};
+      visit.trials.push_back(trial);
+    }
+    out.sessions.push_back(visit);
+  }
+  return out;
+}
+
+study::TaskProtocol mended(study::TaskProtocol protocol, char digit) {
+  protocol.version = "1.1";
+  protocol.sha256 = std::string(64, digit);
+  return protocol;
+}
+
+/// The pilot with a second question of its own, on another scale.
+study::TaskProtocol pilot_of_two_questions() {
+  auto out = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 8, 7);
+  out.questions.push_back(made_study::scale("smoothness", 0, 3));
+  for (auto& session : out.sessions) {
+    session.observer.clear();
+    for (auto& trial : session.trials)
+      trial.answers.push_back({"smoothness", (*trial.answers[0].score - 1) / 2});
+  }
+  return out;
+}
+
+/// All of it on one page, each number in the JSON, each session in a flow.
+void expect_true_page(const Json& json) {
+  const auto page = html_reader::read(report::results_page(json));
+  EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());
+  EXPECT_THAT(report_walk::unmarked_numbers(page, json), IsEmpty());
+  EXPECT_EQ(report_walk::sessions_in_flows(json), json.at("roster").at("sessions"));
+  std::set<std::string> ids, wanted;
+  for (const auto& element : page.elements) {
+    for (const auto& [name, value] : element.attributes) {
+      if (name == "id") {
+        EXPECT_TRUE(ids.insert(value).second) << value;
+      }
+      if (name == "href") wanted.insert(value.substr(1));
+    }
+  }
+  for (const auto& id : wanted) EXPECT_TRUE(ids.contains(id)) << id;
+}
+
+TEST(ReportChoice, AnotherDesignHasFlowTimingAndAnswersByCell) {
+  const Json json = results_of({{comfort(12)}, 0});
+  expect_true_page(json);
+  EXPECT_EQ(json.at("flow").at("own").at("analysed"), 12);
+  EXPECT_EQ(json.at("timing").size(), 6u);
+  ASSERT_EQ(json.at("descriptives").size(), 2u);
+  const Json& cell = json.at("descriptives")[0].at("cells").at(0);
+  EXPECT_EQ(cell.at("shown"), "LoRes");
+  EXPECT_EQ(cell.at("n"), 12);
+  EXPECT_EQ(cell.at("mean"), 1.5);
+  EXPECT_NEAR(cell.at("sd").get<double>(), std::sqrt(3.0 / 11), 1e-12);
+  EXPECT_EQ(cell.at("median"), 1.5);
+  EXPECT_EQ(cell.at("distribution"), (Json{{{"answer", 1}, {"count", 6}},
+                                           {{"answer", 2}, {"count", 6}},
+                                           {{"answer", 3}, {"count", 0}},
+                                           {{"answer", 4}, {"count", 0}}}));
+  EXPECT_TRUE(json.at("hypotheses").empty());
+  EXPECT_THAT(json.at("not_analysed").at(0).at("reason").get<std::string>(), HasSubstr("realism"));
+  const std::string html = report::results_page(json);
+  for (const char* words : {"Simulated participants", "Flow of participants", "Timing certificate",
+                            "Answers by cell", "Not analysed"})
+    EXPECT_NE(html.find(words), std::string::npos) << words;
+}
+
+TEST(ReportChoice, TwoVersionsOfATaskStandApart) {
+  const Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
+  expect_true_page(json);
+  EXPECT_EQ(json.at("flow").at("task1").at("analysed"), 12) << "the version of most people comes first";
+  ASSERT_EQ(json.at("apart").size(), 1u);
+  EXPECT_EQ(json.at("apart")[0].at("flow").at("task1").at("analysed"), 3);
+  EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), Json{"apart 1"});
+  // Alone each says the same as beside the other.
+  const Json alone = results_of({{made_study::task1(12)}, 2});
+  EXPECT_EQ(json.at("task1"), alone.at("task1"));
+  EXPECT_EQ(json.at("hypotheses"), alone.at("hypotheses"));
+}
+
+TEST(ReportChoice, EachQuestionOfAPilotIsFitted) {
+  const study::TaskStudy study{{pilot_of_two_questions()}, 0};
+  const Json json = results_of(study);
+  expect_true_page(json);
+  EXPECT_EQ(json.at("pilot").at("question"), "satisfaction");
+  EXPECT_EQ(json.at("pilot").at("level"), 4);
+  ASSERT_EQ(json.at("apart").size(), 1u);
+  const Json& other = json.at("apart")[0].at("pilot");
+  EXPECT_EQ(other.at("question"), "smoothness");
+  EXPECT_EQ(other.at("level"), 1.5) << "the middle of 0 to 3";
+  EXPECT_EQ(other.at("status"), "ok") << other.at("reason");
+  EXPECT_FALSE(other.contains("level5")) << "5 is no score of this scale";
+  // Each question is described once.
+  EXPECT_EQ(json.at("descriptives").size(), 1u);
+  EXPECT_EQ(json.at("apart")[0].at("descriptives").size(), 1u);
+  const Json chosen = results_of(study, "smoothness");
+  EXPECT_FALSE(chosen.contains("apart"));
+  EXPECT_EQ(chosen.at("pilot").at("a"), other.at("a"));
+}
+
+TEST(ReportChoice, SicknessAskedInTrialsIsNoRatingOfFrameRates) {
+  auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 6, 7);
+  pilot.questions.push_back(made_study::scale("fms", 0, 20));
+  const Json json = results_of({{pilot}, 0});
+  EXPECT_FALSE(json.contains("apart"));
+  EXPECT_EQ(json.at("pilot").at("question"), "satisfaction");
+}
+
+TEST(ReportChoice, ProtocolsSetAsideAreInTheRoster) {
+  auto test = mended(made_study::task2(2), '6');
+  for (auto& session : test.sessions) session.test_data = true;
+  const Json json = results_of({{made_study::task2(9), test}, 0});
+  EXPECT_EQ(json.at("roster").at("sessions"), 11);
+  EXPECT_EQ(json.at("roster").at("protocols").at(1).at("sections"), Json::array());
+  EXPECT_EQ(json.at("roster").at("protocols").at(1).at("test_data"), 2);
+  EXPECT_NE(report::results_page(json).find("set aside"), std::string::npos);
+}
+
+TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
+  auto task = made_study::task1(12);
+  for (auto& session : task.sessions)
+    std::erase_if(session.trials, [](const auto& trial) { return trial.first.what.method == "FovFluid"; });
+  std::erase(task.methods, "FovFluid");
+  const Json json = results_of({{task}, 0});
+  expect_true_page(json);
+  ASSERT_EQ(json.at("hypotheses").size(), 2u);
+  EXPECT_EQ(json.at("hypotheses")[0].at("id"), "H2");
+  EXPECT_EQ(json.at("not_analysed"),
+            (Json{{{"task", "task1"}, {"what", "H1"}, {"reason", "the study does not show FovFluid"}}}));
+}
+
+TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) {
+  study::TaskProtocol pairs{
+      "pairs", "1.0", std::string(64, '7'), true, 6, made_study::scenes, {"LoRes", "HiRes"}, {"1k"}, {}, {}};
+  study::Question choice;
+  choice.id = "smoother";
+  choice.kind = study::AnswerKind::Choice;
+  choice.anchors = {{1, "first"}, {2, "second"}};
+  pairs.questions = {choice};
+  for (int person = 0; person < 6; ++person) {
+    auto visit = made_study::session(made_study::code(person), "none");
+    for (int position = 0; position < 3; ++position) {
+      study::TaskTrial trial;
+      trial.position = position;
+      trial.kind = "stimulus";
+      const auto& scene = made_study::scenes[static_cast<std::size_t>(position)];
+      const bool swapped = person % 2 != 0;
+      trial.first = made_study::showing(scene, swapped ? "HiRes" : "LoRes", "1k");
+      trial.second = made_study::showing(scene, swapped ? "LoRes" : "HiRes", "1k");
+      trial.answers = {{"smoother", swapped ? 1 : 2}};  // HiRes, always
+      visit.trials.push_back(trial);
+    }
+    pairs.sessions.push_back(visit);
+  }
+  const Json json = results_of({{pairs}, 0});
+  expect_true_page(json);
+  const Json& cells = json.at("descriptives").at(0).at("cells");
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0].at("shown"), "LoRes and HiRes");
+  EXPECT_EQ(cells[0].at("distribution"),
+            (Json{{{"answer", "LoRes"}, {"count", 0}}, {{"answer", "HiRes"}, {"count", 6}}}));
+  EXPECT_TRUE(json.at("hypotheses").empty());
+  EXPECT_THAT(json.at("task2").at("pairs").at(0).at("warning").get<std::string>(),
+              HasSubstr("3 times, as in several scenes"));
+}
+
+TEST(ReportChoice, TablesOfWhatStandsApartHaveFoldersOfTheirOwn) {
+  const Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
+  std::set<std::string> files;
+  write_csv_folder(json, "csv", [&](const std::filesystem::path& path, const std::string& bytes) {
+    EXPECT_TRUE(files.insert(path.string()).second) << path;
+    EXPECT_FALSE(bytes.empty());
+  });
+  for (const char* file : {"csv/descriptives.csv", "csv/roster.csv", "csv/apart_1/task1_cells.csv"})
+    EXPECT_TRUE(files.contains(file)) << file;
+}
+
+}  // namespace
+}  // namespace apps

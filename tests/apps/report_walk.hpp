@@ -1,0 +1,117 @@
+#pragma once
+/// The report's page against its JSON: every number that is printed stands there.
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/html_reader.hpp"
+
+namespace report_walk {
+
+using Json = nlohmann::ordered_json;
+
+/// Digits behind the point.
+inline int decimals(const std::string& text) {
+  const auto point = text.find('.');
+  if (point == std::string::npos) return 0;
+  int n = 0;
+  for (auto i = point + 1; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]));) ++i, ++n;
+  return n;
+}
+
+/// Whether what is printed is the value, rounded to the digits printed.
+inline bool says(std::string text, const Json& value, bool percent) {
+  if (value.is_boolean()) return text == (value.get<bool>() ? "yes" : "no");
+  if (value.is_string()) {
+    const auto word = value.get<std::string>();
+    return text == word || (word == "Inf" && text == "\u221e") || (word == "-Inf" && text == "\u2212\u221e");
+  }
+  if (!value.is_number()) return false;
+  double number = value.get<double>();
+  if (text == "< .001") return number < 0.001;
+  if (text == "> .999") return number > 0.999;
+  if (percent) {
+    if (!text.ends_with(" %")) return false;
+    text.resize(text.size() - 2);
+    number *= 100;
+  }
+  if (text.starts_with("\u2212")) text = "-" + text.substr(std::string("\u2212").size());
+  char* end = nullptr;
+  const double printed = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0') return false;
+  return std::abs(printed - number) <= 0.5 * std::pow(10.0, -decimals(text)) * (1 + 1e-9);
+}
+
+/// Fields of the page that do not say what the JSON says.
+inline std::vector<std::string> wrong_fields(const html_reader::Page& page, const Json& json) {
+  std::vector<std::string> wrong;
+  for (const auto& text : page.texts) {
+    const auto field = text.attribute("data-field");
+    if (field.empty()) continue;
+    const Json::json_pointer pointer(field);
+    if (!json.contains(pointer) || !says(text.words, json.at(pointer), !text.attribute("data-unit").empty()))
+      wrong.push_back(field + ": " + text.words);
+  }
+  return wrong;
+}
+
+/// The document, and behind it those that stand apart.
+inline std::vector<const Json*> documents(const Json& json) {
+  std::vector<const Json*> out{&json};
+  if (json.contains("apart"))
+    for (const auto& one : json.at("apart")) out.push_back(&one);
+  return out;
+}
+
+/// Texts with a digit that is neither marked with its place in the JSON nor part of a name or definition.
+inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, const Json& json) {
+  std::vector<std::string> known{"Task 1", "Task 2",  "Fig. 6",   "Fig. 9",    "Fig. 10",
+                                 "(1993)", "< .05",   "< .01",    "below .05", ".05 after Holm",
+                                 "< .001", "SHA-256", "H1 to H6", "H1 to H3",  "p95, ms"};
+  for (const Json* document : documents(json)) {
+    for (const auto& protocol : document->at("study").at("protocols")) {
+      // Sessions are counted by these words of theirs, which are the results' own.
+      for (const char* by : {"displays", "angles", "mixed_pictures"})
+        for (const auto& [words, sessions] : protocol.at(by).items()) known.push_back(words);
+    }
+  }
+  std::vector<std::string> out;
+  for (const auto& text : page.texts) {
+    if (!text.attribute("data-field").empty() || text.within("style") || text.within("svg")) continue;
+    if (text.within("title") || text.attribute("class") == "ordinal") continue;
+    if (const auto counted = text.attribute("data-count"); !counted.empty()) {
+      if (text.words != std::to_string(json.at(Json::json_pointer(counted)).size()))
+        out.push_back(counted + ": " + text.words);
+      continue;
+    }
+    std::string rest = text.words;
+    for (const auto& words : known)
+      for (auto at = rest.find(words); at != std::string::npos; at = rest.find(words))
+        rest.erase(at, words.size());
+    if (rest.find_first_of("0123456789") != std::string::npos) out.push_back(text.words);
+  }
+  return out;
+}
+
+/// Sessions that the flows of the page count, those that are set aside with them.
+inline int sessions_in_flows(const Json& json) {
+  int out = 0;
+  std::vector<std::string> counted;  // a protocol with several questions has a flow for each
+  for (const Json* document : documents(json)) {
+    for (const auto& protocol : document->at("study").at("protocols")) {
+      const std::string sha256 = protocol.at("sha256");
+      if (std::find(counted.begin(), counted.end(), sha256) != counted.end()) continue;
+      counted.push_back(sha256);
+      const Json& flow = document->at("flow").at(protocol.at("task").get<std::string>());
+      out += flow.at("started").get<int>() + flow.at("set_aside").at("test_data").get<int>() +
+             flow.at("set_aside").at("simulated").get<int>();
+    }
+  }
+  return out;
+}
+
+}  // namespace report_walk
