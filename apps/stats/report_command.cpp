@@ -55,7 +55,8 @@ Json document(const ReportCommand& command) {
   } else if (!command.plan.empty()) {
     request.plan = read_plan(command.plan);
   }
-  const auto study = study::read_tasks(command.database);
+  auto study = study::read_tasks(command.database);
+  study::read_about_people(command.database, study);
   Results results = make_results(study, request);
   if (results.json.at("flow").empty()) {
     std::string ids;
